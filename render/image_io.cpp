@@ -26,7 +26,8 @@ void write_png(const Image& image, const Path& path) {
   write_atomically(path, [&](const Path& temporary) {
     png_image png = png_head(image.size);
     if (!png_image_write_to_file(&png, temporary.c_str(), 0, image.rgba.data(), 0, nullptr))
-      throw Error("the picture cannot be written", path.string(), std::string("make room or choose another folder (") + png.message + ")");
+      throw Error("the picture cannot be written", path.string(),
+                  std::string("make room or choose another folder (") + png.message + ")");
   });
 }
 
@@ -45,14 +46,17 @@ Image read_png(const Path& path) { return parse_png(read_file(path), path.string
 
 Image parse_png(const std::string& bytes, const std::string& where) {
   png_image png = png_head({0, 0});
-  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) throw Error("this is not a PNG picture", where, "choose another file");
+  if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()))
+    throw Error("this is not a PNG picture", where, "choose another file");
   if (png.width > kLargestSide || png.height > kLargestSide) {
     png_image_free(&png);
     throw Error("the picture is too large", where, "use one of at most 16384 pixels a side");
   }
   png.format = PNG_FORMAT_RGBA;
-  Image image{{static_cast<int>(png.width), static_cast<int>(png.height)}, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
-  if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr)) throw Error("the picture is damaged", where, "choose another file");
+  Image image{{static_cast<int>(png.width), static_cast<int>(png.height)},
+              std::vector<std::uint8_t>(PNG_IMAGE_SIZE(png))};
+  if (!png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr))
+    throw Error("the picture is damaged", where, "choose another file");
   return image;
 }
 

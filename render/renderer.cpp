@@ -4,100 +4,21 @@
 
 #include <epoxy/gl.h>
 
-#include "core/base/error.h"
 #include "core/volume/tissue_voxels.h"
-#include "render/headless.h"
-#include "render/renderer_parts.h"
+#include "render/passes/pass_resources.h"
+#include "render/view.h"
 
 namespace limber::render {
 
-namespace {
-
-int texture_limit(int largest_texture) {
-  require_opengl_3_3();
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
-  return largest_texture > 0 ? std::min<int>(most, largest_texture) : most;
-}
-
-// Weak pointers tell whether they were made from the same owner even after it has gone.
-template <class T, class Owner>
-bool same(const std::weak_ptr<T>& key, const Owner& owner) {
-  return !key.owner_before(owner) && !owner.owner_before(key);
-}
-
-}  // namespace
-
-Renderer::Parts::Parts(int largest) : largest_texture(texture_limit(largest)) {}
-
-Renderer::Parts::Body& Renderer::Parts::body(const std::shared_ptr<const LabelVolume>& volume) {
-  for (const auto& body : bodies_)
-    if (same(body->key, volume)) return *body;
-  std::erase_if(bodies_, [](const auto& body) { return body->key.expired(); });
-  auto fresh = std::make_unique<Body>();
-  fresh->key = volume;
-  fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
-  note = fresh->volume->note();
-  return *bodies_.emplace_back(std::move(fresh));
-}
-
-const LooksTexture& Renderer::Parts::looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display) {
-  for (const Looks& known : looks_)
-    if (same(known.key, looks) && same(known.volume, body.volume->original()) && known.display == display) return *known.texture;
-  std::erase_if(looks_, [](const Looks& known) { return known.key.expired() || known.volume.expired(); });
-  auto texture = std::make_unique<LooksTexture>(*looks, display, body.volume->exposure());
-  return *looks_.emplace_back(Looks{looks, body.volume->original(), display, std::move(texture)}).texture;
-}
-
-const VisibleField& Renderer::Parts::layer(Body& body, const LooksTexture& looks, size_t layer) {
-  if (body.layers.size() <= layer) body.layers.resize(layer + 1);
-  auto& field = body.layers[layer];
-  const LabelSet& set = looks.layers()[layer];
-  if (!field) field = std::make_unique<VisibleField>(*body.volume, set);
-  else if (field->set() != set) field->update(*body.volume, set);
-  return *field;
-}
-
-const PosedTexture* Renderer::Parts::pose(Body& body, const std::shared_ptr<const PreviewMap>& map) {
-  if (!map) return nullptr;
-  if (const auto volume = body.volume->original().lock(); !volume || !(map->grid == volume->grid))
-    throw Error("the pose was made for another volume", "preview of a posed body", "pose the volume that is shown");
-  if (!body.pose) body.pose = std::make_unique<PosedTexture>();
-  if (body.pose->map() != map) body.pose->upload(map, largest_texture);
-  return body.pose.get();
-}
-
-WeightTexture* Renderer::Parts::weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent) {
-  if (!shown) return nullptr;
-  if (const auto volume = body.volume->original().lock(); !volume || shown->tissue->grid_size() != volume->grid.size)
-    throw Error("the weights were made for another volume", "display of weights", "show the volume that they belong to");
-  if (!body.weights) body.weights = std::make_unique<WeightTexture>(*body.volume);
-  body.weights->update(*body.volume, *shown, extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
-  return body.weights.get();
-}
-
-const PosedHull* Renderer::Parts::posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map) {
-  if (!map) return nullptr;
-  if (body.posed_hulls.size() <= layer) body.posed_hulls.resize(layer + 1);
-  auto& hull = body.posed_hulls[layer];
-  if (!hull) hull = std::make_unique<PosedHull>();
-  hull->update(map, *body.volume, *body.layers[layer]);
-  return hull.get();
-}
-
-VolumePass& Renderer::Parts::volume_pass(const VolumeTexture& volume, VolumePass::Space space) {
-  auto& pass = volume_passes_[{volume.layout().atlases, space}];
-  if (!pass) pass = std::make_unique<VolumePass>(volume.layout().atlases, space);
-  return *pass;
-}
-
-Renderer::Renderer(int largest_texture) : parts_(std::make_unique<Parts>(largest_texture)) {}
+Renderer::Renderer(int largest_texture) : resources_(std::make_unique<PassResources>(largest_texture)) {}
 Renderer::~Renderer() = default;
 void Renderer::begin_frame(double upload_seconds) {
-  parts_->upload_time = UploadTime{std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(upload_seconds))};
+  resources_->upload_time =
+      UploadTime{std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                        std::chrono::duration<double>(upload_seconds))};
 }
-void Renderer::average_at_rest(int pictures) { parts_->pictures_at_rest = std::max(0, pictures); }
+void Renderer::average_at_rest(int pictures) { resources_->pictures_at_rest = std::max(0, pictures); }
 void Renderer::finish() { glFinish(); }
-const std::string& Renderer::note() const { return parts_->note; }
+const std::string& Renderer::note() const { return resources_->note; }
 
 }  // namespace limber::render

@@ -9,20 +9,18 @@
 #include <epoxy/gl.h>
 
 #include "core/deform/preview_map.h"
-#include "render/renderer_parts.h"
+#include "render/passes/pass_resources.h"
 
 namespace limber::render {
 
 namespace {
 
-constexpr double kRest = 0.1;             // s without a change before the picture is refined
-constexpr double kFrame = 0.028;          // s that rays may take while something moves
-constexpr double kTileBudget = 0.018;     // s of refinement in one call
-constexpr int kTile = 128;                // pixels
+constexpr double kRest = 0.1;          // s without a change before the picture is refined
+constexpr double kFrame = 0.028;       // s that rays may take while something moves
+constexpr double kTileBudget = 0.018;  // s of refinement in one call
+constexpr int kTile = 128;             // pixels
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // The caller's framebuffer is bound again when this goes.
 class KeepFramebuffer {
@@ -50,9 +48,12 @@ class Target {
     if (!framebuffer_) framebuffer_ = gl::Framebuffer::create(), texture_ = gl::Texture::create();
     size_ = size;
     glBindTexture(GL_TEXTURE_2D, texture_.name());
-    glTexImage2D(GL_TEXTURE_2D, 0, internal, size.x, size.y, 0, GL_RGBA, internal == GL_RGBA8 ? GL_UNSIGNED_BYTE : GL_FLOAT, nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, axis, GL_CLAMP_TO_EDGE);
+    glTexImage2D(GL_TEXTURE_2D, 0, internal, size.x, size.y, 0, GL_RGBA,
+                 internal == GL_RGBA8 ? GL_UNSIGNED_BYTE : GL_FLOAT, nullptr);
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+      glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+      glTexParameteri(GL_TEXTURE_2D, axis, GL_CLAMP_TO_EDGE);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
   }
@@ -92,11 +93,13 @@ Image read_back(const Target& target, bool premultiplied) {
   image.rgba.resize(rows.size());
   const size_t row = static_cast<size_t>(image.size.x) * 4;
   for (int y = 0; y < image.size.y; ++y)
-    std::copy_n(rows.data() + static_cast<size_t>(image.size.y - 1 - y) * row, row, image.rgba.data() + static_cast<size_t>(y) * row);
+    std::copy_n(rows.data() + static_cast<size_t>(image.size.y - 1 - y) * row, row,
+                image.rgba.data() + static_cast<size_t>(y) * row);
   if (premultiplied)
     for (size_t i = 0; i < image.rgba.size(); i += 4) {
       const int alpha = image.rgba[i + 3];
-      for (size_t c = i; c < i + 3; ++c) image.rgba[c] = static_cast<std::uint8_t>(alpha ? std::min(255, (image.rgba[c] * 255 + alpha / 2) / alpha) : 0);
+      for (size_t c = i; c < i + 3; ++c)
+        image.rgba[c] = static_cast<std::uint8_t>(alpha ? std::min(255, (image.rgba[c] * 255 + alpha / 2) / alpha) : 0);
     }
   return image;
 }
@@ -120,27 +123,33 @@ BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size,
 
 // What lies on top of it.
 bool same_pose(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) { return p.rotation == q.rotation && p.translation == q.translation; });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
+    return p.rotation == q.rotation && p.translation == q.translation;
+  });
 }
 bool same_looks(const std::vector<BoneLook>& a, const std::vector<BoneLook>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const auto& p, const auto& q) { return p.selected == q.selected && p.active == q.active && p.hovered == q.hovered; });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
+    return p.selected == q.selected && p.active == q.active && p.hovered == q.hovered;
+  });
 }
 bool same_overlay(const Scene& a, const Scene& b) {
-  return a.armature == b.armature && same_pose(a.posed_from_rest, b.posed_from_rest) && same_looks(a.bones, b.bones) && a.bone_shape == b.bone_shape &&
-         a.bones_in_front == b.bones_in_front && a.line_scale == b.line_scale && a.grid == b.grid && a.dark_background == b.dark_background &&
+  return a.armature == b.armature && same_pose(a.posed_from_rest, b.posed_from_rest) && same_looks(a.bones, b.bones) &&
+         a.bone_shape == b.bone_shape && a.bones_in_front == b.bones_in_front && a.line_scale == b.line_scale &&
+         a.grid == b.grid && a.dark_background == b.dark_background &&
          a.transparent_background == b.transparent_background && a.outlined == b.outlined && a.mesh == b.mesh;
 }
 
-// The tets of a mesh, upon tissue or upon a slice that shows no more than outlines: the fainter the smaller they are seen, or
-// they would hide what they lie on.
-LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue, double millimetres_per_pixel) {
+// The tets of a mesh, upon tissue or upon a slice that shows no more than outlines: the fainter the smaller they are
+// seen, or they would hide what they lie on.
+LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue,
+                          double millimetres_per_pixel) {
   constexpr double kFaint = 1.5, kClear = 12;  // pixels at scale 1, of a line's mean length
   double length = 0;
   for (const Segment& line : lines) length += glm::distance(line[0], line[1]);
   const double pixels = length / std::max<double>(1, double(lines.size())) / (millimetres_per_pixel * scene.line_scale);
   const float share = static_cast<float>(std::clamp((pixels - kFaint) / (kClear - kFaint), 0.08, 1.0));
-  return {on_tissue ? glm::vec3(0.05f, 0.055f, 0.07f) : glm::vec3(0.9f), share * (on_tissue ? 0.7f : 0.4f), scene.line_scale};
+  return {on_tissue ? glm::vec3(0.05f, 0.055f, 0.07f) : glm::vec3(0.9f), share * (on_tissue ? 0.7f : 0.4f),
+          scene.line_scale};
 }
 
 // The box of the volume in the world, or of the armature where there is no volume.
@@ -180,9 +189,9 @@ glm::vec3 label_shift_of(int sample) {
 }  // namespace
 
 struct View3D::Impl {
-  explicit Impl(Renderer& renderer) : parts(renderer.parts()) {}
+  explicit Impl(Renderer& renderer) : resources(renderer.resources()) {}
 
-  Renderer::Parts& parts;
+  PassResources& resources;
   Target output, body, average;
   using Layers = std::array<GBuffer, kMostLayers>;
   Layers shown;     // what the rays of the picture met, the outermost layer first
@@ -191,53 +200,58 @@ struct View3D::Impl {
   Scene scene;  // last drawn
   bool drawn = false;
   double changed_at = 0;
-  int moving_scale = 3;    // pixels each way while moving
-  int shown_scale = 0;     // of the body's picture
-  int sample = 0;          // of the refinement: samples finished
-  int next_tile = 0;       // of the sample under way
-  bool refines = false;    // scale 0: goes on to full resolution and averaging
-  PixelRect rect;          // what the body covers, in pixels of its picture
+  int moving_scale = 3;  // pixels each way while moving
+  int shown_scale = 0;   // of the body's picture
+  int sample = 0;        // of the refinement: samples finished
+  int next_tile = 0;     // of the sample under way
+  bool refines = false;  // scale 0: goes on to full resolution and averaging
+  PixelRect rect;        // what the body covers, in pixels of its picture
   std::int64_t rays_followed = 0;
   int weight_changes = 0;  // of the weights' texture, as drawn
   bool has_all_weights = true;
 
   struct Source {
-    Renderer::Parts::Body* body = nullptr;
+    PassResources::Body* body = nullptr;
     const LooksTexture* looks = nullptr;
     std::vector<const VisibleField*> layers;
     const PosedTexture* pose = nullptr;
     const WeightTexture* weights = nullptr;
     std::vector<const PosedHull*> posed_hulls;  // of each layer; null at rest
 
-    const Hull& hull(size_t layer) const { return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull(); }
+    const Hull& hull(size_t layer) const {
+      return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull();
+    }
   };
-  std::optional<Source> source(const Scene& scene, Renderer::Parts::Extent extent) {
+  std::optional<Source> source(const Scene& scene, PassResources::Extent extent) {
     if (!scene.volume || !scene.looks) return std::nullopt;
     Source result;
-    result.body = &parts.body(scene.volume);
-    result.looks = &parts.looks(*result.body, scene.looks, scene.display);
-    result.pose = parts.pose(*result.body, scene.pose);
-    result.weights = parts.weights(*result.body, scene.weights, extent);
+    result.body = &resources.body(scene.volume);
+    result.looks = &resources.looks(*result.body, scene.looks, scene.display);
+    result.pose = resources.pose(*result.body, scene.pose);
+    result.weights = resources.weights(*result.body, scene.weights, extent);
     for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
-      result.layers.push_back(&parts.layer(*result.body, *result.looks, layer));
-      result.posed_hulls.push_back(parts.posed_hull(*result.body, layer, scene.pose));
+      result.layers.push_back(&resources.layer(*result.body, *result.looks, layer));
+      result.posed_hulls.push_back(resources.posed_hull(*result.body, layer, scene.pose));
     }
     return result;
   }
 
   ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
     const Hull& outer = source.hull(0);
-    ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
+    ViewRays rays =
+        view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
     rays.label_shift = label_shift_of(sample);
     rays.mirrored_taps = sample % 2 != 0;
     return rays;
   }
 
   VolumePass& volume_pass(const Source& source) {
-    return parts.volume_pass(*source.body->volume, source.pose ? VolumePass::Space::Posed : VolumePass::Space::Rest);
+    return resources.volume_pass(*source.body->volume,
+                                 source.pose ? VolumePass::Space::Posed : VolumePass::Space::Rest);
   }
 
-  void start(const Source& source, const ViewRays& rays, Layers& buffers, const glm::ivec2& size, const PixelRect& part) {
+  void start(const Source& source, const ViewRays& rays, Layers& buffers, const glm::ivec2& size,
+             const PixelRect& part) {
     VolumePass& pass = volume_pass(source);
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
       buffers[layer].resize(size, key.places);
@@ -248,25 +262,27 @@ struct View3D::Impl {
     VolumePass& pass = volume_pass(source);
     if (!part.empty()) rays_followed += std::int64_t{part.high.x - part.low.x} * (part.high.y - part.low.y);
     for (size_t layer = 0; layer < source.layers.size(); ++layer)
-      pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer], source.looks->texture(), static_cast<int>(layer), scene.clip, rays,
-                 buffers[layer], part);
+      pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer],
+                 source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
   }
   ShadePass::Colours colours() const {
     if (!scene.weights) return ShadePass::Colours::Tissues;
     if (!scene.weights->contours) return ShadePass::Colours::Weights;
-    return scene.weights->display == WeightDisplay::Active ? ShadePass::Colours::WeightsWithContours
-           : scene.weights->display == WeightDisplay::Mixed ? ShadePass::Colours::Weights : ShadePass::Colours::WeightsWithBorders;
+    return scene.weights->display == WeightDisplay::Active  ? ShadePass::Colours::WeightsWithContours
+           : scene.weights->display == WeightDisplay::Mixed ? ShadePass::Colours::Weights
+                                                            : ShadePass::Colours::WeightsWithBorders;
   }
   void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
     for (size_t layer = 0; source.weights && layer < source.layers.size(); ++layer)
-      parts.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
+      resources.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
     weight_changes = source.weights ? source.weights->changes() : 0;
     body.resize(buffers[0].size(), GL_RGBA8);
     body.share_depth(buffers[0].hull_depth);
     body.clear();
     for (size_t layer = source.layers.size(); layer-- > 0;)
-      parts.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer], source.looks->texture(), rays, part, static_cast<int>(layer),
-                       layer == 0 && scene.display == Display::XRay, colours());
+      resources.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer],
+                           source.looks->texture(), rays, part, static_cast<int>(layer),
+                           layer == 0 && scene.display == Display::XRay, colours());
   }
 
   // The whole body at once, at every `scale`-th pixel.
@@ -301,7 +317,7 @@ struct View3D::Impl {
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
     average.bind();
-    parts.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), part);
+    resources.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), part);
     if (sample == 0) {
       std::swap(shown, jittered);
       rect = part;
@@ -318,13 +334,16 @@ struct View3D::Impl {
     if (only_weights && source.weights->changes() == weight_changes) return;
     const ViewRays rays = rays_of(source, shown[0].size(), 0);
     PixelRect part = rect;
-    const auto changed = only_weights && !source.pose && sample > 0 ? source.weights->changed_since(weight_changes) : std::nullopt;
-    if (changed) part = intersection(part, VolumePass::covered(glm::vec3(changed->low), glm::vec3(changed->high), rays, shown[0].size()));
+    const auto changed =
+        only_weights && !source.pose && sample > 0 ? source.weights->changed_since(weight_changes) : std::nullopt;
+    if (changed)
+      part = intersection(
+          part, VolumePass::covered(glm::vec3(changed->low), glm::vec3(changed->high), rays, shown[0].size()));
     shade(source, rays, shown, part);
     if (sample == 0) return;
     // The picture at rest takes over what is new, and is refined once more.
     average.bind();
-    parts.compose.accumulate(body.texture(), key.size, 1, part);
+    resources.compose.accumulate(body.texture(), key.size, 1, part);
     sample = 1;
     next_tile = 0;
   }
@@ -343,30 +362,37 @@ struct View3D::Impl {
     std::vector<Segment> lines;
   } cut;
   void draw_mesh() {
-    if (!(cut.mesh == *scene.mesh) || cut.clip.box != scene.clip.box || cut.clip.plane != scene.clip.plane || cut.volume != scene.volume)
+    if (!(cut.mesh == *scene.mesh) || cut.clip.box != scene.clip.box || cut.clip.plane != scene.clip.plane ||
+        cut.volume != scene.volume)
       cut = {*scene.mesh, scene.clip, scene.volume, lines_on_cuts(*scene.mesh, scene.clip, scene.volume->grid)};
     // A cut that is seen at a slant lies at several depths within a pixel of the body's picture.
     const double pixel = 2 * key.camera.distance * std::tan(key.camera.field_of_view / 2) / key.size.y;
     const float off = static_cast<float>(1 + 2 * pixel * shown_scale);  // mm
-    parts.lines.draw(cut.lines, key.camera, key.size, shown[0].depth, off, ink_of_mesh(scene, cut.lines, true, pixel));
+    resources.lines.draw(cut.lines, key.camera, key.size, shown[0].depth, off,
+                         ink_of_mesh(scene, cut.lines, true, pixel));
   }
 
   void compose() {
     output.bind();
-    const auto background = scene.transparent_background ? Background::Transparent : scene.dark_background ? Background::Dark : Background::Light;
-    parts.compose.background(background, key.size);
+    const auto background = scene.transparent_background ? Background::Transparent
+                            : scene.dark_background      ? Background::Dark
+                                                         : Background::Light;
+    resources.compose.background(background, key.size);
     const auto [low, high] = box_of(scene);
     if (scene.grid && !scene.transparent_background)
-      parts.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z, std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
+      resources.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z,
+                             std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
     const bool has_body = shown_scale > 0;
-    if (has_body) parts.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
-    if (has_body && scene.outlined) parts.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
+    if (has_body) resources.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
+    if (has_body && scene.outlined)
+      resources.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
     if (has_body && scene.mesh) draw_mesh();
-    parts.armature.draw(scene, key.camera, key.size, has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
+    resources.armature.draw(scene, key.camera, key.size,
+                            has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
     gl::check_gl("drawing a picture");
   }
 
-  bool complete() const { return drawn && has_all_weights && (!refines || sample >= parts.pictures_at_rest); }
+  bool complete() const { return drawn && has_all_weights && (!refines || sample >= resources.pictures_at_rest); }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -386,7 +412,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   my.key = key;
   my.scene = scene;
   my.output.resize(size, GL_RGBA8);
-  const auto source = my.source(scene, scale == 0 ? Renderer::Parts::Extent::InTime : Renderer::Parts::Extent::Whole);
+  const auto source = my.source(scene, scale == 0 ? PassResources::Extent::InTime : PassResources::Extent::Whole);
   my.refines = scale == 0 && source;
   my.has_all_weights = !source || !source->weights || source->weights->complete();
   const bool more_weights = my.drawn && source && source->weights && source->weights->changes() != my.weight_changes;
@@ -399,7 +425,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     my.sample = my.next_tile = 0;
     const double begin = seconds();
     my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
-    if (scale == 0 && my.parts.pictures_at_rest > 0) {
+    if (scale == 0 && my.resources.pictures_at_rest > 0) {
       glFinish();
       // The cost goes with the number of pixels; a finer picture is tried when it would fit well.
       const double cost = seconds() - begin;
@@ -410,7 +436,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   } else if (recoloured || more_weights) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
-  } else if (my.refines && my.sample < my.parts.pictures_at_rest && now - my.changed_at >= kRest) {
+  } else if (my.refines && my.sample < my.resources.pictures_at_rest && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
   my.drawn = true;
@@ -426,9 +452,11 @@ Image View3D::read() const { return read_back(impl_->output, impl_->scene.transp
 std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
   const Impl& my = *impl_;
   if (!my.drawn || my.shown_scale == 0 || !my.scene.volume) return std::nullopt;
-  if (glm::any(glm::lessThan(pixel, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(pixel, my.key.size))) return std::nullopt;
+  if (glm::any(glm::lessThan(pixel, glm::ivec2(0))) || glm::any(glm::greaterThanEqual(pixel, my.key.size)))
+    return std::nullopt;
   const glm::ivec2 buffer_size = my.shown[0].size();
-  const glm::ivec2 at(pixel.x * buffer_size.x / my.key.size.x, (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
+  const glm::ivec2 at(pixel.x * buffer_size.x / my.key.size.x,
+                      (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
 
   const KeepFramebuffer keep;
   // In X-ray the bone under the ghost is meant, where there is one.
@@ -448,12 +476,14 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
     Hit hit;
     hit.label = label;
     // The buffer's pixel, not the asked one: its ray is the one that was followed.
-    const glm::dvec2 middle((at.x + 0.5) * my.key.size.x / buffer_size.x, my.key.size.y - (at.y + 0.5) * my.key.size.y / buffer_size.y);
+    const glm::dvec2 middle((at.x + 0.5) * my.key.size.x / buffer_size.x,
+                            my.key.size.y - (at.y + 0.5) * my.key.size.y / buffer_size.y);
     const Ray ray = ray_through(my.key.camera, middle, my.key.size);
     const glm::dvec3 ahead = my.key.camera.world_from_view * glm::dvec3(0, 0, -1);
     hit.point = ray.origin + ray.direction * (double(depth) / glm::dot(ray.direction, ahead));
     const bool cap = normal >> 30 == 3;
-    const glm::dvec3 view_normal = glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
+    const glm::dvec3 view_normal =
+        glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
     if (!cap) hit.normal = my.key.camera.world_from_view * glm::normalize(view_normal);
 
     // The voxel of that label where the surface lies, walking inward as the shader did; at rest.
@@ -492,18 +522,9 @@ std::vector<BoneHit> View3D::pick_bones(const glm::ivec2& pixel) const {
   return bones_at(my.scene, my.key.camera, my.key.size, glm::dvec2(pixel) + 0.5);
 }
 
-SliceFrame frame_of(SliceAxis axis) {
-  switch (axis) {
-    case SliceAxis::Sagittal: return {{0, 1, 0}, {0, 0, -1}, {1, 0, 0}};
-    case SliceAxis::Coronal: return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-    case SliceAxis::Axial: break;
-  }
-  return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-}
-
 struct SliceView::Impl {
-  explicit Impl(Renderer& renderer) : parts(renderer.parts()) {}
-  Renderer::Parts& parts;
+  explicit Impl(Renderer& renderer) : resources(renderer.resources()) {}
+  PassResources& resources;
   Target output;
   bool has_all_weights = true;
   // The mesh's lines, and what they were made for.
@@ -519,11 +540,12 @@ struct SliceView::Impl {
       const SliceFrame frame = frame_of(camera.axis);
       cut = {mesh, camera, plane_cut(*mesh.V, *mesh.faces, camera.centre, frame.normal)};
     }
-    parts.lines.draw(cut.lines, camera, size, ink_of_mesh(scene, cut.lines, display == SliceDisplay::Labels, camera.millimetres_per_pixel));
+    resources.lines.draw(cut.lines, camera, size,
+                         ink_of_mesh(scene, cut.lines, display == SliceDisplay::Labels, camera.millimetres_per_pixel));
   }
 
-  const WeightTexture* weights(Renderer::Parts::Body& body, const Scene& scene, const SliceCamera& camera) {
-    WeightTexture* weights = parts.weights(body, scene.weights, Renderer::Parts::Extent::InTime);
+  const WeightTexture* weights(PassResources::Body& body, const Scene& scene, const SliceCamera& camera) {
+    WeightTexture* weights = resources.weights(body, scene.weights, PassResources::Extent::InTime);
     has_all_weights = !weights || weights->complete();
     if (!weights) return nullptr;
     const AffineTransform to_padded = padded_from_world(body.volume->grid());
@@ -543,11 +565,12 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
   my.has_all_weights = true;
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
-  my.parts.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
+  my.resources.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
   if (scene.volume && scene.looks) {
-    auto& body = my.parts.body(scene.volume);
-    my.parts.slice.draw(*body.volume, my.parts.pose(body, scene.pose), my.parts.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
-                        scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
+    auto& body = my.resources.body(scene.volume);
+    my.resources.slice.draw(*body.volume, my.resources.pose(body, scene.pose),
+                            my.resources.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
+                            scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
     if (scene.mesh) my.draw_mesh(scene, camera, display, size);
   }
   gl::check_gl("drawing a slice");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One picture of a scene: 3D or a slice, drawn into a texture of its own that the editor shows and the command line saves.
-// Everything here needs a current OpenGL 3.3 core context. Volumes are uploaded once and shared by all views.
+// One picture of a scene: 3D or a slice, drawn into a texture of its own that the editor shows and the command line
+// saves. Everything here needs a current OpenGL 3.3 core context. Volumes are uploaded once and shared by all views.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,14 @@
 #include <glm/glm.hpp>
 
 #include "core/volume/label_volume.h"
-#include "render/camera.h"
 #include "render/image_io.h"
-#include "render/scene.h"
+#include "render/scene/camera.h"
+#include "render/scene/scene.h"
+#include "render/scene/slice_camera.h"
 
 namespace limber::render {
+
+struct PassResources;
 
 // Textures of the volumes in use, programs, meshes: one for a context.
 class Renderer {
@@ -30,22 +33,21 @@ class Renderer {
   // What the user should know of the last upload ("shown at half resolution: ..."), or empty.
   const std::string& note() const;
 
-  // Until it is called again, views that are drawn call by call bring large changes of weights to the card in about so long
-  // altogether, and are not complete while some wait. Without frames each draw brings all.
+  // Until it is called again, views that are drawn call by call bring large changes of weights to the card in about so
+  // long altogether, and are not complete while some wait. Without frames each draw brings all.
   void begin_frame(double upload_seconds);
 
-  // How many pictures are averaged at rest; six unless it is called. Fewer are sooner complete, and less smooth. With 0 a
-  // picture at rest stays one of every third pixel: for tests of all that is not a picture.
+  // How many pictures are averaged at rest; six unless it is called. Fewer are sooner complete, and less smooth. With 0
+  // a picture at rest stays one of every third pixel: for tests of all that is not a picture.
   void average_at_rest(int pictures);
 
   // Waits until everything drawn so far is done, for whoever measures.
   void finish();
 
-  struct Parts;
-  Parts& parts() { return *parts_; }
+  PassResources& resources() { return *resources_; }
 
  private:
-  std::unique_ptr<Parts> parts_;
+  std::unique_ptr<PassResources> resources_;
 };
 
 // What lies under a pixel.
@@ -71,8 +73,9 @@ class View3D {
   //   now    seconds, of any steady clock
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
-  int scale() const;         // of the body in the last picture; 0: there is none
-  std::int64_t rays_followed() const;  // pixels of all pictures so far whose rays were followed, the covered rectangles'
+  int scale() const;  // of the body in the last picture; 0: there is none
+  std::int64_t rays_followed()
+      const;                 // pixels of all pictures so far whose rays were followed, the covered rectangles'
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
 
@@ -85,22 +88,6 @@ class View3D {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-enum class SliceAxis { Sagittal, Coronal, Axial };  // normal x, y, z of the world, by the grid axis nearest to it
-enum class SliceDisplay { Labels, Outline };
-
-// Where a slice is cut and what part of it is seen.
-struct SliceCamera {
-  SliceAxis axis = SliceAxis::Axial;
-  glm::dvec3 centre{0};            // world point in the picture's middle; the slice goes through it
-  double millimetres_per_pixel = 1;
-};
-
-// World axes of a slice picture: radiological convention (axial seen from the feet, the patient's right on the left).
-struct SliceFrame {
-  glm::dvec3 right, down, normal;
-};
-SliceFrame frame_of(SliceAxis axis);
 
 class SliceView {
  public:

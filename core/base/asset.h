@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where themes, key maps, icons, samples and rig templates lie: beside the installed program (share/limber), else in the
-// source tree.
+// Where themes, key maps, icons, samples and rig templates lie: beside the installed program (share/limber), else in
+// the source tree.
 #pragma once
 
 #include <string>

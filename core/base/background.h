@@ -7,7 +7,8 @@
 namespace limber {
 
 // Runs `work` and waits for it: on a thread of its own that yields to all others of usual priority, and that is all it
-// takes, since loops within (parallel.h) take no further thread unless a ThreadCount lives. What is thrown comes out here.
+// takes, since loops within (parallel.h) take no further thread unless a ThreadCount lives. What is thrown comes out
+// here.
 void in_background(const std::function<void()>& work);
 
 }  // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Values as bytes and back, bit for bit: numbers little-endian as they lie in memory, texts and lists behind their length.
-// The reader believes nothing: it never reads past the end, and a list's length is checked against the bytes that are
-// there before anything is allocated.
+// Values as bytes and back, bit for bit: numbers little-endian as they lie in memory, texts and lists behind their
+// length. The reader believes nothing: it never reads past the end, and a list's length is checked against the bytes
+// that are there before anything is allocated.
 #pragma once
 
 #include <bit>

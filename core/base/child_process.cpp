@@ -93,7 +93,8 @@ int status_of(pid_t child, Clock::time_point latest, const Progress& progress, E
 
 Clock::time_point after(double seconds) {
   constexpr double kForever = 1e8;
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kForever)));
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, kForever)));
 }
 
 std::string failure_of(Ending ending, int status) {
@@ -101,13 +102,15 @@ std::string failure_of(Ending ending, int status) {
   if (ending == Ending::too_late) return "it took too long";
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "it took too much processor time";
   if (WIFSIGNALED(status)) return "it crashed (signal " + std::to_string(WTERMSIG(status)) + ")";
-  if (WIFEXITED(status) && WEXITSTATUS(status) != 0) return "it gave up (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
+    return "it gave up (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
   return {};
 }
 
 }  // namespace
 
-ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits, const Progress& progress) {
+ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
+                         const Progress& progress) {
   constexpr const char* kNoProcess = "no process could be started for it";
   const std::size_t memory = limits.memory_bytes > 0 ? mapped_bytes() + limits.memory_bytes : 0;
   const Clock::time_point latest = after(limits.seconds);

@@ -16,9 +16,9 @@ namespace limber {
 using Send = std::function<void(const void* bytes, std::size_t size)>;
 
 struct ChildLimits {
-  double processor_seconds = 20;                               // of the child, in whole seconds (rounded up)
-  double seconds = std::numeric_limits<double>::infinity();    // by the clock: a child may also sleep
-  std::size_t memory_bytes = 0;                                // beyond what this process has mapped already; 0 = no limit
+  double processor_seconds = 20;                             // of the child, in whole seconds (rounded up)
+  double seconds = std::numeric_limits<double>::infinity();  // by the clock: a child may also sleep
+  std::size_t memory_bytes = 0;  // beyond what this process has mapped already; 0 = no limit
 };
 
 struct ChildAnswer {
@@ -27,8 +27,8 @@ struct ChildAnswer {
 };
 
 // What `work` sent, or nothing and the reason when it returned false, threw, crashed, ended the process, sent more than
-// `most` bytes or went over a limit. The child has no standard output or error of its own, nothing it changes in memory is
-// seen here, and it ends with the thread that waits for it.
+// `most` bytes or went over a limit. The child has no standard output or error of its own, nothing it changes in memory
+// is seen here, and it ends with the thread that waits for it.
 //   throws Cancelled, the child gone, within some 20 ms of progress.cancel()
 ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
                          const Progress& progress = no_progress());

@@ -20,12 +20,12 @@ extern "C" int omp_get_max_active_levels(void);
 namespace limber {
 
 namespace {
-constexpr double kMostMended = 0.125;  // of the nodes; with more, dissecting anew is sure to be better
+constexpr double kMostMended = 0.125;            // of the nodes; with more, dissecting anew is sure to be better
 constexpr std::size_t kMostNumbers = INT32_MAX;  // in a factor: CHOLMOD counts them by int
-constexpr double kDearer = 1.16;       // than when the ordering was found: one that is mended for longer is given up
+constexpr double kDearer = 1.16;  // than when the ordering was found: one that is mended for longer is given up
 
-// Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions that
-// are not active run on the calling thread.
+// Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions
+// that are not active run on the calling thread.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
@@ -37,13 +37,14 @@ class OneThread {
   int before_;
 };
 
-// OpenBLAS takes its working memory at its first call, and where there is none it asks again for ever. So it is led to take
-// it here, once the memory is seen to be there.
+// OpenBLAS takes its working memory at its first call, and where there is none it asks again for ever. So it is led to
+// take it here, once the memory is seen to be there.
 void require_blas_memory() {
   static const bool has_memory = [] {
     constexpr std::size_t kMost = std::size_t{160} << 20;  // it takes 128 MB of address space
     void* room = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room == MAP_FAILED) throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
+    if (room == MAP_FAILED)
+      throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
     ::munmap(room, kMost);
     using Factorize = void (*)(const char* half, const int* n, double* A, const int* lda, int* info);
     if (const auto factorize = reinterpret_cast<Factorize>(::dlsym(RTLD_DEFAULT, "dpotrf_"))) {
@@ -97,7 +98,8 @@ BlockGraph BlockGraphBuilder::build(const BlockGraph& base) const {
     seen_by[i] = i;
     const auto begin = std::ssize(graph.neighbour);
     if (base.node_count() > 0) {
-      graph.neighbour.insert(graph.neighbour.end(), base.neighbour.begin() + base.first[i], base.neighbour.begin() + base.first[i + 1]);
+      graph.neighbour.insert(graph.neighbour.end(), base.neighbour.begin() + base.first[i],
+                             base.neighbour.begin() + base.first[i + 1]);
       if (first[i] == first[i + 1]) {
         graph.first.push_back(std::ssize(graph.neighbour));
         continue;
@@ -120,14 +122,14 @@ struct Cholesky::Factor {
   double operations = 0;
 
   int node_count = 0;
-  std::vector<int> rank;                        // #nodes: place in the ordering
-  std::vector<int> parent;                      // #nodes, by rank: in the elimination tree
-  double fresh_operations = 0;                  // of a factorization by nodes, when the ordering was last found anew
-  std::vector<std::int64_t> below_first{0};     // #nodes + 1, by rank
-  std::vector<int> below;                       // ranks of the blocks below the diagonal, rising
-  std::vector<int> column, row;                 // scalar pattern, whole blocks, in ranks
+  std::vector<int> rank;                     // #nodes: place in the ordering
+  std::vector<int> parent;                   // #nodes, by rank: in the elimination tree
+  double fresh_operations = 0;               // of a factorization by nodes, when the ordering was last found anew
+  std::vector<std::int64_t> below_first{0};  // #nodes + 1, by rank
+  std::vector<int> below;                    // ranks of the blocks below the diagonal, rising
+  std::vector<int> column, row;              // scalar pattern, whole blocks, in ranks
   std::vector<double> value, right_side;
-  std::unique_ptr<double[]> room;               // of the factor's numbers
+  std::unique_ptr<double[]> room;  // of the factor's numbers
   std::size_t room_size = 0;
 
   Factor() {
@@ -149,7 +151,8 @@ struct Cholesky::Factor {
   void require(const char* what) const {
     if (common.status >= 0) return;
     throw Error("not enough memory for a system of " + std::to_string(node_count) + " mesh nodes",
-                std::string(what) + " (CHOLMOD status " + std::to_string(common.status) + ")", "use a coarser mesh, or more memory");
+                std::string(what) + " (CHOLMOD status " + std::to_string(common.status) + ")",
+                "use a coarser mesh, or more memory");
   }
 
   struct FreeFactor {
@@ -164,8 +167,8 @@ struct Cholesky::Factor {
   void free_factor();
 };
 
-// By the old order, mended, or by nested dissection of the nodes; both then by postorder of the elimination tree, so that
-// supernodes are contiguous. Returns the supernodes of the graph's own factor, one row a node.
+// By the old order, mended, or by nested dissection of the nodes; both then by postorder of the elimination tree, so
+// that supernodes are contiguous. Returns the supernodes of the graph's own factor, one row a node.
 Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> node_column{0}, node_row;
   node_count = graph.node_count();
@@ -257,7 +260,8 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
   require("analysis");
   const auto scaled = [&](const void* from, std::size_t count, int by) {
     int* to = numbers(count);
-    std::transform(static_cast<const int*>(from), static_cast<const int*>(from) + count, to, [by](int value) { return by * value; });
+    std::transform(static_cast<const int*>(from), static_cast<const int*>(from) + count, to,
+                   [by](int value) { return by * value; });
     return to;
   };
   factor->super = scaled(nodes.super, nodes.nsuper + 1, 3);
@@ -273,14 +277,14 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
 void Cholesky::Factor::take_room() {
   constexpr std::size_t kSpare = 8;  // one part more in so many: the next graph is much like this one
   if (factor->xsize > room_size) try {
-    room.reset();
-    room_size = factor->xsize + factor->xsize / kSpare;
-    room = std::make_unique_for_overwrite<double[]>(room_size);
-  } catch (const std::bad_alloc&) {
-    room_size = 0;
-    common.status = CHOLMOD_OUT_OF_MEMORY;
-    require("factorization");
-  }
+      room.reset();
+      room_size = factor->xsize + factor->xsize / kSpare;
+      room = std::make_unique_for_overwrite<double[]>(room_size);
+    } catch (const std::bad_alloc&) {
+      room_size = 0;
+      common.status = CHOLMOD_OUT_OF_MEMORY;
+      require("factorization");
+    }
   factor->x = room.get();
   factor->xtype = CHOLMOD_REAL;
   factor->dtype = CHOLMOD_DOUBLE;
@@ -323,14 +327,17 @@ Cholesky::Place Cholesky::place(int row, int column) const {
 }
 
 void Cholesky::places(std::span<const int> nodes, Place* places) const {
-  const auto place_of = [&](std::size_t row, std::size_t column) -> Place& { return places[row * (row + 1) / 2 + column]; };
+  const auto place_of = [&](std::size_t row, std::size_t column) -> Place& {
+    return places[row * (row + 1) / 2 + column];
+  };
   for (std::size_t j = 0; j < nodes.size(); ++j) {
     if (nodes[j] < 0) {
       for (std::size_t i = j; i < nodes.size(); ++i) place_of(i, j) = {-1, 0};
       continue;
     }
     const int c = factor_->rank[nodes[j]];
-    const int *begin = factor_->below.data() + factor_->below_first[c], *end = factor_->below.data() + factor_->below_first[c + 1];
+    const int *begin = factor_->below.data() + factor_->below_first[c],
+              *end = factor_->below.data() + factor_->below_first[c + 1];
     const std::int64_t stride = 3 * (1 + end - begin), first = factor_->column[3 * c];
     place_of(j, j) = {first, stride};
     const int* at = begin;  // both lists rise
@@ -371,7 +378,8 @@ void Cholesky::solve(std::span<double> b) {
   B.x = right.data();
   B.xtype = CHOLMOD_REAL;
   B.dtype = CHOLMOD_DOUBLE;
-  cholmod_solve2(CHOLMOD_A, factor_->factor, &B, nullptr, &factor_->solution, nullptr, &factor_->work_y, &factor_->work_e, &factor_->common);
+  cholmod_solve2(CHOLMOD_A, factor_->factor, &B, nullptr, &factor_->solution, nullptr, &factor_->work_y,
+                 &factor_->work_e, &factor_->common);
   factor_->require("solution");
   const double* x = static_cast<const double*>(factor_->solution->x);
   for (int i = 0; i < n; ++i) std::copy_n(&x[3 * rank(i)], 3, &b[3 * i]);

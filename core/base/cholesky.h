@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky factorization
-// [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis & Kumar 1998, METIS].
-// Ordered and analysed once per graph, factorized for as many values as one likes; for a graph that is much like the one before
-// the order is mended (elimination.h), and found anew when that has made factorizations a quarter dearer. Works on one thread, so
-// that its results do not depend on how many there are.
+// Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky
+// factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis &
+// Kumar 1998, METIS]. Ordered and analysed once per graph, factorized for as many values as one likes; for a graph that
+// is much like the one before the order is mended (elimination.h), and found anew when that has made factorizations a
+// quarter dearer. Works on one thread, so that its results do not depend on how many there are.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/elimination.h"
+#include "core/base/elimination_tree.h"
 
 namespace limber {
 
@@ -46,12 +46,13 @@ class Cholesky {
   void analyse(const BlockGraph& graph);
 
   int node_count() const;
-  // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are stored;
-  // of a node's own block only the lower triangle is read.
+  // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are
+  // stored; of a node's own block only the lower triangle is read.
   int rank(int node) const;
   // row, column  nodes with rank(row) >= rank(column); at -1 where they neither are the same nor meet in the graph
   Place place(int row, int column) const;
-  // Of all pairs of some nodes, whose ranks rise, to `places`: the lower triangle row by row. Where one is -1, no node, at is -1.
+  // Of all pairs of some nodes, whose ranks rise, to `places`: the lower triangle row by row. Where one is -1, no node,
+  // at is -1.
   void places(std::span<const int> nodes, Place* places) const;
 
   std::span<double> values();

@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kMost = std::size_t{1} << 30;  // bytes at a time; the library counts in 32 bits
 }
 
-// The library reads gzip's wrap. Of zlib's (RFC 1950) it takes bytes that lie behind the stream, so that one is read here:
-// two bytes before, four of Adler-32 after.
+// The library reads gzip's wrap. Of zlib's (RFC 1950) it takes bytes that lie behind the stream, so that one is read
+// here: two bytes before, four of Adler-32 after.
 struct Inflater::State {
   inflate_state stream;
   std::array<std::uint8_t, 2> header;
@@ -22,9 +22,12 @@ struct Inflater::State {
   std::size_t in_header = 0, in_trailer = 0;  // bytes there
 
   bool is_zlib() const { return stream.crc_flag == ISAL_ZLIB_NO_HDR; }
-  bool header_is_right() const { return (header[0] & 15) == 8 && (header[0] * 256 + header[1]) % 31 == 0 && !(header[1] & 32); }
+  bool header_is_right() const {
+    return (header[0] & 15) == 8 && (header[0] * 256 + header[1]) % 31 == 0 && !(header[1] & 32);
+  }
   bool trailer_is_right() const {
-    return stream.crc == (std::uint32_t{trailer[0]} << 24 | std::uint32_t{trailer[1]} << 16 | std::uint32_t{trailer[2]} << 8 | trailer[3]);
+    return stream.crc == (std::uint32_t{trailer[0]} << 24 | std::uint32_t{trailer[1]} << 16 |
+                          std::uint32_t{trailer[2]} << 8 | trailer[3]);
   }
 };
 
@@ -59,7 +62,8 @@ Inflater::Step Inflater::inflate(std::string_view packed, void* to, std::size_t 
     if (!state.header_is_right()) return {taken(), 0, true};
   }
 
-  const auto in = static_cast<std::uint32_t>(std::min(packed.size(), kMost)), out = static_cast<std::uint32_t>(std::min(room, kMost));
+  const auto in = static_cast<std::uint32_t>(std::min(packed.size(), kMost)),
+             out = static_cast<std::uint32_t>(std::min(room, kMost));
   stream.next_in = reinterpret_cast<std::uint8_t*>(const_cast<char*>(packed.data()));
   stream.avail_in = in;
   stream.next_out = static_cast<std::uint8_t*>(to);
@@ -71,7 +75,8 @@ Inflater::Step Inflater::inflate(std::string_view packed, void* to, std::size_t 
   if (stream.block_state != ISAL_BLOCK_FINISH) return {taken(), made};
 
   if (state.is_zlib()) {
-    for (; stream.read_in_length >= 8 && state.in_trailer < state.trailer.size(); stream.read_in_length -= 8, stream.read_in >>= 8)
+    for (; stream.read_in_length >= 8 && state.in_trailer < state.trailer.size();
+         stream.read_in_length -= 8, stream.read_in >>= 8)
       state.trailer[state.in_trailer++] = static_cast<std::uint8_t>(stream.read_in >> stream.read_in_length % 8);
     while (state.in_trailer < state.trailer.size() && !packed.empty()) state.trailer[state.in_trailer++] = take();
     if (state.in_trailer < state.trailer.size()) return {taken(), made};
@@ -82,8 +87,8 @@ Inflater::Step Inflater::inflate(std::string_view packed, void* to, std::size_t 
   return {taken(), made};
 }
 
-// Level 1 packs label volumes at 2 GB/s. Higher ones gain nothing on runs of labels; a general compressor's best gains a
-// quarter for twenty times the time.
+// Level 1 packs label volumes at 2 GB/s. Higher ones gain nothing on runs of labels; a general compressor's best gains
+// a quarter for twenty times the time.
 struct Deflater::State {
   isal_zstream stream;
   std::array<std::uint8_t, ISAL_DEF_LVL1_DEFAULT> work;
@@ -91,7 +96,8 @@ struct Deflater::State {
 };
 
 Deflater::Deflater(Wrap wrap, std::function<void(const void*, std::size_t)> put)
-    : state_(std::make_unique_for_overwrite<State>()), put_(std::move(put)) {
+    : state_(std::make_unique_for_overwrite<State>()),
+      put_(std::move(put)) {
   isal_zstream& stream = state_->stream;
   isal_deflate_init(&stream);
   stream.level = 1;

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 #include "core/base/replaced_file.h"
 
 namespace limber {
@@ -61,10 +61,13 @@ std::string read_file(const Path& path, std::uint64_t limit) {
 
 void check_place(const Path& path) {
   std::error_code error;
-  if (path.native().find('\0') != std::string::npos) throw Error("the name holds a zero byte, at which the system would cut it", path.c_str(), "choose another name");
+  if (path.native().find('\0') != std::string::npos)
+    throw Error("the name holds a zero byte, at which the system would cut it", path.c_str(), "choose another name");
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
-  if (!fs::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
-  if (fs::is_directory(path, error)) throw Error("a folder stands where the file should go", path.string(), "choose another name");
+  if (!fs::is_directory(folder, error))
+    throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
+  if (fs::is_directory(path, error))
+    throw Error("a folder stands where the file should go", path.string(), "choose another name");
 }
 
 namespace {

@@ -9,7 +9,7 @@
 #include <malloc.h>
 #endif
 
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 
 // A sanitizer brings its own allocator.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

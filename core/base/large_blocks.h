@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a program that works on whole bodies takes its memory. Most of it are a few blocks of many megabytes, one value a
-// voxel. The usual allocator keeps freed ones for later, and blocks of other sizes then find no room among them: half as
-// much again as is in use. And the system hands memory out in pages of 4 KB, which costs more time than filling them.
+// voxel. The usual allocator keeps freed ones for later, and blocks of other sizes then find no room among them: half
+// as much again as is in use. And the system hands memory out in pages of 4 KB, which costs more time than filling
+// them.
 #pragma once
 
 namespace limber {

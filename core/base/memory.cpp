@@ -26,7 +26,8 @@ std::int64_t number_in_file(const char* path, std::string_view key) {
 std::int64_t available_memory() {
   std::int64_t available = std::numeric_limits<std::int64_t>::max();
   if (const std::int64_t kib = number_in_file("/proc/meminfo", "MemAvailable:"); kib >= 0) available = kib * 1024;
-  const std::int64_t most = number_in_file("/sys/fs/cgroup/memory.max", ""), used = number_in_file("/sys/fs/cgroup/memory.current", "");
+  const std::int64_t most = number_in_file("/sys/fs/cgroup/memory.max", ""),
+                     used = number_in_file("/sys/fs/cgroup/memory.current", "");
   if (most > 0 && used >= 0) available = std::min(available, std::max<std::int64_t>(0, most - used));
   return available;
 }

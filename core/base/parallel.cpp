@@ -54,14 +54,11 @@ void for_blocks(std::int64_t count, std::int64_t grain, const Body& each) {
         },
         tbb::simple_partitioner());
   };
-  if (blocks == 1)
-    body(std::int64_t{0}, std::int64_t{0}, count);
+  if (blocks == 1) body(std::int64_t{0}, std::int64_t{0}, count);
   else
     without_thread_failures([&] {
-      if (auto* arena = current_arena.load())
-        arena->execute(run);
-      else
-        run();
+      if (auto* arena = current_arena.load()) arena->execute(run);
+      else run();
     });
 }
 }  // namespace

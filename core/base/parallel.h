@@ -17,7 +17,8 @@ class Progress;
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body);
 
 // Sum of body(begin, end) over all blocks, added in the order of the blocks.
-double parallel_sum(std::int64_t count, std::int64_t grain, const std::function<double(std::int64_t, std::int64_t)>& body);
+double parallel_sum(std::int64_t count, std::int64_t grain,
+                    const std::function<double(std::int64_t, std::int64_t)>& body);
 
 // While it lives, parallel loops use `threads` threads (1 or more; may exceed the machine's cores). Without one they
 // use every core. Made once by a program's main or by a test.
@@ -33,8 +34,8 @@ class ThreadCount {
   std::unique_ptr<Limit> limit_;
 };
 
-// While it lives, parallel loops that this thread starts stop before the next block once `progress` is cancelled, and throw
-// Cancelled. Made once around a command or a job, so that no step has to ask between its own loops.
+// While it lives, parallel loops that this thread starts stop before the next block once `progress` is cancelled, and
+// throw Cancelled. Made once around a command or a job, so that no step has to ask between its own loops.
 class CancelScope {
  public:
   explicit CancelScope(const Progress& progress);

@@ -33,10 +33,8 @@ struct Settings {
   Settings& operator=(const Settings&) = delete;
 
   void place(int from, int to) {
-    if (from >= 0)
-      posix_spawn_file_actions_adddup2(&files, from, to);
-    else
-      posix_spawn_file_actions_addopen(&files, to, "/dev/null", O_RDWR, 0);
+    if (from >= 0) posix_spawn_file_actions_adddup2(&files, from, to);
+    else posix_spawn_file_actions_addopen(&files, to, "/dev/null", O_RDWR, 0);
   }
   void set_signals_and_group() {
     sigset_t none, defaults;

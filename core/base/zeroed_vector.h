@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A vector whose values are zero until they are written, and take no memory till then. A body's grid is mostly air: where
-// nothing else than zero is written, the system lends a shared page of zeros to whoever reads. std::vector cannot do this,
-// because it writes every value that it makes, and with an allocator of our own it would walk over all of them to destroy them.
+// A vector whose values are zero until they are written, and take no memory till then. A body's grid is mostly air:
+// where nothing else than zero is written, the system lends a shared page of zeros to whoever reads. std::vector cannot
+// do this, because it writes every value that it makes, and with an allocator of our own it would walk over all of them
+// to destroy them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 
 namespace limber {
 
@@ -62,8 +63,7 @@ class ZeroedVector {
 
   // What comes new is zero.
   void resize(std::size_t count) {
-    if (count > capacity_)
-      grow(count);
+    if (count > capacity_) grow(count);
     else if (count > size_)
       std::memset(static_cast<void*>(end()), 0, (count - size_) * sizeof(T));  // it may have been used before
     size_ = count;
@@ -88,7 +88,9 @@ class ZeroedVector {
     std::swap(capacity_, other.capacity_);
   }
 
-  friend bool operator==(const ZeroedVector& a, const ZeroedVector& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
+  friend bool operator==(const ZeroedVector& a, const ZeroedVector& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
 
  private:
   struct Delete {

@@ -47,25 +47,35 @@ const std::map<std::string, Meaning, std::less<>>& dictionary() {
     const auto add = [&](BoneRegion region, bool plural, std::initializer_list<const char*> list) {
       for (const char* word : list) words[word] = {region, plural};
     };
-    add(Head, false, {"skull", "cranium", "cranial", "mandible", "mandibula", "jaw", "maxilla", "maxillae", "frontal", "parietal", "occipital", "occiput", "temporal",
-                      "sphenoid", "ethmoid", "zygomatic", "nasal", "lacrimal", "vomer", "palatine", "concha", "tooth", "teeth", "incisor", "molar",
-                      "premolar", "canine", "calvarium", "calvaria", "facial"});
+    add(Head, false, {"skull",   "cranium",  "cranial",   "mandible",  "mandibula", "jaw",      "maxilla", "maxillae",
+                      "frontal", "parietal", "occipital", "occiput",   "temporal",  "sphenoid", "ethmoid", "zygomatic",
+                      "nasal",   "lacrimal", "vomer",     "palatine",  "concha",    "tooth",    "teeth",   "incisor",
+                      "molar",   "premolar", "canine",    "calvarium", "calvaria",  "facial"});
     add(Neck, false, {"atlas", "axis", "hyoid"});
     add(Neck, true, {"cervical"});
     add(Thorax, false, {"rib", "sternum", "manubrium", "xiphoid", "costa", "breastbone"});
     add(Thorax, true, {"ribs", "costae", "thoracic", "thorax", "chest", "ribcage"});
     add(Lumbar, true, {"lumbar"});
     add(Spine, true, {"spine", "spinal", "backbone"});
-    add(Pelvis, false, {"pelvis", "pelvic", "hip", "hips", "ilium", "ischium", "pubis", "pubic", "sacrum", "sacral", "coccyx", "innominate", "coxae", "coxa"});
-    add(Shoulder, false, {"scapula", "scapulae", "scapulas", "clavicle", "clavicles", "clavicula", "claviculae", "collarbone", "collarbones"});
+    add(Pelvis, false,
+        {"pelvis", "pelvic", "hip", "hips", "ilium", "ischium", "pubis", "pubic", "sacrum", "sacral", "coccyx",
+         "innominate", "coxae", "coxa"});
+    add(Shoulder, false,
+        {"scapula", "scapulae", "scapulas", "clavicle", "clavicles", "clavicula", "claviculae", "collarbone",
+         "collarbones"});
     add(UpperArm, false, {"humerus", "humeri", "humeral"});
     add(Forearm, false, {"ulna", "ulnae", "ulnas", "radius", "radii", "forearm", "forearms"});
-    add(Hand, false, {"capitate", "hamate", "lunate", "scaphoid", "trapezium", "trapezoid", "triquetral", "triquetrum", "pisiform", "carpal", "carpals",
-                      "carpus", "wrist", "wrists"});
+    add(Hand, false,
+        {"capitate", "hamate", "lunate", "scaphoid", "trapezium", "trapezoid", "triquetral", "triquetrum", "pisiform",
+         "carpal", "carpals", "carpus", "wrist", "wrists"});
     add(Hand, true, {"hand", "hands"});
     add(Thigh, false, {"femur", "femora", "femurs", "femoral"});
-    add(Shank, false, {"tibia", "tibiae", "tibias", "fibula", "fibulae", "fibulas", "patella", "patellae", "patellas", "kneecap", "kneecaps"});
-    add(Foot, false, {"metatarsal", "metatarsals", "metatarsus", "calcaneus", "calcaneum", "talus", "cuboid", "cuneiform", "navicular", "tarsal", "tarsals", "tarsus"});
+    add(Shank, false,
+        {"tibia", "tibiae", "tibias", "fibula", "fibulae", "fibulas", "patella", "patellae", "patellas", "kneecap",
+         "kneecaps"});
+    add(Foot, false,
+        {"metatarsal", "metatarsals", "metatarsus", "calcaneus", "calcaneum", "talus", "cuboid", "cuneiform",
+         "navicular", "tarsal", "tarsals", "tarsus"});
     add(Foot, true, {"foot", "feet", "ankle", "ankles"});
     add(Toes, false, {"toe", "hallux"});
     add(Toes, true, {"toes"});
@@ -74,18 +84,24 @@ const std::map<std::string, Meaning, std::less<>>& dictionary() {
   return kWords;
 }
 
-bool has(const Words& words, std::string_view word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+bool has(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 bool has_any(const Words& words, std::initializer_list<std::string_view> wanted) {
   return std::any_of(wanted.begin(), wanted.end(), [&](std::string_view word) { return has(words, word); });
 }
 
 // A vertebra's letter and number ("L5") is no side.
-bool is_level(const Words& words, std::size_t i) { return i + 1 < words.size() && is_digit(words[i + 1][0]) && has_any(words, {"vertebra", "vertebrae", "vertebral", "spine"}); }
+bool is_level(const Words& words, std::size_t i) {
+  return i + 1 < words.size() && is_digit(words[i + 1][0]) &&
+         has_any(words, {"vertebra", "vertebrae", "vertebral", "spine"});
+}
 
 BodySide side_of(const Words& words) {
   bool left = false, right = false;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    left |= words[i] == "left" || words[i] == "lt" || words[i] == "sinister" || words[i] == "sinistra" || (words[i] == "l" && !is_level(words, i));
+    left |= words[i] == "left" || words[i] == "lt" || words[i] == "sinister" || words[i] == "sinistra" ||
+            (words[i] == "l" && !is_level(words, i));
     right |= words[i] == "right" || words[i] == "rt" || words[i] == "dexter" || words[i] == "dextra" || words[i] == "r";
   }
   return left == right ? BodySide::Middle : left ? BodySide::Left : BodySide::Right;
@@ -103,14 +119,16 @@ int ordinal_of(const Words& words) {
 
 // "Middle phalanx of left middle finger": the word before "finger" names it.
 BodyPart finger_of(const Words& words) {
-  static const std::map<std::string, BodyPart, std::less<>> kFingers = {{"thumb", BodyPart::Thumb}, {"pollex", BodyPart::Thumb}, {"index", BodyPart::Index},
-      {"ring", BodyPart::Ring}, {"little", BodyPart::Little}, {"pinky", BodyPart::Little}, {"middle", BodyPart::Middle}};
+  static const std::map<std::string, BodyPart, std::less<>> kFingers = {
+      {"thumb", BodyPart::Thumb},   {"pollex", BodyPart::Thumb}, {"index", BodyPart::Index},  {"ring", BodyPart::Ring},
+      {"little", BodyPart::Little}, {"pinky", BodyPart::Little}, {"middle", BodyPart::Middle}};
   for (std::size_t i = 1; i < words.size(); ++i)
     if (words[i] == "finger")
       if (const auto found = kFingers.find(words[i - 1]); found != kFingers.end()) return found->second;
   for (const std::string& word : words)
     if (const auto found = kFingers.find(word); found != kFingers.end() && word != "middle") return found->second;
-  if (const int number = ordinal_of(words)) return static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number - 1);
+  if (const int number = ordinal_of(words))
+    return static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number - 1);
   return BodyPart::Fingers;
 }
 
@@ -137,7 +155,10 @@ AnatomicalName anatomical_name(std::string_view label_name) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (is_level(words, i) && (word == "c" || word == "t" || word == "th" || word == "l" || word == "s")) {
-      name.regions.insert(word == "c" ? BoneRegion::Neck : word == "l" ? BoneRegion::Lumbar : word == "s" ? BoneRegion::Pelvis : BoneRegion::Thorax);
+      name.regions.insert(word == "c"   ? BoneRegion::Neck
+                          : word == "l" ? BoneRegion::Lumbar
+                          : word == "s" ? BoneRegion::Pelvis
+                                        : BoneRegion::Thorax);
       ++levels;
       continue;
     }
@@ -152,14 +173,16 @@ AnatomicalName anatomical_name(std::string_view label_name) {
     if (has_any(words, {"arm", "arms"})) name.regions.insert(upper ? BoneRegion::UpperArm : BoneRegion::Forearm);
     if (has_any(words, {"leg", "legs"})) name.regions.insert(upper ? BoneRegion::Thigh : BoneRegion::Shank);
   }
-  // "Fifth lumbar vertebra", "vertebrae_L5" and "Spine T4" are one bone, "Lumbar spine" and "Thoracic vertebrae" are several.
+  // "Fifth lumbar vertebra", "vertebrae_L5" and "Spine T4" are one bone, "Lumbar spine" and "Thoracic vertebrae" are
+  // several.
   if (levels == 1 || has(words, "vertebra")) name.plural = false;
   if (is_vertebra && name.regions.empty()) name.regions.insert(BoneRegion::Spine), name.plural = true;
   // "Lumbar spine" is lumbar, "scapular spine" belongs to its scapula.
   if (name.regions.size() > 1) name.regions.erase(BoneRegion::Spine);
 
   const bool is_foot = name.regions.contains(BoneRegion::Toes) || name.regions.contains(BoneRegion::Foot);
-  const bool is_phalanx = has_any(words, {"phalanx", "phalanges", "metacarpal", "metacarpals", "metacarpus", "thumb", "thumbs", "finger", "fingers"});
+  const bool is_phalanx = has_any(words, {"phalanx", "phalanges", "metacarpal", "metacarpals", "metacarpus", "thumb",
+                                          "thumbs", "finger", "fingers"});
   if (is_foot && has_any(words, {"phalanx", "phalanges"})) {
     name.regions = {BoneRegion::Toes};
   } else if (is_foot) {
@@ -167,7 +190,8 @@ AnatomicalName anatomical_name(std::string_view label_name) {
     // "Navicular bone of left foot" is one bone, "Ankles and foot bones" are all of them with the toes.
     const bool is_one = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       const auto found = dictionary().find(word);
-      return word == "sesamoid" || (found != dictionary().end() && found->second.region == BoneRegion::Foot && !found->second.plural);
+      return word == "sesamoid" ||
+             (found != dictionary().end() && found->second.region == BoneRegion::Foot && !found->second.plural);
     });
     name.plural = !is_one;
     if (name.plural) name.regions.insert(BoneRegion::Toes);

@@ -66,7 +66,8 @@ void blur(std::vector<float>& values, const glm::ivec3& size, int axis) {
 }  // namespace
 
 BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ivec3>& voxels, const VoxelBox& box)
-    : lowest_(glm::dvec3(box.lowest) * spacing), edge_(std::min({spacing.x, spacing.y, spacing.z})) {
+    : lowest_(glm::dvec3(box.lowest) * spacing),
+      edge_(std::min({spacing.x, spacing.y, spacing.z})) {
   std::vector<std::uint8_t> inside(box.voxel_count());
   for (const glm::ivec3& v : voxels)
     if (box.contains(v)) inside[box.index(v)] = 1;
@@ -88,7 +89,8 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
   for (std::int64_t i = 0; i < std::ssize(mm_); ++i)
     mm_[i] = inside[i] ? std::min(mm_[i], -least) : std::max(mm_[i], least);
   least_ = mm_;
-  for (const std::int64_t step : {std::int64_t{1}, std::int64_t{lattice_.size.x}, std::int64_t{lattice_.size.x} * lattice_.size.y})
+  for (const std::int64_t step :
+       {std::int64_t{1}, std::int64_t{lattice_.size.x}, std::int64_t{lattice_.size.x} * lattice_.size.y})
     for (std::int64_t i = 0; i + step < std::ssize(least_); ++i) least_[i] = std::min(least_[i], least_[i + step]);
 }
 

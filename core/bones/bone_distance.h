@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/volume/distance.h"
+#include "core/volume/distance_transform.h"
 
 namespace limber {
 

@@ -30,10 +30,12 @@ class RigRegions {
       const AnatomicalName name = anatomical_name(names[b]);
       const std::string plain = plain_name(names[b]);
       const auto says = [&](std::initializer_list<const char*> words) {
-        return std::any_of(words.begin(), words.end(), [&](const char* word) { return plain.find(word) != plain.npos; });
+        return std::any_of(words.begin(), words.end(),
+                           [&](const char* word) { return plain.find(word) != plain.npos; });
       };
       if (name.regions.contains(BoneRegion::Thorax) || says({"thorax", "chest"})) thorax_.push_back(b);
-      else if (name.regions.contains(BoneRegion::Lumbar) || says({"lumbar", "lowerback", "abdomen", "waist"})) lumbar_.push_back(b);
+      else if (name.regions.contains(BoneRegion::Lumbar) || says({"lumbar", "lowerback", "abdomen", "waist"}))
+        lumbar_.push_back(b);
     }
   }
 
@@ -65,7 +67,9 @@ class RigRegions {
       case Head: return Neck;
       case Neck: return Thorax;
       case Thorax: return Lumbar;
-      case Lumbar: case Spine: case Thigh: return Pelvis;
+      case Lumbar:
+      case Spine:
+      case Thigh: return Pelvis;
       case Pelvis: return std::nullopt;
       case Shoulder: return Thorax;
       case UpperArm: return Shoulder;
@@ -109,7 +113,8 @@ class RigRegions {
     const bool all_fingers = name.finger == BodyPart::Fingers;
     const auto of_segments = [&](int lowest, int highest) {
       return with_role([&](const JointRole& role) {
-        return role.side == side && is_finger(role.part) && (all_fingers || role.part == name.finger) && role.index >= lowest && role.index <= highest;
+        return role.side == side && is_finger(role.part) && (all_fingers || role.part == name.finger) &&
+               role.index >= lowest && role.index <= highest;
       });
     };
     if (name.segment < 0) return of_segments(0, 3);
@@ -176,7 +181,8 @@ std::optional<LabelBones> bones_by_name(const AnatomicalName& name, const RigReg
 int bone_named(const Armature& armature, const std::string& name, const std::string& key) {
   for (int b = 0; b < std::ssize(armature.bones); ++b)
     if (armature.bones[b].name == name) return b;
-  throw Error("the rig has no bone \"" + name.substr(0, 80) + "\"", "bone map, \"" + key.substr(0, 80) + "\"", "name a bone of the rig");
+  throw Error("the rig has no bone \"" + name.substr(0, 80) + "\"", "bone map, \"" + key.substr(0, 80) + "\"",
+              "name a bone of the rig");
 }
 
 struct MapKey {
@@ -199,7 +205,8 @@ bool is_meant(const Tissue& tissue, const std::string& label) {
   return label == value;
 }
 
-void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armature, const RigRegions& rig, std::map<Label, LabelBones>& found) {
+void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armature, const RigRegions& rig,
+           std::map<Label, LabelBones>& found) {
   // What is said of a whole label first, then of its sides.
   for (const bool of_sides : {false, true})
     for (const auto& [key, bone_name] : map) {
@@ -218,25 +225,31 @@ void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armat
         if (of_sides) {
           bones.side_bones = {rig.of_side(BodySide::Left), rig.of_side(BodySide::Right)};
           if (bones.side_bones[0].empty() || bones.side_bones[1].empty())
-            throw Error("the rig's names do not tell left from right", "bone map, \"" + key.substr(0, 80) + "\"", "leave @left and @right out, or name the rig's bones by their side");
+            throw Error("the rig's names do not tell left from right", "bone map, \"" + key.substr(0, 80) + "\"",
+                        "leave @left and @right out, or name the rig's bones by their side");
         }
         for (int side = 0; side < 2; ++side)
           if (!of_sides || side == *parts.side) bones.candidates[side] = {bone};
       }
-      if (!any) throw Error("the volume has no bone tissue \"" + parts.label.substr(0, 80) + "\"", "bone map", "write a label's name or value as `limber info` shows it");
+      if (!any)
+        throw Error("the volume has no bone tissue \"" + parts.label.substr(0, 80) + "\"", "bone map",
+                    "write a label's name or value as `limber info` shows it");
     }
   for (const auto& [label, bones] : found)
     for (int side = 0; side < 2; ++side)
       if (bones.candidates[side].empty()) {
         const Tissue* tissue = tissues.find(label);
-        throw Error("the bone map says only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) + "\", and its name does not say the other", "bone map",
-                    side == 0 ? "add the label with @left" : "add the label with @right");
+        throw Error("the bone map says only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) +
+                        "\", and its name does not say the other",
+                    "bone map", side == 0 ? "add the label with @left" : "add the label with @right");
       }
 }
 }  // namespace
 
 BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
-  const auto wrong = [&](const std::string& what) { return Error(what, where, "write {\"label or label@left\": \"rig bone\"}"); };
+  const auto wrong = [&](const std::string& what) {
+    return Error(what, where, "write {\"label or label@left\": \"rig bone\"}");
+  };
   BoneMap map;
   std::string twice;
   std::set<std::string> keys;
@@ -246,7 +259,8 @@ BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
     if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start) {
       if (depth >= 1) throw wrong("the bone map is nested");
     }
-    if (event == Json::parse_event_t::key && !keys.insert(parsed.get<std::string>()).second) twice = parsed.get<std::string>();
+    if (event == Json::parse_event_t::key && !keys.insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
     return true;
   };
   const Json json = Json::parse(bytes, note_keys, false);

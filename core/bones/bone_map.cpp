@@ -25,7 +25,10 @@ bool can_be_used(const BoneMap& map, const TissueTable& tissues, const Armature&
 
 // Of a label that has sides, whether a bone belongs to that one.
 bool is_of_side(const LabelBones& bones, int side, int bone) {
-  const auto has = [&](int which) { return std::find(bones.candidates[which].begin(), bones.candidates[which].end(), bone) != bones.candidates[which].end(); };
+  const auto has = [&](int which) {
+    return std::find(bones.candidates[which].begin(), bones.candidates[which].end(), bone) !=
+           bones.candidates[which].end();
+  };
   return has(side) || (!has(1 - side) && side == 0);
 }
 
@@ -34,7 +37,8 @@ MappedLabel mapped(const BoneParts& parts, Label label, const LabelBones* bones,
   if (bones) row.found_by = bones->found_by, row.is_sure = !bones->is_substitute;
   std::vector<std::pair<std::int64_t, int>> followed;
   for (const BoneParts::Identity& identity : parts.identities) {
-    if (identity.label != label || (side && !is_of_side(*bones, *side == BodySide::Left ? 0 : 1, identity.bone))) continue;
+    if (identity.label != label || (side && !is_of_side(*bones, *side == BodySide::Left ? 0 : 1, identity.bone)))
+      continue;
     followed.push_back({-identity.voxel_count, identity.bone});
     row.voxels += identity.voxel_count;
     row.found_by = identity.found_by;
@@ -47,7 +51,8 @@ MappedLabel mapped(const BoneParts& parts, Label label, const LabelBones* bones,
 
 }  // namespace
 
-// Each entry is tried beside those that already fit; one side of a label that says nothing of the other is tried with the other.
+// Each entry is tried beside those that already fit; one side of a label that says nothing of the other is tried with
+// the other.
 FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, const Armature& armature) {
   FittingBoneMap fitting{map, {}};
   if (can_be_used(map, tissues, armature)) return fitting;
@@ -57,7 +62,8 @@ FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, 
     more[key] = bone;
     if (const std::size_t at = key.rfind('@'); at != key.npos && !can_be_used(more, tissues, armature))
       for (const char* side : kSides)
-        if (const auto other = map.find(key.substr(0, at) + side); other != map.end()) more[other->first] = other->second;
+        if (const auto other = map.find(key.substr(0, at) + side); other != map.end())
+          more[other->first] = other->second;
     if (can_be_used(more, tissues, armature)) fitting.map = std::move(more);
   }
   for (const auto& [key, bone] : map)
@@ -73,7 +79,8 @@ std::string to_json(const BoneMap& map) {
 
 void write_bone_map(const BoneMap& map, const Path& path) { write_file_atomically(path, to_json(map)); }
 
-std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature, const BoneMap& map) {
+std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature,
+                                       const BoneMap& map) {
   const std::map<Label, LabelBones> labels = bones_of_labels(tissues, armature, map);
   std::vector<MappedLabel> rows;
   for (const Tissue& tissue : tissues.tissues) {
@@ -81,9 +88,9 @@ std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable
     const auto known = labels.find(tissue.label);
     const LabelBones* bones = known == labels.end() ? nullptr : &known->second;
     if (bones && bones->has_sides)
-      for (const BodySide side : {BodySide::Left, BodySide::Right}) rows.push_back(mapped(parts, tissue.label, bones, side));
-    else
-      rows.push_back(mapped(parts, tissue.label, bones, std::nullopt));
+      for (const BodySide side : {BodySide::Left, BodySide::Right})
+        rows.push_back(mapped(parts, tissue.label, bones, side));
+    else rows.push_back(mapped(parts, tissue.label, bones, std::nullopt));
   }
   return rows;
 }

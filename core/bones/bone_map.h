@@ -29,10 +29,11 @@ struct MappedLabel {
   std::vector<int> bones;        // those that it follows, by most voxels; empty: it has no voxels there
   std::int64_t voxels = 0;
   FoundBy found_by = FoundBy::Shape;
-  bool is_sure = true;           // the rig has a bone for what the label's name means
+  bool is_sure = true;  // the rig has a bone for what the label's name means
 };
 // Every label of bone tissue in the order of the table, left before right.
-std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature, const BoneMap& map);
+std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature,
+                                       const BoneMap& map);
 
 // The key of a label in a map: its value in files, which no other tissue shares.
 std::string map_key(const Tissue& tissue, std::optional<BodySide> side = {});

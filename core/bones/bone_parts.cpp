@@ -12,9 +12,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/bones/named_bones.h"
 #include "core/bones/bone_watershed.h"
 #include "core/bones/hugging.h"
+#include "core/bones/named_bones.h"
 #include "core/bones/shoulder_girdles.h"
 
 namespace limber {
@@ -26,8 +26,8 @@ constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 M
 
 // A basin that holds most of the length of several rig bones is several bones grown together (or drawn as one tube):
 // there each voxel goes with the nearest of those.
-void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid, const TissueVoxels& tissue,
-                                 const Hugging& hugging, std::vector<std::int32_t>& basin) {
+void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid,
+                                 const TissueVoxels& tissue, const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
   const AffineTransform from_world = voxel_from_world(grid);
   std::map<std::int32_t, std::vector<int>> bones_inside;
@@ -38,7 +38,9 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
     std::map<std::int32_t, int> inside;
     for (int k = 0; k <= steps; ++k) {
       const glm::dvec3 at = glm::mix(head, tail, double(k) / steps);
-      if (!(glm::all(glm::greaterThan(at, glm::dvec3(-0.5))) && glm::all(glm::lessThan(at, glm::dvec3(grid.size) - 0.5)))) continue;
+      if (!(glm::all(glm::greaterThan(at, glm::dvec3(-0.5))) &&
+            glm::all(glm::lessThan(at, glm::dvec3(grid.size) - 0.5))))
+        continue;
       const std::int64_t place = tissue.index_of(glm::ivec3(glm::floor(at + 0.5)));
       const auto found = std::lower_bound(graph.place.begin(), graph.place.end(), place);
       if (found != graph.place.end() && *found == place) ++inside[basin[found - graph.place.begin()]];
@@ -59,7 +61,8 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
     int best = 0;
     double nearest = std::numeric_limits<double>::max();
     for (size_t k = 0; k < bones.size(); ++k)
-      if (const double d = hugging.parting_distance(bones[k], graph.voxel[i]); d < nearest) nearest = d, best = static_cast<int>(k);
+      if (const double d = hugging.parting_distance(bones[k], graph.voxel[i]); d < nearest)
+        nearest = d, best = static_cast<int>(k);
     basin[i] = cut->second + best;
   }
 }
@@ -71,9 +74,12 @@ class Pieces {
  public:
   //   beyond      which voxels lie beyond a joint
   //   may_follow  rig bones that the basin of a voxel may follow; none means any
-  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging, const std::vector<std::int32_t>& basin,
-         const std::vector<BeyondJoint>& beyond, double voxel, const std::vector<ShoulderGirdle>& girdles, const auto& may_follow)
-      : bones_(hugging.bone_count()), surface_(static_cast<float>(voxel / 2)), girdles_(girdles) {
+  Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging,
+         const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond, double voxel,
+         const std::vector<ShoulderGirdle>& girdles, const auto& may_follow)
+      : bones_(hugging.bone_count()),
+        surface_(static_cast<float>(voxel / 2)),
+        girdles_(girdles) {
     const auto members = members_of(basin);
     cluster_.resize(members.size());
     for (size_t p = 0; p < members.size(); ++p) {
@@ -101,7 +107,9 @@ class Pieces {
           across += girdle.is_on_other_side(place);
         }
         cluster.to_shoulder.push_back(static_cast<float>(nearest));
-        if (double(before) > kMostlyBefore * double(cluster.voxels) || double(across) > kAcross * double(cluster.voxels)) before_[static_cast<std::int32_t>(p)].push_back(girdle.bone);
+        if (double(before) > kMostlyBefore * double(cluster.voxels) ||
+            double(across) > kAcross * double(cluster.voxels))
+          before_[static_cast<std::int32_t>(p)].push_back(girdle.bone);
       }
       if (const std::vector<int>& allowed = may_follow(members[p].front()); !allowed.empty())
         for (int b = 0; b < bones_; ++b)
@@ -146,16 +154,20 @@ class Pieces {
   int bone(std::int32_t p) const {
     const int bone = bone_[root(p)];
     const auto before = before_.find(p);
-    if (before == before_.end() || std::find(before->second.begin(), before->second.end(), bone) == before->second.end()) return bone;
-    return std::find_if(girdles_.begin(), girdles_.end(), [&](const ShoulderGirdle& girdle) { return girdle.bone == bone; })->trunk;
+    if (before == before_.end() ||
+        std::find(before->second.begin(), before->second.end(), bone) == before->second.end())
+      return bone;
+    return std::find_if(girdles_.begin(), girdles_.end(),
+                        [&](const ShoulderGirdle& girdle) { return girdle.bone == bone; })
+        ->trunk;
   }
 
   // Gives every piece its rig bone. A piece that lies along a bone follows that bone. One that lies further from its
   // nearest bone than the piece along it does by half again (a rib beside the hanging arm, the breastbone between two
-  // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones the
-  // nearest, of several chains the bone they spring from. So it does where it lies three times as far and does not touch its
-  // nearest itself, but for one of about the size of the piece along it that hangs on the same bone (a toe beside a toe).
-  // What is nearest to a shoulder's bone may be the trunk's (shoulder_girdles.h).
+  // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones
+  // the nearest, of several chains the bone they spring from. So it does where it lies three times as far and does not
+  // touch its nearest itself, but for one of about the size of the piece along it that hangs on the same bone (a toe
+  // beside a toe). What is nearest to a shoulder's bone may be the trunk's (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
@@ -166,18 +178,16 @@ class Pieces {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
       const double d = std::max(1e-3, double(cluster_[p].distance[b]));
-      if (const double c = cluster_[p].voxels / (d * d); c > claim[b]) claim[b] = c, own_[b] = {d, cluster_[p].voxels, p};
+      if (const double c = cluster_[p].voxels / (d * d); c > claim[b])
+        claim[b] = c, own_[b] = {d, cluster_[p].voxels, p};
     }
     std::vector<std::int32_t> waiting;
     for (std::int32_t p = 0; p < count; ++p) {
       if (!is_piece(p)) continue;
       const int b = best(cluster_[p]);
-      if (const int trunk = trunk_instead_of(b, p); trunk >= 0)
-        bone_[p] = trunk;
-      else if (cluster_[p].distance[b] <= 1.5 * own_[b].distance)
-        bone_[p] = b;
-      else
-        waiting.push_back(p);
+      if (const int trunk = trunk_instead_of(b, p); trunk >= 0) bone_[p] = trunk;
+      else if (cluster_[p].distance[b] <= 1.5 * own_[b].distance) bone_[p] = b;
+      else waiting.push_back(p);
     }
     for (bool settled = true; settled;) {
       settled = false;
@@ -191,35 +201,38 @@ class Pieces {
   int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
 
  private:
-  // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a joint,
-  // so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
+  // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a
+  // joint, so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
-  static constexpr double kBeyondJoint = 4;  // how much further off a bone counts that lies beyond a joint
-  static constexpr float kForbidden = 1e6f;  // mm: further than any bone
+  static constexpr double kBeyondJoint = 4;     // how much further off a bone counts that lies beyond a joint
+  static constexpr float kForbidden = 1e6f;     // mm: further than any bone
   static constexpr double kMostlyBefore = 0.7;  // of a basin's voxels: it lies before a collarbone begins
-  static constexpr double kAcross = 0.35;       // ... on the other side of the body: it is no collarbone grown to the breastbone
-  static constexpr double kFar = 3, kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
+  static constexpr double kAcross =
+      0.35;  // ... on the other side of the body: it is no collarbone grown to the breastbone
+  static constexpr double kFar = 3,
+                          kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
 
   struct Cluster {
     std::int32_t parent = 0;
     std::int64_t voxels = 0;
     float summit = 0;
-    std::vector<float> distance;              // mean, mm, by rig bone
-    std::vector<float> to_shoulder;           // of the nearest voxel, mm, by girdle
-    std::map<std::int32_t, float> contact;    // by cluster: height of the highest pass
+    std::vector<float> distance;            // mean, mm, by rig bone
+    std::vector<float> to_shoulder;         // of the nearest voxel, mm, by girdle
+    std::map<std::int32_t, float> contact;  // by cluster: height of the highest pass
   };
 
   static bool above(const Armature& armature, int ancestor, int bone) {
     while (bone > ancestor) bone = armature.bones[bone].parent;
     return bone == ancestor;
   }
-  // Of a piece whose nearest bone is a shoulder's: the trunk where it neither lies along that bone nor reaches the shoulder,
-  // else -1.
+  // Of a piece whose nearest bone is a shoulder's: the trunk where it neither lies along that bone nor reaches the
+  // shoulder, else -1.
   int trunk_instead_of(int bone, std::int32_t p) const {
     for (std::size_t g = 0; g < girdles_.size(); ++g) {
       const ShoulderGirdle& girdle = girdles_[g];
       const bool may_follow = cluster_[p].distance[girdle.trunk] < kForbidden;
-      if (girdle.bone == bone && own_[bone].piece != p && cluster_[p].to_shoulder[g] > girdle.reach && may_follow) return girdle.trunk;
+      if (girdle.bone == bone && own_[bone].piece != p && cluster_[p].to_shoulder[g] > girdle.reach && may_follow)
+        return girdle.trunk;
     }
     return -1;
   }
@@ -236,7 +249,8 @@ class Pieces {
     const auto beside = [&](int b) { return armature.bones[own].parent == b; };
     const Own& along = own_[own];
     const bool is_far = cluster_[p].distance[own] > kFar * along.distance &&
-                        (kSmall * double(cluster_[p].voxels) < double(along.voxels) || std::none_of(touched.begin(), touched.end(), beside));
+                        (kSmall * double(cluster_[p].voxels) < double(along.voxels) ||
+                         std::none_of(touched.begin(), touched.end(), beside));
     const bool touches_own = std::binary_search(touched.begin(), touched.end(), own);
     if ((touches_own || !is_far) && std::all_of(touched.begin(), touched.end(), joined)) return own;
     bool chain = true;
@@ -253,20 +267,26 @@ class Pieces {
     return nearest;
   }
 
-  // What lies beyond a joint is as far from the bone there as it seemed to be from the one before the joint, and further from that.
+  // What lies beyond a joint is as far from the bone there as it seemed to be from the one before the joint, and
+  // further from that.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
-    std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;  // by basin, bone before and bone beyond the joint
+    std::map<std::tuple<std::int32_t, int, int>, std::int64_t>
+        voxels;  // by basin, bone before and bone beyond the joint
     for (const BeyondJoint& b : beyond) ++voxels[{basin[b.voxel], b.bone, b.other}];
-    auto share_of = [&](std::int32_t p, std::int64_t count) { return std::min(1.0, double(count) / double(cluster_[p].voxels)); };
+    auto share_of = [&](std::int32_t p, std::int64_t count) {
+      return std::min(1.0, double(count) / double(cluster_[p].voxels));
+    };
     for (const auto& [where, count] : voxels) {
       const auto [p, before, other] = where;
       std::vector<float>& distance = cluster_[p].distance;
-      if (distance[before] < distance[other]) distance[other] += static_cast<float>(share_of(p, count) * (distance[before] - distance[other]));
+      if (distance[before] < distance[other])
+        distance[other] += static_cast<float>(share_of(p, count) * (distance[before] - distance[other]));
     }
     std::map<std::pair<std::int32_t, int>, std::int64_t> before_joint;
     for (const auto& [where, count] : voxels) before_joint[{std::get<0>(where), std::get<1>(where)}] += count;
     for (const auto& [where, count] : before_joint)
-      cluster_[where.first].distance[where.second] *= static_cast<float>(1 + kBeyondJoint * share_of(where.first, count));
+      cluster_[where.first].distance[where.second] *=
+          static_cast<float>(1 + kBeyondJoint * share_of(where.first, count));
   }
 
   void touch(std::int32_t a, std::int32_t b, float pass) {
@@ -279,7 +299,8 @@ class Pieces {
   std::vector<float> joined_distance(const Cluster& a, const Cluster& b) const {
     std::vector<float> joined(bones_);
     const double share = double(b.voxels) / (a.voxels + b.voxels);
-    for (int k = 0; k < bones_; ++k) joined[k] = static_cast<float>(a.distance[k] + share * (b.distance[k] - a.distance[k]));
+    for (int k = 0; k < bones_; ++k)
+      joined[k] = static_cast<float>(a.distance[k] + share * (b.distance[k] - a.distance[k]));
     return joined;
   }
   bool agree(std::int32_t x, std::int32_t y) const {
@@ -291,8 +312,8 @@ class Pieces {
     const double apart = a.distance[of_a] * a.voxels + b.distance[of_b] * b.voxels;
     const Cluster& smaller = a.voxels < b.voxels ? a : b;
     const double own = smaller.distance[a.voxels < b.voxels ? of_a : of_b];
-    // A quarter of its distance a piece may be further off without belonging elsewhere: so the ball of a joint goes with
-    // its shaft, and a finger bone does not with its neighbour.
+    // A quarter of its distance a piece may be further off without belonging elsewhere: so the ball of a joint goes
+    // with its shaft, and a finger bone does not with its neighbour.
     return together - apart <= 0.25 * own * smaller.voxels;
   }
   void absorb(std::int32_t a, std::int32_t b) {
@@ -416,11 +437,13 @@ struct ShapeBones {
   std::vector<int> bone;  // #graph
   std::vector<BroadCut> broad_cuts;
 };
-// The rig bone of every voxel by shape: bones that touch are cut at the rig's joints, then a watershed, whose basins join to the pieces that move as one.
+// The rig bone of every voxel by shape: bones that touch are cut at the rig's joints, then a watershed, whose basins
+// join to the pieces that move as one.
 //   group       #graph, into `candidates`
-ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds,
-                          const Armature& armature, const Hugging& hugging, const std::vector<std::int32_t>& group,
-                          const std::vector<std::vector<int>>& candidates, Progress& progress) {
+ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue,
+                          const std::vector<TissueKind>& kinds, const Armature& armature, const Hugging& hugging,
+                          const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates,
+                          Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
   // Marrow raises the ground: two cores are two summits however thin the shells between them.
   std::vector<float> height = cuts.depth;
@@ -431,14 +454,15 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   const double voxel = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   std::vector<std::int32_t> basin = flood(graph, height, kWiggleVoxels * voxel);
   cut_where_several_bones_run(graph, armature, volume.grid, tissue, hugging, basin);
-  for (std::int64_t fewest = 8; ; fewest *= 2) {
+  for (std::int64_t fewest = 8;; fewest *= 2) {
     join_specks(graph, fewest, basin);
     const std::int64_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
     if (basins * hugging.bone_count() <= kMostDistances || fewest > graph.size()) break;
   }
   progress.update("bones", 0.8);
 
-  Pieces pieces(graph, height, hugging, basin, cuts.beyond, voxel, shoulder_girdles(armature), [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
+  Pieces pieces(graph, height, hugging, basin, cuts.beyond, voxel, shoulder_girdles(armature),
+                [&](std::int32_t i) -> const std::vector<int>& { return candidates[group[i]]; });
   pieces.join();
   pieces.settle(armature);
   const std::vector<int> of_basin = bones_of_basins(graph, tissue, volume, basin, pieces);
@@ -448,12 +472,15 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
     // What touched nothing of its own took what lay nearest, which its name may forbid.
     const std::vector<int>& allowed = candidates[group[i]];
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
-      bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) { return hugging.distance(a, graph.voxel[i]) < hugging.distance(b, graph.voxel[i]); });
+      bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) {
+        return hugging.distance(a, graph.voxel[i]) < hugging.distance(b, graph.voxel[i]);
+      });
   }
   return {std::move(bone), std::move(cuts.broad)};
 }
 
-std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume, const NamedBones& named, const std::vector<int>& bone,
+std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume,
+                                               const NamedBones& named, const std::vector<int>& bone,
                                                const std::map<Label, LabelBones>& labels) {
   std::map<std::pair<Label, int>, BoneParts::Identity> found;
   BoneParts::Identity* identity = nullptr;  // neighbours most often share one
@@ -461,7 +488,9 @@ std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const Lab
     const Label label = volume.at(graph.voxel[i]);
     if (!identity || identity->label != label || identity->bone != bone[i]) {
       const auto name = labels.find(label);
-      identity = &found.insert({{label, bone[i]}, {label, bone[i], {}, name != labels.end() && name->second.is_substitute, 0}}).first->second;
+      identity =
+          &found.insert({{label, bone[i]}, {label, bone[i], {}, name != labels.end() && name->second.is_substitute, 0}})
+               .first->second;
     }
     identity->found_by = named.found_by[i];
     ++identity->voxel_count;
@@ -487,7 +516,8 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   if (Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
     std::vector<std::int32_t> group;
     for (const std::int32_t i : unsettled.from) group.push_back(named.group[i]);
-    ShapeBones found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group, named.candidates, progress);
+    ShapeBones found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group,
+                                      named.candidates, progress);
     for (std::size_t k = 0; k < found.bone.size(); ++k) bone[unsettled.from[k]] = found.bone[k];
     result.broad_cuts = std::move(found.broad_cuts);
   }

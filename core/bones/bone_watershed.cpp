@@ -42,7 +42,8 @@ class LabelWalls {
   LabelWalls(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds)
       : plain_(kinds.size(), 0) {
     int plain_labels = 0;
-    for (size_t label = 0; label < kinds.size(); ++label) plain_labels += plain_[label] = kinds[label] == TissueKind::Bone;
+    for (size_t label = 0; label < kinds.size(); ++label)
+      plain_labels += plain_[label] = kinds[label] == TissueKind::Bone;
     if (plain_labels < 2) {
       std::fill(plain_.begin(), plain_.end(), 0);
       return;
@@ -89,7 +90,8 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
       tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
         if (is_bone(kinds[volume.at(v)])) bone[b].mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
       });
-      for (int z = 1; z < TissueVoxels::kBrick; ++z) bone[b].below[z] = static_cast<std::uint16_t>(bone[b].below[z - 1] + std::popcount(bone[b].mask[z - 1]));
+      for (int z = 1; z < TissueVoxels::kBrick; ++z)
+        bone[b].below[z] = static_cast<std::uint16_t>(bone[b].below[z - 1] + std::popcount(bone[b].mask[z - 1]));
     }
   });
   std::int64_t size = 0;
@@ -122,7 +124,10 @@ namespace {
 class DepthFront {
  public:
   DepthFront(const BoneGraph& graph, const glm::dvec3& spacing, std::vector<float>& depth)
-      : graph_(graph), spacing_(spacing), depth_(depth), offset_(graph.size(), glm::ivec3(0)) {}
+      : graph_(graph),
+        spacing_(spacing),
+        depth_(depth),
+        offset_(graph.size(), glm::ivec3(0)) {}
 
   // Whether a voxel whose connections end lies nearer to that than it was known to.
   bool start(std::int32_t i) {
@@ -139,7 +144,8 @@ class DepthFront {
       front.pop();
       if (distance > depth_[i]) continue;
       for (int k = 0; k < 26; ++k)
-        if (const std::int32_t n = graph_.neighbour[i][k]; n >= 0 && take(n, offset_[i] - kOffsets[k])) front.push({depth_[n], n});
+        if (const std::int32_t n = graph_.neighbour[i][k]; n >= 0 && take(n, offset_[i] - kOffsets[k]))
+          front.push({depth_[n], n});
     }
   }
 
@@ -164,7 +170,8 @@ class DepthFront {
 };
 }  // namespace
 
-void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth) {
+void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders,
+                 std::vector<float>& depth) {
   DepthFront front(graph, spacing, depth);
   std::vector<std::int32_t> from;
   for (const std::int32_t i : at_borders)
@@ -189,14 +196,16 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 }
 
 namespace {
-// The places of heights, which are not negative, the highest first; of equal ones the first. Sorts by the bits of the numbers, which
-// rise with them, eleven at a time.
+// The places of heights, which are not negative, the highest first; of equal ones the first. Sorts by the bits of the
+// numbers, which rise with them, eleven at a time.
 std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
   constexpr int kBits = 11;
   std::vector<std::int32_t> order(height.size()), next(height.size());
   std::iota(order.begin(), order.end(), 0);
   for (int shift = 0; shift < 32; shift += kBits) {
-    const auto digit = [&](std::int32_t i) { return ~std::bit_cast<std::uint32_t>(height[i]) >> shift & ((1u << kBits) - 1); };
+    const auto digit = [&](std::int32_t i) {
+      return ~std::bit_cast<std::uint32_t>(height[i]) >> shift & ((1u << kBits) - 1);
+    };
     std::array<std::int64_t, (1 << kBits) + 1> first{};
     for (const std::int32_t i : order) ++first[digit(i) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
@@ -247,7 +256,8 @@ std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>
       if (a == b) continue;
       if (summit[b] > summit[a] || (summit[b] == summit[a] && b < a)) std::swap(a, b);
       const float pass = std::min(here.height, ground[n].height);
-      if (pass >= kMergeRatio * summit[b] || summit[b] - pass <= std::min(wiggle, kWiggleShare * summit[b])) parent[b] = a;
+      if (pass >= kMergeRatio * summit[b] || summit[b] - pass <= std::min(wiggle, kWiggleShare * summit[b]))
+        parent[b] = a;
     }
   }
   std::vector<std::int32_t> number(parent.size(), -1);
@@ -281,7 +291,8 @@ void join_specks(const BoneGraph& graph, std::int64_t fewest, std::vector<std::i
     return b;
   };
   for (const auto& [speck, neighbours] : around) {
-    const auto most = std::max_element(neighbours.begin(), neighbours.end(), [](auto& a, auto& b) { return a.second < b.second; });
+    const auto most =
+        std::max_element(neighbours.begin(), neighbours.end(), [](auto& a, auto& b) { return a.second < b.second; });
     into[end_of(speck)] = end_of(most->first);
   }
   std::vector<std::int32_t> number(count.size(), -1);

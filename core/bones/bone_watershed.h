@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bone tissue as a graph of voxels, and its basins: a watershed on the bone's depth, grown from its deepest points (with
-// marrow from the marrow cores) outwards, cuts the one blob that all bones of a limb often are where it is thin [Vincent &
-// Soille 1991, on a priority queue].
+// Bone tissue as a graph of voxels, and its basins: a watershed on the bone's depth, grown from its deepest points
+// (with marrow from the marrow cores) outwards, cuts the one blob that all bones of a limb often are where it is thin
+// [Vincent & Soille 1991, on a priority queue].
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/zeroed_vector.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {
@@ -30,10 +30,11 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 // Distance in mm of every bone voxel to the nearest voxel that is not its bone. Beyond the grid the bone goes on.
 std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing);
 // The same where connections of the graph were removed since: `at_borders` are the voxels that lost some.
-void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders, std::vector<float>& depth);
+void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders,
+                 std::vector<float>& depth);
 
-// The basin of every voxel, numbered from 0: a summit of `height` and what slopes up to it. Where two meet, the lower one is a
-// mere wiggle of the higher when the pass between them is nearly as high as its summit; then they are one.
+// The basin of every voxel, numbered from 0: a summit of `height` and what slopes up to it. Where two meet, the lower
+// one is a mere wiggle of the higher when the pass between them is nearly as high as its summit; then they are one.
 //   wiggle  mm of height that voxels make of a smooth ridge
 std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle);
 

@@ -12,26 +12,27 @@ namespace limber {
 namespace {
 
 constexpr double kEnds = 0.15;  // of a bone's length at either end, where joints are and no bone tissue need be
-// Distances from the axis as shares of the bone's length: a rig may run beside the bone by half the limb's thickness, and
-// limbs are some 0.15 thick.
+// Distances from the axis as shares of the bone's length: a rig may run beside the bone by half the limb's thickness,
+// and limbs are some 0.15 thick.
 constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
 constexpr double kLeastOfDisc = 0.05;  // so much of the disc beside the axis: the label is there
 // Bone came out at 0.5 to 0.94 and 30 times and more; others at 8 times had 0.33, others at 0.4 had 5 times.
 constexpr double kShareOfRig = 0.4, kEnrichment = 8;
-constexpr double kLong = 0.5;  // of the longest bone: shorter ones are as thick as long, and tell nothing
+constexpr double kLong = 0.5;               // of the longest bone: shorter ones are as thick as long, and tell nothing
 constexpr int kSlices = 60, kPoints = 120;  // per bone, and per slice
 
 struct Lengths {
   double in_tissue = 0;
-  std::map<Label, double> with;             // mm of the rig that have the label beside them
-  std::map<Label, double> beside, around;   // mm by the share of tissue
+  std::map<Label, double> with;            // mm of the rig that have the label beside them
+  std::map<Label, double> beside, around;  // mm by the share of tissue
 };
 
 // Points of a disc of radius 1, evenly spread [Vogel 1979, the sunflower's head].
 std::vector<glm::dvec2> disc() {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<glm::dvec2> points;
-  for (int k = 0; k < kPoints; ++k) points.push_back(std::sqrt((k + 0.5) / kPoints) * glm::dvec2(std::cos(k * golden), std::sin(k * golden)));
+  for (int k = 0; k < kPoints; ++k)
+    points.push_back(std::sqrt((k + 0.5) / kPoints) * glm::dvec2(std::cos(k * golden), std::sin(k * golden)));
   return points;
 }
 
@@ -39,7 +40,8 @@ Lengths lengths_of(const LabelVolume& volume, const Armature& armature) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
   const auto label_at = [&](const glm::dvec3& place) -> Label {
     const glm::dvec3 at = glm::floor(to_voxel * place + 0.5);
-    const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
+    const bool inside =
+        glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
     return inside ? volume.at(glm::ivec3(at)) : Label(0);
   };
   const std::vector<glm::dvec2> points = disc();
@@ -50,7 +52,9 @@ Lengths lengths_of(const LabelVolume& volume, const Armature& armature) {
     const double whole = glm::distance(bone.head, bone.tail), slice = whole / kSlices;
     if (!(whole > 0) || whole < kLong * longest) continue;
     const glm::dvec3 axis = (bone.tail - bone.head) / whole;
-    const glm::dvec3 u = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))), v = glm::cross(axis, u);
+    const glm::dvec3 u = glm::normalize(
+                         glm::cross(axis, std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))),
+                     v = glm::cross(axis, u);
     for (int s = 0; s < kSlices; ++s) {
       const glm::dvec3 centre = glm::mix(bone.head, bone.tail, kEnds + (1 - 2 * kEnds) * (s + 0.5) / kSlices);
       if (label_at(centre) == 0) continue;
@@ -78,7 +82,8 @@ Lengths lengths_of(const LabelVolume& volume, const Armature& armature) {
 
 }  // namespace
 
-std::optional<BoneTissueGuess> guess_bone_tissue(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+std::optional<BoneTissueGuess> guess_bone_tissue(const LabelVolume& volume, const TissueTable& tissues,
+                                                 const Armature& armature) {
   const bool something_known = std::any_of(tissues.tissues.begin(), tissues.tissues.end(),
                                            [](const Tissue& tissue) { return tissue.kind != TissueKind::Unknown; });
   if (something_known) return std::nullopt;

@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "core/bones/bone_identity.h"
-#include "core/volume/grey_image.h"
+#include "core/volume_io/grey_image.h"
 
 namespace limber {
 
 namespace {
 // A rig that fits has nine tenths of its length in tissue; a hand's rig runs along thin fingers and has less.
 constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
-constexpr int kPoints = 32;  // asked along each bone
+constexpr int kPoints = 32;           // asked along each bone
 constexpr double kShaftRadius = 0.1;  // of a rig bone's length
-// Of a label's voxels, that lie along the middle of a bone it does not belong to: none in a good body, a sixth where half the femur is
-// called tibia.
+// Of a label's voxels, that lie along the middle of a bone it does not belong to: none in a good body, a sixth where
+// half the femur is called tibia.
 constexpr double kMisplaced = 0.1;
 
 struct Extent {
@@ -55,14 +55,19 @@ std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Ar
   if (inside >= kMostlyOutside) return std::nullopt;
   const Extent extent = extent_of(volume.grid);
   const glm::dvec3 twice_middle = extent.low + extent.high;
-  const double turned = share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, p.z); }));
-  const double mirrored = std::max(share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); })),
-                                   share_in_tissue(volume, moved(armature, [&](const glm::dvec3& p) { return glm::dvec3(twice_middle.x - p.x, p.y, p.z); })));
+  const double turned =
+      share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, -p.y, p.z); }));
+  const double mirrored = std::max(
+      share_in_tissue(volume, moved(armature, [](const glm::dvec3& p) { return glm::dvec3(-p.x, p.y, p.z); })),
+      share_in_tissue(
+          volume, moved(armature, [&](const glm::dvec3& p) { return glm::dvec3(twice_middle.x - p.x, p.y, p.z); })));
   char text[240];
-  const char* advice = std::max(turned, mirrored) < inside + kFitsMuchBetter ? "fit it with `limber fit-rig`, or give the rig of this body"
+  const char* advice = std::max(turned, mirrored) < inside + kFitsMuchBetter
+                           ? "fit it with `limber fit-rig`, or give the rig of this body"
                        : turned >= mirrored ? "negate its x and y: it seems to be in RAS axes, and Limber's are LPS"
                                             : "mirror its x: it fits the body's other side";
-  std::snprintf(text, sizeof text, "the rig lies outside the body: only %.0f %% of its length is in tissue; %s", 100 * inside, advice);
+  std::snprintf(text, sizeof text, "the rig lies outside the body: only %.0f %% of its length is in tissue; %s",
+                100 * inside, advice);
   return text;
 }
 
@@ -79,10 +84,12 @@ std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set
   for (int z = 0; z < volume.grid.size.z; ++z)
     for (int y = 0; y < volume.grid.size.y; ++y)
       for (int x = 0; x < volume.grid.size.x; ++x, ++at)
-        if (const Label label = volume.voxels[at]; is_asked[label]) sums[label].place += glm::dvec3(x, y, z), ++sums[label].count;
+        if (const Label label = volume.voxels[at]; is_asked[label])
+          sums[label].place += glm::dvec3(x, y, z), ++sums[label].count;
   std::map<Label, glm::dvec3> centres;
   for (const Label label : labels)
-    if (sums[label].count) centres[label] = world_from_voxel(volume.grid) * (sums[label].place / double(sums[label].count));
+    if (sums[label].count)
+      centres[label] = world_from_voxel(volume.grid) * (sums[label].place / double(sums[label].count));
   return centres;
 }
 
@@ -95,13 +102,15 @@ std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, Bod
 }
 
 // Labels that say their side, against the rig's bones of that side and of the other.
-std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const TissueTable& tissues,
+                                             const Armature& armature) {
   std::map<Label, AnatomicalName> sided;
   std::set<Label> labels;
   for (const Tissue& tissue : tissues.tissues) {
     if (!is_bone(tissue.kind)) continue;
     AnatomicalName name = anatomical_name(tissue.name);
-    if (name.side == BodySide::Middle || name.regions.size() != 1 || *name.regions.begin() < BoneRegion::UpperArm) continue;
+    if (name.side == BodySide::Middle || name.regions.size() != 1 || *name.regions.begin() < BoneRegion::UpperArm)
+      continue;
     labels.insert(tissue.label);
     sided[tissue.label] = std::move(name);
   }
@@ -123,7 +132,8 @@ std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const Ti
     else if (disagree++ == 0) example = tissues.find(label)->name.substr(0, 60);
   }
   if (disagree <= agree) return std::nullopt;
-  return "left and right are swapped between rig and labels: \"" + example + "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
+  return "left and right are swapped between rig and labels: \"" + example +
+         "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
 }
 
 // Where no label says its side, the axes do: x grows to the left.
@@ -138,7 +148,8 @@ std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Ar
     (x(0) > x(1) ? agree : disagree) += 1;
   }
   if (disagree < 2 || agree > 0) return std::nullopt;
-  return "the rig's left bones lie at the body's right: x grows to the left in Limber's axes, which are LPS; mirror the rig, or negate its x and y if it is in RAS axes";
+  return "the rig's left bones lie at the body's right: x grows to the left in Limber's axes, which are LPS; mirror "
+         "the rig, or negate its x and y if it is in RAS axes";
 }
 
 // Whether a point lies along the middle of the bone, away from its joints.
@@ -157,14 +168,17 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
     const AnatomicalName name = anatomical_name(tissues.find(label)->name);
     if (!bones.single || name.regions.size() != 1 || bones.is_substitute) continue;
     const BoneRegion region = *name.regions.begin();
-    if (region != BoneRegion::UpperArm && region != BoneRegion::Forearm && region != BoneRegion::Thigh && region != BoneRegion::Shank) continue;
+    if (region != BoneRegion::UpperArm && region != BoneRegion::Forearm && region != BoneRegion::Thigh &&
+        region != BoneRegion::Shank)
+      continue;
     for (const auto& side : bones.candidates) own[label].insert(own[label].end(), side.begin(), side.end());
   }
   return own;
 }
 
 // A label of one bone, a good part of which lies along another bone of the limb.
-std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {
+std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues,
+                                              const Armature& armature) {
   const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);
   if (own.empty()) return std::nullopt;
   std::vector<const std::vector<int>*> asked(65536, nullptr);
@@ -181,7 +195,8 @@ std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const T
         ++voxels[label];
         const glm::dvec3 p = to_world * glm::dvec3(x, y, z);
         for (int b = 0; b < std::ssize(armature.bones); ++b)
-          if (is_along(armature.bones[b], p) && std::find(asked[label]->begin(), asked[label]->end(), b) == asked[label]->end()) {
+          if (is_along(armature.bones[b], p) &&
+              std::find(asked[label]->begin(), asked[label]->end(), b) == asked[label]->end()) {
             ++elsewhere[label][b];
             break;
           }
@@ -191,7 +206,8 @@ std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const T
       if (double(count) > kMisplaced * double(voxels[label])) {
         char share[16];
         std::snprintf(share, sizeof share, "%.0f %%", 100 * double(count) / double(voxels[label]));
-        return std::string(share) + " of the label \"" + tissues.find(label)->name.substr(0, 60) + "\" lie along the middle of " + armature.bones[bone].name +
+        return std::string(share) + " of the label \"" + tissues.find(label)->name.substr(0, 60) +
+               "\" lie along the middle of " + armature.bones[bone].name +
                ", another bone: correct the labels, or say with --bone-map which bone it follows";
       }
   return std::nullopt;
@@ -215,12 +231,15 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
   for (const auto& role : joint_roles(names, parents)) {
     if (!role) continue;
     const bool leg = role->part >= BodyPart::HipLink && role->part <= BodyPart::Toes;
-    const bool arm = (role->part >= BodyPart::UpperArm && role->part <= BodyPart::Fingers) || role->part >= BodyPart::Thumb;
+    const bool arm =
+        (role->part >= BodyPart::UpperArm && role->part <= BodyPart::Fingers) || role->part >= BodyPart::Thumb;
     of_rig.insert(leg ? 2 : arm ? 1 : 0);
   }
   // Trunks fit each other; one limb's rig on another one's bones does not.
-  if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0)) return std::nullopt;
-  return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " + name_of_limb(*of_labels.begin()) + "; give the rig of this limb";
+  if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0))
+    return std::nullopt;
+  return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " +
+         name_of_limb(*of_labels.begin()) + "; give the rig of this limb";
 }
 }  // namespace
 
@@ -232,8 +251,10 @@ double share_in_tissue(const LabelVolume& volume, const Armature& armature) {
     if (!(own > 0)) continue;
     length += own;
     for (int k = 0; k < kPoints; ++k) {
-      const glm::dvec3 at = glm::floor(from_world * glm::mix(bone.head, bone.tail, 0.1 + 0.8 * (k + 0.5) / kPoints) + 0.5);
-      const bool in_grid = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
+      const glm::dvec3 at =
+          glm::floor(from_world * glm::mix(bone.head, bone.tail, 0.1 + 0.8 * (k + 0.5) / kPoints) + 0.5);
+      const bool in_grid = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) &&
+                           glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
       if (in_grid && volume.at(glm::ivec3(at)) != 0) inside += own / kPoints;
     }
   }
@@ -246,7 +267,8 @@ std::vector<std::string> input_doubts(const LabelVolume& volume, const TissueTab
     if (doubt) doubts.push_back(std::move(*doubt));
   };
   add(doubt_about_grey(volume, tissues));
-  const auto place = doubt_about_place(volume, armature), sides = doubt_about_sides(volume, tissues, armature), limb = doubt_about_limb(tissues, armature);
+  const auto place = doubt_about_place(volume, armature), sides = doubt_about_sides(volume, tissues, armature),
+             limb = doubt_about_limb(tissues, armature);
   add(place);
   add(sides);
   add(limb);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds inputs that do not belong together before anything is computed from them: a grey image read as labels, a rig that lies
-// beside the body or mirrored, a rig whose left is the body's right, a rig of another limb, a label of one bone that lies along
-// another. Each doubt is one sentence that says what was seen and what to do.
+// Finds inputs that do not belong together before anything is computed from them: a grey image read as labels, a rig
+// that lies beside the body or mirrored, a rig whose left is the body's right, a rig of another limb, a label of one
+// bone that lies along another. Each doubt is one sentence that says what was seen and what to do.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "core/rig/armature.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber {
 

@@ -17,27 +17,28 @@
 namespace limber {
 
 namespace {
-constexpr double kReach = 0.6;      // of the shorter bone's length: how far along the bones a joint is looked at
+constexpr double kReach = 0.6;       // of the shorter bone's length: how far along the bones a joint is looked at
 constexpr double kReachAside = 0.3;  // of the longer one's: how far in any direction at least
-constexpr double kShaft = 0.2;      // of the shorter one's: from there on what lies along a rig bone is surely that bone
+constexpr double kShaft = 0.2;  // of the shorter one's: from there on what lies along a rig bone is surely that bone
 constexpr double kShaftWidth = 0.1;  // of it: what lies along a rig bone, beyond what lies nearest to it
-constexpr double kFarAside = 0.35;  // of a bone's length: nothing so far from a rig bone is its shaft
-constexpr double kCoarse = 0.04;    // of the shorter bone's length: with voxels of this size the place of the joint counts twice as much
-constexpr double kAway = 8;         // area counts as much more where the shafts begin, and four times that twice as far away
-constexpr double kSteep = 0.4;      // of the way to where the shafts begin: from there on it counts more by the fourth power,
-                                    // or the thin shaft beside a broad joint would be the cheapest place
+constexpr double kFarAside = 0.35;   // of a bone's length: nothing so far from a rig bone is its shaft
+constexpr double kCoarse =
+    0.04;  // of the shorter bone's length: with voxels of this size the place of the joint counts twice as much
+constexpr double kAway = 8;  // area counts as much more where the shafts begin, and four times that twice as far away
+constexpr double kSteep = 0.4;      // of the way to where the shafts begin: from there on it counts more by the fourth
+                                    // power, or the thin shaft beside a broad joint would be the cheapest place
 constexpr double kSlender = 8;      // radii of the joint: shorter bones than that say less of where it is
 constexpr double kSide = 0.6;       // of the shorter bone's length: how far apart bones may run that touch side by side
 constexpr double kSideShaft = 0.5;  // of the distance to the other bone: what lies nearer to its own is surely of it
-constexpr double kBroad = 1.5;      // times the thinner bone's cross-section: from there on a cut is not sure. Bones that touch at 1 to 3 mm
-                                    // though their joints are open stay below it
-constexpr double kMarrow = 4;       // times that area counts through marrow
-constexpr double kBall = 0.02;      // of the bone's length: the smallest radius of the ball at its head
+constexpr double kBroad = 1.5;  // times the thinner bone's cross-section: from there on a cut is not sure. Bones that
+                                // touch at 1 to 3 mm though their joints are open stay below it
+constexpr double kMarrow = 4;   // times that area counts through marrow
+constexpr double kBall = 0.02;  // of the bone's length: the smallest radius of the ball at its head
 constexpr double kLargestBall = 0.1;
-constexpr double kBallCore = 0.8;   // of the radius of a joint's ball: so much of it is surely the ball
-constexpr double kBallWidth = 0.5;  // of it: in place of the distance to the shafts
-constexpr double kSitsAlong = 0.25;  // of a bone's length from its head: where another bone may sit on it
-constexpr double kClosed = 0.5;     // of a joint's cross-section: bones that touch in more are closed up there
+constexpr double kBallCore = 0.8;     // of the radius of a joint's ball: so much of it is surely the ball
+constexpr double kBallWidth = 0.5;    // of it: in place of the distance to the shafts
+constexpr double kSitsAlong = 0.25;   // of a bone's length from its head: where another bone may sit on it
+constexpr double kClosed = 0.5;       // of a joint's cross-section: bones that touch in more are closed up there
 constexpr double kJointReach = 0.15;  // of the parent's length: so far from the joint, at least, its radius is measured
 constexpr double kJointSlice = 0.06;  // of the shorter bone's length: where the joint's radius is measured
 constexpr std::int32_t kHard = 1 << 28;
@@ -53,16 +54,19 @@ std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
   std::array<double, 26> share{};
   constexpr int kDirections = 20000;
   for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kDirections, turn = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    const double z = 1 - (2 * i + 1.0) / kDirections, turn = i * std::numbers::pi * (3 - std::sqrt(5.0)),
+                 r = std::sqrt(1 - z * z);
     const glm::dvec3 direction(r * std::cos(turn), r * std::sin(turn), z);
     int nearest = 0;
     double most = -1;
     for (int k = 0; k < 13; ++k)
-      if (const double along = std::abs(glm::dot(direction, edge[k])) / glm::length(edge[k]); along > most) most = along, nearest = k;
+      if (const double along = std::abs(glm::dot(direction, edge[k])) / glm::length(edge[k]); along > most)
+        most = along, nearest = k;
     share[nearest] += 2.0 / kDirections;  // of the half sphere's solid angle, 2 pi, over pi
   }
   std::array<double, 26> area;
-  for (int k = 0; k < 13; ++k) area[k] = area[25 - k] = share[k] * spacing.x * spacing.y * spacing.z / glm::length(edge[k]);
+  for (int k = 0; k < 13; ++k)
+    area[k] = area[25 - k] = share[k] * spacing.x * spacing.y * spacing.z / glm::length(edge[k]);
   return area;
 }
 
@@ -117,7 +121,8 @@ struct Scene {
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x)
-          if (!is_bone(kinds[volume.at_or_air({x, y, z})])) nearest = std::min(nearest, glm::length((glm::dvec3(x, y, z) - centre) * volume.grid.spacing));
+          if (!is_bone(kinds[volume.at_or_air({x, y, z})]))
+            nearest = std::min(nearest, glm::length((glm::dvec3(x, y, z) - centre) * volume.grid.spacing));
     return nearest;
   }
 };
@@ -145,7 +150,9 @@ class Cut {
     const double reach = kReach * shorter, reach_aside = std::max(reach, kReachAside * longer);
     for (int which = 0; which < 2; ++which)
       for (const std::int32_t i : scene_.along[bone_[which]])
-        if (const glm::dvec3 at = world(i); glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach) add(i);
+        if (const glm::dvec3 at = world(i);
+            glm::distance(at, joint) <= reach_aside && std::abs(glm::dot(at - joint, normal)) <= reach)
+          add(i);
     if (domain_.empty()) return {};
     link();
     for (int which = 0; which < 2; ++which) find_shaft(which, joint, kShaft * shorter, kShaftWidth * shorter);
@@ -160,7 +167,8 @@ class Cut {
       cut_across(normal, shorter);
     }
     const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
-    const double thinner = std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
+    const double thinner =
+        std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
     if (cut_area_ > 0 && cut_area_ >= kBroad * thinner) found_.broad = BroadCut{parent, child, cut_area_};
     tell_sides();
     return std::move(found_);
@@ -234,10 +242,11 @@ class Cut {
                             std::min({spacing.x, spacing.y, spacing.z}));
   }
 
-  // The direction from the parent to the child across the plane that halves the angle between them, or the child's own where it
-  // springs from the parent's side.
+  // The direction from the parent to the child across the plane that halves the angle between them, or the child's own
+  // where it springs from the parent's side.
   static glm::dvec3 normal_of_joint(const Bone& parent, const Bone& child) {
-    const glm::dvec3 along = glm::normalize(child.tail - child.head), of_parent = glm::normalize(parent.tail - parent.head);
+    const glm::dvec3 along = glm::normalize(child.tail - child.head),
+                     of_parent = glm::normalize(parent.tail - parent.head);
     const glm::dvec3 on_parent = parent.head + along_bone(parent, child.head) * of_parent;
     if (glm::distance(on_parent, child.head) >= 0.1 * std::min(length_of(parent), length_of(child))) return along;
     const bool at_tail = glm::distance(child.head, parent.tail) <= glm::distance(child.head, parent.head);
@@ -248,13 +257,15 @@ class Cut {
   void add(std::int32_t i) {
     const int nearest = scene_.near[i].bone[0];
     const std::vector<int>& allowed = scene_.candidates[scene_.group[i]];
-    domain_.push_back({i, nearest == bone_[1], allowed.empty() || std::find(allowed.begin(), allowed.end(), nearest) != allowed.end(), -1});
+    domain_.push_back({i, nearest == bone_[1],
+                       allowed.empty() || std::find(allowed.begin(), allowed.end(), nearest) != allowed.end(), -1});
   }
   // Finds what is connected within the domain.
   void link() {
     std::array<std::vector<std::int32_t>, 2> place;  // by bone and rank there: in the domain or -1
     for (int which = 0; which < 2; ++which) place[which].assign(scene_.along[bone_[which]].size(), -1);
-    for (std::int32_t i = 0; i < std::ssize(domain_); ++i) place[domain_[i].nearest][scene_.near[domain_[i].at].rank] = i;
+    for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
+      place[domain_[i].nearest][scene_.near[domain_[i].at].rank] = i;
     neighbour_.resize(domain_.size());
     for (std::size_t i = 0; i < domain_.size(); ++i)
       for (int k = 0; k < 26; ++k) {
@@ -268,11 +279,12 @@ class Cut {
   // What hangs on the shaft of one of the two bones cannot be of the other.
   void tell_sides() {
     for (int which = 0; which < 2; ++which)
-      for (const std::int32_t i : reached_from(which)) found_.beyond.push_back({domain_[i].at, bone_[1 - which], bone_[which]});
+      for (const std::int32_t i : reached_from(which))
+        found_.beyond.push_back({domain_[i].at, bone_[1 - which], bone_[which]});
   }
 
-  // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no nearer to the
-  // joint than `beginning`.
+  // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no nearer to
+  // the joint than `beginning`.
   void find_shaft(int which, const glm::dvec3& joint, double beginning, double width) {
     constexpr int kSlices = 16;
     const Bone& bone = bones_[bone_[which]];
@@ -287,7 +299,9 @@ class Cut {
     for (const Voxel& voxel : domain_)
       if (const int s = slice_of(voxel); s >= 0) nearest[s] = std::min(nearest[s], scene_.near[voxel.at].distance[0]);
     for (Voxel& voxel : domain_)
-      if (const int s = slice_of(voxel); s >= 0 && scene_.near[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length) voxel.shaft = which;
+      if (const int s = slice_of(voxel);
+          s >= 0 && scene_.near[voxel.at].distance[0] <= nearest[s] + width && nearest[s] < kFarAside * length)
+        voxel.shaft = which;
   }
 
   // Of the bone tissue beside one of the two bones, no nearer to the joint than `beginning`; mm^3.
@@ -325,7 +339,8 @@ class Cut {
   //   weight  (voxel, world) how many times its area a place counts
   std::vector<std::uint8_t> least_cut(const auto& weight) const {
     if (!is_connected()) return {};
-    CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()), std::vector<std::int32_t>(domain_.size())};
+    CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()),
+                     std::vector<std::int32_t>(domain_.size())};
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i) {
       cut.terminal[i] = domain_[i].shaft == 0 ? kHard : domain_[i].shaft == 1 ? -kHard : 0;
       const std::int32_t here = domain_[i].at;
@@ -336,7 +351,8 @@ class Cut {
         const double times = weight(here, (world(here) + world(there)) / 2.0);
         double cost = scene_.area[k] * times * (scene_.depth[here] + scene_.depth[there]) / 2;
         if (scene_.is_marrow(here) && scene_.is_marrow(there)) cost *= kMarrow;
-        cut.capacity[i][k] = cut.capacity[m][25 - k] = static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
+        cut.capacity[i][k] = cut.capacity[m][25 - k] =
+            static_cast<std::int32_t>(std::clamp(1000 * cost, 1.0, double(kHard)));
       }
     }
     return min_cut(std::move(cut));
@@ -346,7 +362,8 @@ class Cut {
     double area = 0;
     for (std::int32_t i = 0; i < std::ssize(side); ++i)
       for (int k = 0; k < 26; ++k)
-        if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i]) area += scene_.area[k] / 2;  // the neighbour counts the other half
+        if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i])
+          area += scene_.area[k] / 2;  // the neighbour counts the other half
     return area;
   }
   void part(const std::vector<std::uint8_t>& side) {
@@ -369,7 +386,7 @@ class Cut {
   const std::array<int, 2> bone_;
   std::vector<Voxel> domain_;
   std::vector<std::array<std::int32_t, 26>> neighbour_;  // #domain, in the domain or -1
-  double cut_area_ = 0;  // mm^2
+  double cut_area_ = 0;                                  // mm^2
   Found found_;
 };
 
@@ -392,9 +409,9 @@ class JointCutter {
     });
   }
 
-  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a thumb
-  // does that the rig hangs on the forearm beside the hand, also where it meets that one. A wave of cuts at a time: those of
-  // a wave share no bone, and those that share one keep the order of the rig.
+  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a
+  // thumb does that the rig hangs on the forearm beside the hand, also where it meets that one. A wave of cuts at a
+  // time: those of a wave share no bone, and those that share one keep the order of the rig.
   void cut_joints(Progress& progress) {
     std::vector<std::array<int, 2>> joints;
     for (int child = 0; child < std::ssize(scene_.bones); ++child) {
@@ -415,7 +432,8 @@ class JointCutter {
     for (const std::vector<std::size_t>& wave : waves) {
       progress.update("bones", 0.4);
       parallel_for(std::ssize(wave), 1, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t k = begin; k < end; ++k) found[wave[k]] = Cut(scene_, joints[wave[k]][0], joints[wave[k]][1]).at_joint();
+        for (std::int64_t k = begin; k < end; ++k)
+          found[wave[k]] = Cut(scene_, joints[wave[k]][0], joints[wave[k]][1]).at_joint();
       });
     }
     keep(found);
@@ -428,12 +446,15 @@ class JointCutter {
       const Near& near = scene_.near[i];
       const auto [a, b] = std::minmax(near.bone[0], near.bone[1]);
       if (b < 0 || a < 0 || scene_.bones[a].parent == b || scene_.bones[b].parent == a) continue;
-      if (near.distance[0] + near.distance[1] <= kSide * std::min(length_of(scene_.bones[a]), length_of(scene_.bones[b]))) between[{a, b}].push_back(i);
+      if (near.distance[0] + near.distance[1] <=
+          kSide * std::min(length_of(scene_.bones[a]), length_of(scene_.bones[b])))
+        between[{a, b}].push_back(i);
     }
     const std::vector<std::pair<std::array<int, 2>, std::vector<std::int32_t>>> sides(between.begin(), between.end());
     std::vector<Found> found(sides.size());
     parallel_for(std::ssize(sides), 1, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t k = begin; k < end; ++k) found[k] = Cut(scene_, sides[k].first[0], sides[k].first[1]).side_by_side(sides[k].second);
+      for (std::int64_t k = begin; k < end; ++k)
+        found[k] = Cut(scene_, sides[k].first[0], sides[k].first[1]).side_by_side(sides[k].second);
     });
     keep(found);
   }
@@ -457,13 +478,16 @@ class JointCutter {
   }
 
   void find_nearest() {
-    std::vector<Bone> inner = scene_.bones;  // bones share the point where they meet: away from it the direction decides
-    for (Bone& bone : inner) bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
+    std::vector<Bone> inner =
+        scene_.bones;  // bones share the point where they meet: away from it the direction decides
+    for (Bone& bone : inner)
+      bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
     scene_.near.resize(scene_.graph.size());
     parallel_for(scene_.graph.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
         const glm::dvec3 at = scene_.world(static_cast<std::int32_t>(i));
-        for (int b = 0; b < std::ssize(inner); ++b) scene_.near[i].take(b, static_cast<float>(distance_to_bone(inner[b], at)));
+        for (int b = 0; b < std::ssize(inner); ++b)
+          scene_.near[i].take(b, static_cast<float>(distance_to_bone(inner[b], at)));
       }
     });
     scene_.along.resize(scene_.bones.size());
@@ -489,10 +513,22 @@ class JointCutter {
 };
 }  // namespace
 
-JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
-                   const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates, Progress& progress) {
-  JointCutter cutter({graph, volume, kinds, armature.bones, group, candidates, world_from_voxel(volume.grid),
-                      areas_of_edges(volume.grid.spacing), {}, {}, {}, {}, {}});
+JointCuts cut_at_joints(BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
+                        const Armature& armature, const std::vector<std::int32_t>& group,
+                        const std::vector<std::vector<int>>& candidates, Progress& progress) {
+  JointCutter cutter({graph,
+                      volume,
+                      kinds,
+                      armature.bones,
+                      group,
+                      candidates,
+                      world_from_voxel(volume.grid),
+                      areas_of_edges(volume.grid.spacing),
+                      {},
+                      {},
+                      {},
+                      {},
+                      {}});
   cutter.cut_joints(progress);
   cutter.cut_sides();
   return std::move(cutter).cuts();

@@ -8,23 +8,23 @@
 namespace limber {
 
 namespace {
-constexpr double kRim = 1.3;        // of a joint's radius, squared: farther out its surface does not fall off any more
-constexpr double kRound = 1.1;      // times as wide as deep: below that no direction is the hinge
+constexpr double kRim = 1.3;    // of a joint's radius, squared: farther out its surface does not fall off any more
+constexpr double kRound = 1.1;  // times as wide as deep: below that no direction is the hinge
 constexpr double kClearlyWide = 1.25;  // from there on one is
 
 // Measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. Where a rig's joint lies
 // elsewhere than in the middle of the joint's gap, the level is off by as much. Where the rig's bone is short, as a
 // hand's, its direction is off by more, and a sharp surface would do harm: the wrist's does not turn with it.
-constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};     // a ball in a shallow cup
+constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // a ball in a shallow cup
 constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a roller across the finger
 constexpr JointShape kFingerEnd{-0.1, 0.1, -0.45, 0.4, 2};
-constexpr JointShape kThumbBase{-0.05, 0.3, 0, 0.5, 2};      // a saddle
+constexpr JointShape kThumbBase{-0.05, 0.3, 0, 0.5, 2};  // a saddle
 constexpr JointShape kThumbKnuckle{0.08, -0.17, -0.1, 0.8, 2};
 constexpr JointShape kThumbEnd{-0.02, 0.2, -0.5, 0.5, 2};
-constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};      // metacarpals on the wrist
-constexpr JointShape kWrist{-0.1, 0.1, 0.2, 0, 1};           // an egg in the hollow of the radius
-constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};               // the shank's cup, a kneecap in front
-constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};        // the talus between the ankle bones
+constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};  // metacarpals on the wrist
+constexpr JointShape kWrist{-0.1, 0.1, 0.2, 0, 1};       // an egg in the hollow of the radius
+constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};           // the shank's cup, a kneecap in front
+constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};    // the talus between the ankle bones
 
 // The widest direction across `axis` of places around their middle, and how many times as wide as deep they are.
 struct Width {
@@ -54,7 +54,10 @@ std::optional<JointShape> shape_of_joint(const std::optional<JointRole>& role) {
     case BodyPart::Shank: return kKnee;
     case BodyPart::Foot: return kAnkle;
     case BodyPart::Thumb: return role->index <= 1 ? kThumbBase : role->index == 2 ? kThumbKnuckle : kThumbEnd;
-    case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little:
+    case BodyPart::Index:
+    case BodyPart::Middle:
+    case BodyPart::Ring:
+    case BodyPart::Little:
       return role->index == 0 ? kPalm : role->index == 1 ? kKnuckle : role->index == 2 ? kFingerMiddle : kFingerEnd;
     default: return std::nullopt;
   }

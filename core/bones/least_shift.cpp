@@ -37,7 +37,8 @@ class TurnedBones {
   Overlap overlap(const glm::dvec3& shift) const {
     Overlap sum;
     for (const auto& point : turning_)
-      if (const auto there = bones_.fixed.below(point.place + shift, -point.mm)) add(*there, there->slope, point.mm, sum);
+      if (const auto there = bones_.fixed.below(point.place + shift, -point.mm))
+        add(*there, there->slope, point.mm, sum);
     for (const auto& point : fixed_)
       if (const auto there = bones_.turning.below(back_ * (point.place - shift), -point.mm))
         add(*there, -(motion_.linear * there->slope), point.mm, sum);

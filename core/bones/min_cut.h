@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The minimum cut of a graph of voxels between a source and a sink [Boykov & Kolmogorov 2004: two search trees that meet].
-// Capacities are whole numbers, so the result does not depend on rounding.
+// The minimum cut of a graph of voxels between a source and a sink [Boykov & Kolmogorov 2004: two search trees that
+// meet]. Capacities are whole numbers, so the result does not depend on rounding.
 #pragma once
 
 #include <array>

@@ -12,14 +12,20 @@
 namespace limber {
 
 namespace {
-constexpr double kClearMajority = 0.85;  // of a piece's voxels on one side: the rest are the other side's rig bone reaching across
-constexpr double kAttached = 0.1;        // of a bone's voxels, those nearest to the rig bones that may carry it
+constexpr double kClearMajority =
+    0.85;  // of a piece's voxels on one side: the rest are the other side's rig bone reaching across
+constexpr double kAttached = 0.1;  // of a bone's voxels, those nearest to the rig bones that may carry it
 
 class Assigning {
  public:
-  Assigning(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
-            const std::map<Label, LabelBones>& labels)
-      : graph_(graph), volume_(volume), kinds_(kinds), armature_(armature), labels_(labels), world_from_voxel_(world_from_voxel(volume.grid)) {
+  Assigning(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
+            const Armature& armature, const std::map<Label, LabelBones>& labels)
+      : graph_(graph),
+        volume_(volume),
+        kinds_(kinds),
+        armature_(armature),
+        labels_(labels),
+        world_from_voxel_(world_from_voxel(volume.grid)) {
     named_.bone.assign(graph.size(), -1);
     named_.group.assign(graph.size(), NamedBones::kUnnamed);
     named_.found_by.assign(graph.size(), FoundBy::Shape);
@@ -34,7 +40,8 @@ class Assigning {
   }
 
  private:
-  // Voxels that may follow the same rig bones. A bone that must stay whole has a set of its own where there is a choice.
+  // Voxels that may follow the same rig bones. A bone that must stay whole has a set of its own where there is a
+  // choice.
   struct Set {
     const LabelBones* bones;
     std::vector<std::int32_t> voxels;
@@ -46,7 +53,10 @@ class Assigning {
     std::vector<int> set_of(65536, -1);
     for (const auto& [label, bones] : labels_) {
       const bool has_choice = std::max(bones.candidates[0].size(), bones.candidates[1].size()) > 1;
-      const auto [found, is_new] = at.insert({{bones.candidates[0], bones.candidates[1], bones.has_sides, bones.single && has_choice ? label : Label{0}, bones.found_by == FoundBy::Map}, sets_.size()});
+      const auto [found, is_new] =
+          at.insert({{bones.candidates[0], bones.candidates[1], bones.has_sides,
+                      bones.single && has_choice ? label : Label{0}, bones.found_by == FoundBy::Map},
+                     sets_.size()});
       if (is_new) sets_.push_back({&bones, {}});
       set_of[label] = static_cast<int>(found->second);
     }
@@ -66,7 +76,8 @@ class Assigning {
     std::array<std::vector<std::int32_t>, 2> sides;
     for (const std::vector<std::int32_t>& piece : pieces_of(set)) {
       std::array<std::vector<std::int32_t>, 2> nearer;
-      for (const std::int32_t i : piece) nearer[nearest(bones.side_bones[1], i).distance < nearest(bones.side_bones[0], i).distance].push_back(i);
+      for (const std::int32_t i : piece)
+        nearer[nearest(bones.side_bones[1], i).distance < nearest(bones.side_bones[0], i).distance].push_back(i);
       for (int side = 0; side < 2; ++side) {
         const bool has_all = double(nearer[side].size()) >= kClearMajority * double(piece.size());
         const bool has_none = double(nearer[1 - side].size()) >= kClearMajority * double(piece.size());
@@ -120,11 +131,14 @@ class Assigning {
     std::vector<Nearest> all;
     for (const std::int32_t i : voxels) all.push_back(nearest(candidates, i));
     const std::size_t attached = std::max<std::size_t>(1, static_cast<std::size_t>(kAttached * double(all.size())));
-    std::nth_element(all.begin(), all.begin() + (attached - 1), all.end(),
-                     [](const Nearest& a, const Nearest& b) { return std::pair(a.distance, a.bone) < std::pair(b.distance, b.bone); });
+    std::nth_element(all.begin(), all.begin() + (attached - 1), all.end(), [](const Nearest& a, const Nearest& b) {
+      return std::pair(a.distance, a.bone) < std::pair(b.distance, b.bone);
+    });
     std::map<int, std::size_t> votes;
     for (std::size_t k = 0; k < attached; ++k) ++votes[all[k].bone];
-    return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+    return std::max_element(votes.begin(), votes.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
   }
 
   // Breadth first from the named bones through marrow and spongy bone without a name.
@@ -159,8 +173,8 @@ class Assigning {
 };
 }  // namespace
 
-NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds, const Armature& armature,
-                              const std::map<Label, LabelBones>& labels) {
+NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
+                              const Armature& armature, const std::map<Label, LabelBones>& labels) {
   return Assigning(graph, volume, kinds, armature, labels).run();
 }
 

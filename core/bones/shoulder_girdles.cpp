@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// Of the upper arm's length. In the BodyParts3D man the shoulder blade comes as near to the joint as a fifteenth of it, a
-// rib as near as a fifth.
+// Of the upper arm's length. In the BodyParts3D man the shoulder blade comes as near to the joint as a fifteenth of it,
+// a rib as near as a fifth.
 constexpr double kReach = 0.15;
 
 }  // namespace
@@ -35,7 +35,13 @@ std::vector<ShoulderGirdle> shoulder_girdles(const Armature& armature) {
     const Bone &bone = armature.bones[arm], &collar = armature.bones[girdle];
     const double length = glm::distance(collar.head, collar.tail);
     if (length == 0) continue;
-    girdles.push_back({girdle, trunk, bone.head, kReach * glm::distance(bone.head, bone.tail), collar.head, (collar.tail - collar.head) / length, {}});
+    girdles.push_back({girdle,
+                       trunk,
+                       bone.head,
+                       kReach * glm::distance(bone.head, bone.tail),
+                       collar.head,
+                       (collar.tail - collar.head) / length,
+                       {}});
   }
   if (girdles.size() == 2) {
     girdles[0].opposite = girdles[1].shoulder;

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// One line for each label that follows a rig bone only because the rig has none for it, and one for the bones that touch so
-// broadly that the place of the cut between them is not sure.
+// One line for each label that follows a rig bone only because the rig has none for it, and one for the bones that
+// touch so broadly that the place of the cut between them is not sure.
 std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
 
 }  // namespace limber

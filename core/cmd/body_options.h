@@ -10,20 +10,21 @@
 #include "core/base/progress.h"
 #include "core/bones/bone_identity.h"
 #include "core/rig/armature.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
 struct BodyOptions {
   std::string volume, rig, tissues, bone_map;  // files
-  std::vector<double> bones;         // labels that are bone, as in the file; none: what the tissue table says, else a guess by the rig
+  std::vector<double>
+      bones;  // labels that are bone, as in the file; none: what the tissue table says, else a guess by the rig
 };
 
 struct Body {
   VolumeFile file;
   TissueTable tissues;
   Armature rig;
-  BoneMap bone_map;  // which rig bones labels follow, where the user says
+  BoneMap bone_map;                 // which rig bones labels follow, where the user says
   std::vector<std::string> doubts;  // of files that do not belong together [input_doubts.h]
 };
 

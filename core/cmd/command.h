@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The command line's subcommands: one file each, one function each, gathered in run.cpp. A function adds its
-// subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed there.
-// Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled, 4 a pose that could not be reached: outputs are
-// written, of the last place on the way to it; 5 with --strict, a gate of the result failed: outputs are written as without.
+// subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed
+// there. Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled, 4 a pose that could not be
+// reached: outputs are written, of the last place on the way to it; 5 with --strict, a gate of the result failed:
+// outputs are written as without.
 #pragma once
 
 #include <string>
@@ -74,8 +75,8 @@ class CommandProgress final : public Progress {
   };
   void show(const Iteration& iteration);
 
-  // While it lives, Ctrl-C and SIGTERM end the program at once, with the exit code of a cancelled one: for stages that take long
-  // between two updates and have nothing on the disk.
+  // While it lives, Ctrl-C and SIGTERM end the program at once, with the exit code of a cancelled one: for stages that
+  // take long between two updates and have nothing on the disk.
   class LeavesAtOnce {
    public:
     LeavesAtOnce();

@@ -6,8 +6,8 @@
 
 #include "core/base/named_files.h"
 #include "core/project/journal.h"
-#include "core/volume/volume_files.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_files.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: the same thing in another format, chosen by the name of OUT.
+// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: the same thing in another format, chosen
+// by the name of OUT.
 #include <memory>
 
 #include "core/base/error.h"
@@ -8,12 +9,13 @@
 #include "core/cmd/convert_rig.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
-#include "core/deck/decks.h"
-#include "core/mesh/surface_files.h"
-#include "core/volume/grey_image.h"
-#include "core/volume/tissue_table.h"
-#include "core/volume/volume_files.h"
-#include "core/volume/volume_io.h"
+#include "core/export/exporter.h"
+#include "core/export/surface_files.h"
+#include "core/tissue/tissue_table.h"
+#include "core/volume_io/grey_image.h"
+#include "core/volume_io/volume_files.h"
+#include "core/volume_io/volume_format.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -23,27 +25,32 @@ struct Options {
   MaterialOptions material;
 };
 
-void write_as_deck(DeckFormat format, const VolumeFile& file, const Options& options) {
+void export_body(const Exporter& exporter, const VolumeFile& file, const Options& options, Progress& progress) {
   const TissueTable tissues = tissues_of(file, options.material.tissues);
   std::vector<std::string> warnings;
   std::vector<TissueMaterial> materials;
-  if (needs_frequency(format)) materials = materials_of(tissues, options.material, options.out);
+  if (exporter.needs_frequency) materials = materials_of(tissues, options.material, options.out);
   if (std::string text = stand_ins_text(materials); !text.empty()) warnings.push_back(std::move(text));
-  write_deck(file.volume, tissues, std::move(materials), options.material.frequency.value_or(0), options.out, warnings);
+  write_export(
+      exporter,
+      {file.volume, tissues, std::move(materials), options.material.frequency.value_or(0), nullptr, progress, warnings},
+      options.out);
   warn(warnings);
 }
 
 // Label volumes keep every value as it was; grey ones with fractions go as float.
 void convert_volume(const Options& options) {
-  const DeckFormat format = deck_format(options.out);
-  const bool is_surface = is_surface_path(options.out);
-  if (needs_frequency(format) && !options.material.frequency) materials_of({}, options.material, options.out);  // says what is missing
-  if (format == DeckFormat::None && !is_surface) check_writable(options.out);
-  else check_place(options.out);
+  const Exporter* exporter = exporter_for(options.out);
+  if (exporter && !exporter->takes_voxels)
+    throw Error("a volume has no mesh to write", options.out, "`limber resample --method fem --mesh-out` makes one");
+  if (exporter && exporter->needs_frequency && !options.material.frequency)
+    materials_of({}, options.material, options.out);  // says what is missing
+  if (exporter) check_place(options.out);
+  else check_writable(options.out);
   CommandProgress progress(options.progress);
   const VolumeSummary summary = summarize_volume(options.in);
   if (!summary.is_label) {
-    if (format != DeckFormat::None || is_surface) throw Error("this is no label volume", options.in, "give one whose voxels are labels");
+    if (exporter) throw Error("this is no label volume", options.in, "give one whose voxels are labels");
     const GreyVolume grey = read_grey_volume(options.in, progress);
     warn(grey.warnings);
     write_grey_volume(grey, options.out);
@@ -51,17 +58,23 @@ void convert_volume(const Options& options) {
   }
   VolumeFile file = read_volume(options.in, progress);
   warn(file.warnings);
-  if (format != DeckFormat::None || is_surface)
+  if (exporter) {
     require_labels(file.volume, tissues_of(file, options.material.tissues), options.in);
-  if (format != DeckFormat::None) return write_as_deck(format, file, options);
-  if (is_surface) return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
+    if (is_surface_path(options.out))  // which is also told in numbers
+      return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
+    return export_body(*exporter, file, options, progress);
+  }
   if (!options.material.tissues.empty()) file.tissues = tissues_of(file, options.material.tissues);
   write_volume(file.volume, options.out, file.tissues, file.type);
 }
 
 OptionFiles files_of_output(const std::string& name) {
   OptionFiles files{{}, files_written_as(name)};
-  for (const Path& beside : companions(deck_format(name), name)) files.written.push_back(beside);
+  try {
+    if (const Exporter* exporter = exporter_for(name)) files.written = files_exported_as(*exporter, name);
+  } catch (const Error&) {
+    // The conversion says what is wrong with the name.
+  }
   return files;
 }
 
@@ -74,12 +87,19 @@ void convert(const Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& app) {
-  auto* command = app.add_subcommand("convert", "a volume, rig or label table in another format, or a volume as surfaces or as what a simulation takes, by file name");
+  auto* command = app.add_subcommand("convert",
+                                     "a volume, rig or label table in another format, or a volume as surfaces or as "
+                                     "what a simulation takes, by file name");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
-  writes(command->add_option("OUT", options->out, "its extension says the format: volumes .nrrd .mha .nii.gz .txt ..., surfaces .obj .glb .stl .ply, simulations .xml (openEMS) .csxcad.h5 .gprmax.h5 .dat (ICRP 110)"), files_of_output)->required();
+  writes(
+      command->add_option("OUT", options->out,
+                          "its extension says the format: volumes " + writable_endings() + "; " + exporter_endings()),
+      files_of_output)
+      ->required();
   add_material_options(*command, options->material);
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
   command->callback([options] { convert(*options); });
 }
 

@@ -4,15 +4,16 @@
 #include <algorithm>
 
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bvh.h"
+#include "core/motion/bvh.h"
+#include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
 
 namespace {
 std::string extension_of(const Path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension;
 }
 }  // namespace

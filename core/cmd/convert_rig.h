@@ -6,7 +6,8 @@
 
 namespace limber::cmd {
 
-// A motion to a .bvh keeps its frames; to another name, and for any rig, the rest pose is written. Warnings go to stderr.
+// A motion to a .bvh keeps its frames; to another name, and for any rig, the rest pose is written. Warnings go to
+// stderr.
 void convert_rig_or_motion(const Path& in, const Path& out);
 
 }  // namespace limber::cmd

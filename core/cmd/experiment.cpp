@@ -26,7 +26,8 @@ struct Options {
 // i/n, counted from 1
 void read_shard(const std::string& text, StudyRun& run) {
   int number = 0, of = 0, end = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 || number < 1 || number > of)
+  if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 ||
+      number < 1 || number > of)
     throw Error("this is no shard", "--shard " + text, "write i/n with i from 1 to n, as in --shard 1/4");
   run.shard = number - 1;
   run.shards = of;
@@ -48,24 +49,32 @@ void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of,
 void run(const Options& options, const StartPictures& pictures) {
   CommandProgress progress(options.run.progress);
   if (options.study != "arm" && !options.folder.empty())
-    throw Error("only the arm's study takes a folder", options.folder, "write: limber experiment arm " + options.folder + " -o " + options.out);
+    throw Error("only the arm's study takes a folder", options.folder,
+                "write: limber experiment arm " + options.folder + " -o " + options.out);
   Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
   if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");
   StudyRun run{.out = options.out, .threads = options.run.threads};
   if (!options.shard.empty()) read_shard(options.shard, run);
-  run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) { tell_cell(study, outcome, done, of, was_there, left); };
+  run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) {
+    tell_cell(study, outcome, done, of, was_there, left);
+  };
   const std::vector<CellOutcome> outcomes = run_study(study, run, progress);
 
   std::size_t failed = 0;
   for (const CellOutcome& outcome : outcomes) failed += !outcome.failure.empty();
   if (run.shards == 1) {
-    const std::string command = "limber experiment " + options.study + (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out + (options.methods.empty() ? "" : " --methods " + joined(options.methods));
+    const std::string command = "limber experiment " + options.study +
+                                (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out +
+                                (options.methods.empty() ? "" : " --methods " + joined(options.methods));
     write_results(study, outcomes, options.out, command, pictures, progress);
-    print("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "cells.json").c_str());
+    print("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(),
+          (Path(options.out) / "cells.json").c_str());
   } else {
     tell("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
   }
-  if (failed) throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out, "see the lines above, then run the same again: it computes only what is missing");
+  if (failed)
+    throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out,
+                "see the lines above, then run the same again: it computes only what is missing");
 }
 
 OptionFiles files_of_folder(const std::string& folder) {
@@ -76,12 +85,25 @@ OptionFiles files_of_folder(const std::string& folder) {
 }  // namespace
 
 void add_experiment(CLI::App& app, const StartPictures& pictures) {
-  auto* command = app.add_subcommand("experiment", "a study: poses x techniques x spacings, with tables and a report; what is done is kept, run it again to go on");
+  auto* command = app.add_subcommand(
+      "experiment",
+      "a study: poses x techniques x spacings, with tables and a report; what is done is kept, run it again to go on");
   auto options = std::make_shared<Options>();
-  command->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")->required();
-  command->add_option("DIR", options->folder, "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
-  writes(command->add_option("-o,--output", options->out, "folder for cells.csv, cells.json, report.html and all that was computed; made if absent"), files_of_folder)->required();
-  command->add_option("--methods", options->methods, "lbs, dqs, fem, fem-contact, mix, and each with -mass-exact behind it (default: as the description says; else the first four)")->delimiter(',')->type_name("M,M");
+  command
+      ->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")
+      ->required();
+  command->add_option("DIR", options->folder,
+                      "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
+  writes(command->add_option("-o,--output", options->out,
+                             "folder for cells.csv, cells.json, report.html and all that was computed; made if absent"),
+         files_of_folder)
+      ->required();
+  command
+      ->add_option("--methods", options->methods,
+                   "lbs, dqs, fem, fem-contact, mix, and each with -mass-exact behind it (default: as the description "
+                   "says; else the first four)")
+      ->delimiter(',')
+      ->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
   add_run_options(*command, options->run);
   command->callback([options, pictures] { run(*options, pictures); });

@@ -9,7 +9,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
-#include "core/pose/gltf_export.h"
+#include "core/export/gltf.h"
 #include "core/skin/weights_io.h"
 
 namespace limber::cmd {
@@ -24,7 +24,8 @@ struct Options {
   GltfSettings settings;
 };
 
-std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig, const std::vector<std::shared_ptr<const Clip>>& before) {
+std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig,
+                                         const std::vector<std::shared_ptr<const Clip>>& before) {
   auto motion = std::make_shared<const Motion>(read_motion(file, options.up));
   if (motion->frame_count == 0) throw Error("this motion has no frames", file, "choose another file");
   Clip clip = clip_of(motion, unique_clip_name(before, std::filesystem::path(file).stem().string()));
@@ -42,23 +43,36 @@ void export_gltf(const Options& options) {
   warn(weights.warnings);
   std::vector<std::shared_ptr<const Clip>> clips;
   for (const std::string& file : options.motions) clips.push_back(clip_of_file(options, file, body.rig, clips));
-  write_glb({body.file.volume, body.tissues, body.rig, weights.weights}, clips, options.output, options.settings, progress);
+  write_glb({body.file.volume, body.tissues, body.rig, weights.weights}, clips, options.output, options.settings,
+            progress);
 }
 }  // namespace
 
 void add_export_gltf(CLI::App& app) {
-  auto* command = app.add_subcommand("export-gltf", "the body's surface, skeleton and weights, and motions as animations, in one .glb");
+  auto* command = app.add_subcommand(
+      "export-gltf", "the body's surface, skeleton and weights, and motions as animations, in one .glb");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd, or a folder with Bender's weights")->required();
-  auto* motion = command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")->type_name("F.bvh")->expected(1)->take_all();
+  auto* motion =
+      command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")
+          ->type_name("F.bvh")
+          ->expected(1)
+          ->take_all();
   add_up_option(*command, options->up, motion);
-  command->add_option("--map", options->map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion);
+  command->add_option("--map", options->map, "which joint moves which bone (default: by names)")
+      ->type_name("M.json")
+      ->needs(motion);
   add_rest_options(*command, options->rests, motion, "");
   command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
-  command->add_option("--step", options->settings.step, "mm between the surface's points (default: 1/400 of the longest side)")->type_name("MM")->check(CLI::PositiveNumber);
+  command
+      ->add_option("--step", options->settings.step,
+                   "mm between the surface's points (default: 1/400 of the longest side)")
+      ->type_name("MM")
+      ->check(CLI::PositiveNumber);
   writes(command->add_option("-o,--output", options->output, "OUT.glb"))->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
   command->callback([options] { export_gltf(*options); });
 }
 

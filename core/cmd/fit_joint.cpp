@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber fit-joint VOLUME --rig RIG --bone B [--tissues T] [--bones L,L] [--range 0,90] -o RIG2
-#include "core/rig/fit_joint.h"
+#include "core/autorig/joint_axis_fit.h"
 
 #include <cstdio>
 #include <memory>
@@ -11,7 +11,7 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
-#include "core/rig/armature_io.h"
+#include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
 
@@ -40,20 +40,24 @@ void run(const Options& options) {
   write_armature(fitted.armature, options.output);
 
   print("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
-              settings.minimum_degrees, settings.maximum_degrees, fitted.moved_mm, fitted.turned_degrees);
+        settings.minimum_degrees, settings.maximum_degrees, fitted.moved_mm, fitted.turned_degrees);
   print("bone in bone at the worst angle: %lld voxels before, %lld after\n",
-              static_cast<long long>(fitted.overlap_before), static_cast<long long>(fitted.overlap_after));
+        static_cast<long long>(fitted.overlap_before), static_cast<long long>(fitted.overlap_after));
   if (fitted.overlap_after)
-    warn("joint " + options.bone + ": " + std::to_string(fitted.overlap_after) + " bone voxels still collide after fitting its axis");
+    warn("joint " + options.bone + ": " + std::to_string(fitted.overlap_after) +
+         " bone voxels still collide after fitting its axis");
 }
 }  // namespace
 
 void add_fit_joint(CLI::App& app) {
-  auto* command = app.add_subcommand("fit-joint", "moves a joint's axis so that bones do not collide, and stores it as a hinge");
+  auto* command =
+      app.add_subcommand("fit-joint", "moves a joint's axis so that bones do not collide, and stores it as a hinge");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
-  command->add_option("--range", options->range, "angles in degrees that must be free, e.g. 0,90")->delimiter(',')->expected(2);
+  command->add_option("--range", options->range, "angles in degrees that must be free, e.g. 0,90")
+      ->delimiter(',')
+      ->expected(2);
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)"))->required();
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });

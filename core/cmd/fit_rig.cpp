@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber fit-rig VOLUME --template NAME|RIG|auto [--tissues T] [--bones L,L] -o RIG [--report R.json]
-#include "core/rig/tissue_placing.h"
+#include "core/autorig/place_in_tissue.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -13,10 +13,10 @@
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/templates.h"
-#include "core/volume/grey_image.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/rig_io/rig_templates.h"
+#include "core/volume_io/grey_image.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -42,7 +42,8 @@ Armature wanted_rig(const std::string& name, const VolumeFile& file, Progress& p
 }
 
 nlohmann::ordered_json report_of(const AutoFit& fitted) {
-  nlohmann::ordered_json report{{"schema", "limber-fit/1"}, {"misfit_mm", fitted.misfit_mm}, {"share_in_tissue", fitted.check.whole}};
+  nlohmann::ordered_json report{
+      {"schema", "limber-fit/1"}, {"misfit_mm", fitted.misfit_mm}, {"share_in_tissue", fitted.check.whole}};
   for (size_t b = 0; b < fitted.joints.size(); ++b) {
     const glm::dvec3& head = fitted.armature.bones[b].head;
     report["joints"].push_back({{"name", fitted.armature.bones[b].name},
@@ -53,7 +54,10 @@ nlohmann::ordered_json report_of(const AutoFit& fitted) {
                                 {"share_in_tissue", fitted.check.share[b]}});
   }
   for (const auto& leaving : fitted.check.leaving)
-    report["leaving"].push_back({{"bone", fitted.armature.bones[leaving.bone].name}, {"from", leaving.from}, {"to", leaving.to}, {"place", {leaving.place.x, leaving.place.y, leaving.place.z}}});
+    report["leaving"].push_back({{"bone", fitted.armature.bones[leaving.bone].name},
+                                 {"from", leaving.from},
+                                 {"to", leaving.to},
+                                 {"place", {leaving.place.x, leaving.place.y, leaving.place.z}}});
   report["warnings"] = fitted.warnings;
   return report;
 }
@@ -61,8 +65,9 @@ nlohmann::ordered_json report_of(const AutoFit& fitted) {
 void print_fit(const AutoFit& fitted) {
   print("%-24s %-14s %10s %10s %10s\n", "joint", "found by", "confidence", "may be off", "in tissue");
   for (size_t b = 0; b < fitted.joints.size(); ++b)
-    print("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", one_line(fitted.armature.bones[b].name).c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
-                100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
+    print("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", one_line(fitted.armature.bones[b].name).c_str(),
+          std::string(to_string(fitted.joints[b].how)).c_str(), 100 * fitted.joints[b].confidence,
+          fitted.joints[b].error, 100 * fitted.check.share[b]);
   if (fitted.misfit_mm > 0) print("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
   print("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
 }
@@ -92,12 +97,18 @@ void run(const Options& options) {
 }  // namespace
 
 void add_fit_rig(CLI::App& app) {
-  auto* command = app.add_subcommand("fit-rig", "lays a rig into a volume by itself, joints found from named bones, bone, or the body's shape");
+  auto* command = app.add_subcommand(
+      "fit-rig", "lays a rig into a volume by itself, joints found from named bones, bone, or the body's shape");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
-  command->add_option("--template", options->rig, "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")->required();
+  command
+      ->add_option("--template", options->rig,
+                   "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")
+      ->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->bones, "labels that are bone, as in the file")->delimiter(',')->type_name("L,L");
+  command->add_option("--bones", options->bones, "labels that are bone, as in the file")
+      ->delimiter(',')
+      ->type_name("L,L");
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)"))->required();
   writes(command->add_option("--report", options->report, "how each joint was found, as JSON"));
   add_run_options(*command, options->run);

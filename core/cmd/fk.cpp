@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json]
 //
-// Where every joint is. Of a BVH: its own axes and units, global rotations of the joints, and the places of the End Sites.
-// Of a rig (or a BVH that is given a pose): world LPS mm, posed heads and tails, and the rotation of each bone from rest
-// to posed, which is the identity for a bone that nothing moves.
+// Where every joint is. Of a BVH: its own axes and units, global rotations of the joints, and the places of the End
+// Sites. Of a rig (or a BVH that is given a pose): world LPS mm, posed heads and tails, and the rotation of each bone
+// from rest to posed, which is the identity for a bone that nothing moves.
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -13,8 +13,8 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bvh.h"
+#include "core/motion/bvh.h"
+#include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
 
@@ -32,7 +32,10 @@ Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 template <class Joint>
 Json joint_json(const std::vector<Joint>& joints, size_t i, const RigidTransform& world, const glm::dvec3& position) {
   const glm::dquat q = world.rotation.w < 0 ? -world.rotation : world.rotation;
-  Json one = {{"name", joints[i].name}, {"parent", nullptr}, {"position", json_of(position)}, {"rotation_wxyz", {q.w, q.x, q.y, q.z}}};
+  Json one = {{"name", joints[i].name},
+              {"parent", nullptr},
+              {"position", json_of(position)},
+              {"rotation_wxyz", {q.w, q.x, q.y, q.z}}};
   if (joints[i].parent >= 0) one["parent"] = joints[joints[i].parent].name;
   return one;
 }
@@ -41,7 +44,8 @@ Json fk_of_motion(const Motion& motion, std::optional<int> frame, const std::str
   const int wanted = frame.value_or(motion.frame_count > 0 ? 0 : -1);
   if (frame && wanted >= motion.frame_count)
     throw Error("there is no frame " + std::to_string(wanted), where,
-                motion.frame_count > 0 ? "choose a frame from 0 to " + std::to_string(motion.frame_count - 1) : "leave --frame out: this is a rig");
+                motion.frame_count > 0 ? "choose a frame from 0 to " + std::to_string(motion.frame_count - 1)
+                                       : "leave --frame out: this is a rig");
   const auto world = forward_kinematics(motion, wanted);
   Json joints = Json::array();
   for (size_t j = 0; j < world.size(); ++j) {
@@ -66,7 +70,8 @@ void print_table(const Json& joints) {
   for (const Json& joint : joints) {
     const std::string name = joint["name"];
     const std::vector<double> p = joint["position"], q = joint["rotation_wxyz"];
-    print("%-28s %10.3f%10.3f%10.3f   %8.5f %8.5f %8.5f %8.5f\n", one_line(name).c_str(), p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+    print("%-28s %10.3f%10.3f%10.3f   %8.5f %8.5f %8.5f %8.5f\n", one_line(name).c_str(), p[0], p[1], p[2], q[0], q[1],
+          q[2], q[3]);
   }
 }
 
@@ -75,7 +80,8 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 // {"frames": [{"joints": [...]}, ...]}, a line for each frame.
 void print_frames(int count, const std::function<Json(int)>& joints_at) {
   print("{\"frames\":[");
-  for (int frame = 0; frame < count; ++frame) print_json(text_of({{"joints", joints_at(frame)}}) + (frame + 1 < count ? ",\n" : ""));
+  for (int frame = 0; frame < count; ++frame)
+    print_json(text_of({{"joints", joints_at(frame)}}) + (frame + 1 < count ? ",\n" : ""));
   print("]}\n");
 }
 
@@ -87,14 +93,16 @@ void run_fk(const FkOptions& options) {
   if (extension == ".bvh" && !wants_pose(options.pose)) {
     const Motion motion = read_bvh(path);
     warn(motion.warnings);
-    if (options.all_frames) return print_frames(motion.frame_count, [&](int frame) { return fk_of_motion(motion, frame, options.file); });
+    if (options.all_frames)
+      return print_frames(motion.frame_count, [&](int frame) { return fk_of_motion(motion, frame, options.file); });
     joints = fk_of_motion(motion, options.pose.frame, options.file);
   } else {
     const ArmatureFile rig = read_armature_file(path);
     warn(rig.warnings);
     if (options.all_frames) {
       const auto poses = read_all_poses(options.pose, rig.armature);
-      return print_frames(static_cast<int>(poses.size()), [&](int frame) { return fk_of_rig(rig.armature, poses[frame]); });
+      return print_frames(static_cast<int>(poses.size()),
+                          [&](int frame) { return fk_of_rig(rig.armature, poses[frame]); });
     }
     joints = fk_of_rig(rig.armature, read_pose_options(options.pose, rig.armature));
   }
@@ -106,10 +114,16 @@ void run_fk(const FkOptions& options) {
 void add_fk(CLI::App& app) {
   auto* command = app.add_subcommand("fk", "world positions and rotations of every joint of a rig or a motion");
   auto options = std::make_shared<FkOptions>();
-  command->add_option("FILE", options->file, "a rig (posed, LPS mm, rotations from rest) or a BVH (its own axes and units)")->required();
-  auto* json = command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
+  command
+      ->add_option("FILE", options->file,
+                   "a rig (posed, LPS mm, rotations from rest) or a BVH (its own axes and units)")
+      ->required();
+  auto* json =
+      command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
   add_pose_options(*command, options->pose);
-  command->add_flag("--all-frames", options->all_frames, "every frame of the motion: {\"frames\": [{\"joints\": ...}]}")->needs(json)->excludes("--frame");
+  command->add_flag("--all-frames", options->all_frames, "every frame of the motion: {\"frames\": [{\"joints\": ...}]}")
+      ->needs(json)
+      ->excludes("--frame");
   command->callback([options] { run_fk(*options); });
 }
 

@@ -19,8 +19,7 @@ struct FrameRange {
 FrameRange frame_range_of(const std::string& request) {
   FrameRange range;
   int read = 0;
-  const int fields =
-      std::sscanf(request.c_str(), "%d:%d%n:%d%n", &range.first, &range.last, &read, &range.step, &read);
+  const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &range.first, &range.last, &read, &range.step, &read);
   if (fields < 2 || std::size_t(read) != request.size() || range.first < 0 || range.last < range.first ||
       range.step < 1)
     throw Error("these are no frames", "--frames " + request,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a command is told whether joints glide, so that bones do not enter each other: [--glide off|voxel|joint|MM].
 //   joint  each joint by up to 5 percent of its shorter bone
-//   voxel  the same, but no bone further than a voxel's longest edge from where the pose puts it, by all shifts above it
+//   voxel  the same, but no bone further than a voxel's longest edge from where the pose puts it, by all shifts above
+//   it
 //          together
 //   MM     each joint by up to that
 // Poses by the names of joints and by hinges say at which angles joints stand: there it is `joint` where nothing is

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber info FILE [--json]: what a file is. Each kind is described once, as JSON; without --json the same is shown as text.
+// limber info FILE [--json]: what a file is. Each kind is described once, as JSON; without --json the same is shown as
+// text.
 #include <cmath>
 #include <memory>
 
@@ -11,9 +12,9 @@
 #include "core/cmd/info_project.h"
 #include "core/cmd/info_rig.h"
 #include "core/project/project_io.h"
-#include "core/volume/tissue_table.h"
-#include "core/volume/volume_io.h"
-#include "core/volume/volume_reader.h"
+#include "core/tissue/tissue_table.h"
+#include "core/volume_io/volume_io.h"
+#include "core/volume_io/volume_reader.h"
 
 namespace limber::cmd {
 
@@ -31,7 +32,9 @@ Json as_json(double value) {
 // What such files are parsed by, and what keeps it from doing harm.
 Json describe_reader() {
   const Protection reader = reader_protection();
-  return {{"own_process", reader.own_process}, {"system_calls_filtered", reader.system_calls}, {"landlock", reader.landlock}};
+  return {{"own_process", reader.own_process},
+          {"system_calls_filtered", reader.system_calls},
+          {"landlock", reader.landlock}};
 }
 
 Json describe_volume(const Path& path) {
@@ -74,7 +77,8 @@ Json describe_tissues(const Path& path) {
 Json describe_weights(const Path& path) {
   const WeightsSummary weights = summarize_weights(path);
   const Json bones = Json::parse(checked_json(weights.bones, path.string()), nullptr, false);
-  if (!bones.is_array()) throw Error("the weights name no bones", path.string(), "make them anew with `limber weights`");
+  if (!bones.is_array())
+    throw Error("the weights name no bones", path.string(), "make them anew with `limber weights`");
   return {{"kind", "weights"}, {"bones", bones}, {"voxels", weights.voxels}};
 }
 
@@ -94,7 +98,10 @@ void add_info(CLI::App& app) {
   };
   auto* command = app.add_subcommand("info", "what a file is: header, labels, bones, joints");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "a volume, a folder with DICOM images, a rig, motion, weights, mesh, label table or project")->required();
+  command
+      ->add_option("FILE", options->file,
+                   "a volume, a folder with DICOM images, a rig, motion, weights, mesh, label table or project")
+      ->required();
   command->add_flag("--json", options->json, "as JSON");
   command->callback([options] {
     print_description(describe(options->file).dump(-1, ' ', false, Json::error_handler_t::replace), options->json);

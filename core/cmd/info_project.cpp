@@ -21,12 +21,14 @@ Json json_of(const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   return {{"size", {size.x, size.y, size.z}},
           {"spacing", json_of(volume.grid.spacing)},
-          {"tissue_voxels", volume.voxels.size() - static_cast<std::size_t>(std::count(volume.voxels.begin(), volume.voxels.end(), Label{0}))}};
+          {"tissue_voxels", volume.voxels.size() - static_cast<std::size_t>(std::count(
+                                                       volume.voxels.begin(), volume.voxels.end(), Label{0}))}};
 }
 
 Json json_of(const TissueTable& table) {
   Json tissues = Json::array();
-  for (const Tissue& tissue : table.tissues) tissues.push_back({{"value", tissue.file_value}, {"name", tissue.name}, {"kind", to_string(tissue.kind)}});
+  for (const Tissue& tissue : table.tissues)
+    tissues.push_back({{"value", tissue.file_value}, {"name", tissue.name}, {"kind", to_string(tissue.kind)}});
   return tissues;
 }
 
@@ -44,14 +46,18 @@ Json turned_bones(const Document& document) {
 }
 
 bool is_stale(const Result& result, const Document& document) {
-  return result.from_volume != document.volume || result.from_tissues != document.tissues || result.from_armature != document.armature ||
-         result.from_weights != document.weights || result.from_pose != document.pose || result.from_seams != document.seams || result.from_bone_map != document.bone_map;
+  return result.from_volume != document.volume || result.from_tissues != document.tissues ||
+         result.from_armature != document.armature || result.from_weights != document.weights ||
+         result.from_pose != document.pose || result.from_seams != document.seams ||
+         result.from_bone_map != document.bone_map;
 }
 
 Json results_of(const Document& document) {
   Json results = Json::array();
   for (const auto& result : document.results)
-    results.push_back({{"name", result->name}, {"method", result->method}, {"state", is_stale(*result, document) ? "stale" : "current"}});
+    results.push_back({{"name", result->name},
+                       {"method", result->method},
+                       {"state", is_stale(*result, document) ? "stale" : "current"}});
   return results;
 }
 }  // namespace
@@ -61,14 +67,20 @@ std::string describe_project(const Path& file) {
   warn(project.warnings);
   const ProjectSummary summary = summarize_project(file);
   const Document& document = project.document;
-  Json json = {{"kind", "project"}, {"program", summary.program}, {"file_bytes", summary.file_bytes}, {"chunks", summary.chunks}};
+  Json json = {{"kind", "project"},
+               {"program", summary.program},
+               {"file_bytes", summary.file_bytes},
+               {"chunks", summary.chunks}};
   if (document.volume) json["volume"] = json_of(*document.volume);
   if (document.volume_type) json["volume_type"] = document.volume_type->format + " " + document.volume_type->voxel_type;
   if (document.tissues) json["tissues"] = json_of(*document.tissues);
   if (document.armature) json["bones"] = names_of(*document.armature);
-  if (document.weights) json["weights"] = {{"voxels", document.weights->size()}, {"bones", document.weights->bones().size()}};
+  if (document.weights)
+    json["weights"] = {{"voxels", document.weights->size()}, {"bones", document.weights->bones().size()}};
   if (document.layers)
-    for (const auto& layer : document.layers->layers) json["weights"]["layers"].push_back({{"name", layer->name}, {"opacity", layer->opacity}, {"visible", layer->visible}});
+    for (const auto& layer : document.layers->layers)
+      json["weights"]["layers"].push_back(
+          {{"name", layer->name}, {"opacity", layer->opacity}, {"visible", layer->visible}});
   if (document.seams) json["seams"] = {{"faces", document.seams->size()}};
   if (document.bone_map) json["bone_map"] = *document.bone_map;
   if (document.pose) json["posed_bones"] = turned_bones(document);

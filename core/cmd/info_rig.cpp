@@ -8,10 +8,10 @@
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bvh.h"
-#include "core/rig/gltf.h"
-#include "core/rig/obj.h"
+#include "core/motion/bvh.h"
+#include "core/rig_io/gltf_rig.h"
+#include "core/rig_io/obj_summary.h"
+#include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
 
@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 
 std::string extension_of(const Path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension;
 }
 
@@ -47,7 +48,8 @@ Json json_of(const Motion& motion) {
   constexpr const char* kChannels[] = {"Xposition", "Yposition", "Zposition", "Xrotation", "Yrotation", "Zrotation"};
   Json joints = Json::array();
   for (const BvhJoint& joint : motion.joints) {
-    Json one = {{"name", joint.name}, {"parent", nullptr}, {"offset", json_of(joint.offset)}, {"channels", Json::array()}};
+    Json one = {
+        {"name", joint.name}, {"parent", nullptr}, {"offset", json_of(joint.offset)}, {"channels", Json::array()}};
     if (joint.parent >= 0) one["parent"] = motion.joints[joint.parent].name;
     for (BvhChannel channel : joint.channels) one["channels"].push_back(kChannels[static_cast<int>(channel)]);
     if (joint.end_site) one["end_site"] = json_of(*joint.end_site);
@@ -64,31 +66,48 @@ Json describe_motion(const Path& file) {
   const Motion motion = read_bvh(file);
   warn(motion.warnings);
   if (motion.frame_count == 0) return describe_rig(armature_of(motion), "BVH");
-  return {{"kind", "motion"}, {"format", "BVH"}, {"joints", json_of(motion)}, {"channels", motion.channel_count},
-          {"frames", motion.frame_count}, {"frame_time", motion.frame_time}};
+  return {{"kind", "motion"},
+          {"format", "BVH"},
+          {"joints", json_of(motion)},
+          {"channels", motion.channel_count},
+          {"frames", motion.frame_count},
+          {"frame_time", motion.frame_time}};
 }
 
 Json describe_gltf(const Path& file) {
   const GltfSummary gltf = parse_gltf(read_file(file), extension_of(file) == ".glb", file.string());
   warn(gltf.warnings);
   const bool is_rig = !gltf.armature.bones.empty();
-  Json json = {{"kind", is_rig ? "rig" : "mesh"}, {"format", "glTF"}, {"nodes", gltf.nodes}, {"meshes", gltf.meshes},
-               {"vertices", gltf.vertices}, {"triangles", gltf.triangles}, {"skins", gltf.skins},
-               {"joints", gltf.armature.bones.size()}, {"animations", gltf.animations}};
+  Json json = {{"kind", is_rig ? "rig" : "mesh"},
+               {"format", "glTF"},
+               {"nodes", gltf.nodes},
+               {"meshes", gltf.meshes},
+               {"vertices", gltf.vertices},
+               {"triangles", gltf.triangles},
+               {"skins", gltf.skins},
+               {"joints", gltf.armature.bones.size()},
+               {"animations", gltf.animations}};
   if (is_rig) json["bones"] = json_of(gltf.armature);
   return json;
 }
 
 Json describe_obj(const Path& file) {
   const ObjSummary obj = read_obj_summary(file);
-  return {{"kind", "mesh"}, {"format", "OBJ"}, {"vertices", obj.vertices}, {"faces", obj.faces}, {"groups", obj.groups},
-          {"lower", json_of(obj.lower)}, {"upper", json_of(obj.upper)}};
+  return {{"kind", "mesh"},
+          {"format", "OBJ"},
+          {"vertices", obj.vertices},
+          {"faces", obj.faces},
+          {"groups", obj.groups},
+          {"lower", json_of(obj.lower)},
+          {"upper", json_of(obj.upper)}};
 }
 
 // What "bones" is in our JSON: a list in a rig, a table of rotations in a pose. Others have such a table too.
 enum class JsonFile { Rig, Pose, Other };
 
-bool is_rotation(const nlohmann::json& json) { return json.is_object() && (json.contains("rotation_wxyz") || json.contains("axis")); }
+bool is_rotation(const nlohmann::json& json) {
+  return json.is_object() && (json.contains("rotation_wxyz") || json.contains("axis"));
+}
 
 JsonFile kind_of_json(const Path& file) {
   const auto json = nlohmann::json::parse(checked_json(read_file(file), file.string()), nullptr, false);
@@ -124,6 +143,8 @@ bool is_rig_or_motion(const Path& file) {
   return extension == ".json" && std::filesystem::is_regular_file(file) && kind_of_json(file) != JsonFile::Other;
 }
 
-std::string describe_rig_or_motion(const Path& file) { return describe(file).dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string describe_rig_or_motion(const Path& file) {
+  return describe(file).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 }  // namespace limber::cmd

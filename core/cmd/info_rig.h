@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What `info` says of rigs, motions, poses and models, as JSON text:
-//   rig     {"kind": "rig", "format", "bones": [{"name", "parent": name | null, "head": [3], "tail": [3], "roll"?, "limits"?}]}
-//   motion  {"kind": "motion", "format", "joints": [{"name", "parent", "offset": [3], "channels": [names], "end_site"?}],
+//   rig     {"kind": "rig", "format", "bones": [{"name", "parent": name | null, "head": [3], "tail": [3], "roll"?,
+//   "limits"?}]} motion  {"kind": "motion", "format", "joints": [{"name", "parent", "offset": [3], "channels": [names],
+//   "end_site"?}],
 //            "channels", "frames", "frame_time"}; a BVH without frames is a rig
 //   pose    {"kind": "pose", "bones": [names]}
 //   model   {"kind": "rig" with bones, else "mesh", "format", counts of what it holds}

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber job JOB.json: what a worker or a cluster node runs. A job is a command written down: its keys are the command's
-// options, so that a job can do what the command line can, and the same way.
-// It resamples, or makes what a resampling needs: "prepare", "weights", "phantom" (whose "subject" stands in the volume's place).
-//   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output": "posed.nrrd"}
+// limber job JOB.json: what a worker or a cluster node runs. A job is a command written down: its keys are the
+// command's options, so that a job can do what the command line can, and the same way. It resamples, or makes what a
+// resampling needs: "prepare", "weights", "phantom" (whose "subject" stands in the volume's place).
+//   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output":
+//   "posed.nrrd"}
 //   {..., "pose_name": "sit", "joints": ["left elbow flexion=30"], ...}
-// Lists repeat an option (bones, labels: joined by commas); true sets a flag; "_" is as good as "-" in a key. Paths are relative to
-// the job's folder.
+// Lists repeat an option (bones, labels: joined by commas); true sets a flag; "_" is as good as "-" in a key. Paths are
+// relative to the job's folder.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -34,7 +35,8 @@ constexpr std::uint64_t kLargestJob = 1 << 20;
 std::string text_of(const Json& value, const std::string& key, const Path& job) {
   if (value.is_string()) {
     const std::string text = value.get<std::string>();
-    if (text.find('\0') != std::string::npos) throw Error("a setting holds a zero byte", job.string() + ", " + key, "take it out");
+    if (text.find('\0') != std::string::npos)
+      throw Error("a setting holds a zero byte", job.string() + ", " + key, "take it out");
     return text;
   }
   if (value.is_number()) return value.dump();
@@ -69,14 +71,17 @@ std::vector<std::string> words_of(const Json& job, const Path& path) {
 
 Json read_job(const Path& path) {
   const Json job = Json::parse(checked_json(read_file(path, kLargestJob), path.string()), nullptr, false);
-  if (!job.is_object()) throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
+  if (!job.is_object())
+    throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
   const auto require = [&](const char* key) {
     if (!job.contains(key) || !job[key].is_string())
-      throw Error(std::string("the job has no \"") + key + "\"", path.string(), "add it: \"command\": \"resample\", \"volume\": FILE");
+      throw Error(std::string("the job has no \"") + key + "\"", path.string(),
+                  "add it: \"command\": \"resample\", \"volume\": FILE");
   };
   require("command");
   if (!kCommands.contains(job["command"].get<std::string>()))
-    throw Error("a job cannot run this command", path.string() + ", " + job["command"].get<std::string>(), "use \"command\": \"resample\"");
+    throw Error("a job cannot run this command", path.string() + ", " + job["command"].get<std::string>(),
+                "use \"command\": \"resample\"");
   require(subject_of(job));
   return job;
 }
@@ -116,9 +121,14 @@ void run(const Options& options) {
 void add_job(CLI::App& app) {
   auto* command = app.add_subcommand("job", "a resampling, or what one needs, described in a file");
   auto options = std::make_shared<Options>();
-  command->add_option("JOB", options->file, "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
-  command->add_option("--memory-limit", options->memory_limit, "MB of memory it may take")->check(CLI::Range(1, 1 << 30));
+  command
+      ->add_option("JOB", options->file,
+                   "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")
+      ->required();
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
+  command->add_option("--memory-limit", options->memory_limit, "MB of memory it may take")
+      ->check(CLI::Range(1, 1 << 30));
   command->add_flag("--yield", options->yields, "takes of the machine what all others leave");
   command->add_option("--parent", options->parent, "the process that it must not outlive");
   command->callback([options] { run(*options); });

@@ -7,9 +7,9 @@
 #include "core/base/parallel.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -40,17 +40,21 @@ void make_phantom(const Options& options) {
 
 OptionFiles files_of_folder(const std::string& folder) {
   OptionFiles files;
-  for (const char* name : {"volume.nrrd", "tissues.json", "rig.json", "motion.bvh"}) files.written.push_back(Path(folder) / name);
+  for (const char* name : {"volume.nrrd", "tissues.json", "rig.json", "motion.bvh"})
+    files.written.push_back(Path(folder) / name);
   return files;
 }
 }  // namespace
 
 void add_phantom(CLI::App& app) {
-  auto* command = app.add_subcommand("phantom", "makes a procedural sample: volume.nrrd, tissues.json, rig.json, motion.bvh");
+  auto* command =
+      app.add_subcommand("phantom", "makes a procedural sample: volume.nrrd, tissues.json, rig.json, motion.bvh");
   auto options = std::make_shared<Options>();
   command->add_option("SUBJECT", options->subject, "arm or body")->required()->check(CLI::IsMember({"arm", "body"}));
   command->add_option("--spacing", options->spacing, "size of a voxel in mm, 0.5 to 10 (default: arm 2, body 4)");
-  writes(command->add_option("-o,--output", options->folder, "folder for the four files; made if absent"), files_of_folder)->required();
+  writes(command->add_option("-o,--output", options->folder, "folder for the four files; made if absent"),
+         files_of_folder)
+      ->required();
   add_run_options(*command, options->run);
   command->callback([options] { make_phantom(*options); });
 }

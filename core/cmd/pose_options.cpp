@@ -5,10 +5,10 @@
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/up_axis.h"
 #include "core/pose/flex_request.h"
 #include "core/pose/pose_io.h"
-#include "core/rig/motion_edit.h"
-#include "core/rig/up_axis.h"
 
 namespace limber::cmd {
 
@@ -27,7 +27,8 @@ void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& opt
 // Of one frame, or of all.
 std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
   const Motion motion = read_motion(options.motion, options.up);
-  RetargetMap map = options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
+  RetargetMap map =
+      options.map.empty() ? match_by_names(motion, armature) : read_retarget_map(options.map, motion, armature);
   take_over(options.rests, map);
   const Retarget retarget(motion, armature, map, {.travel = options.root_motion ? Travel::Free : Travel::Locked});
   if (frame) return {retarget.at(*frame)};
@@ -38,8 +39,11 @@ std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& ar
 }  // namespace
 
 void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion) {
-  command.add_option("--up", up, "the axis that points up in the motion's file; auto: by how its body stands")->type_name("y|z|auto")
-      ->check(CLI::IsMember({"y", "z", "auto"}))->needs(motion)->group(motion->get_group());
+  command.add_option("--up", up, "the axis that points up in the motion's file; auto: by how its body stands")
+      ->type_name("y|z|auto")
+      ->check(CLI::IsMember({"y", "z", "auto"}))
+      ->needs(motion)
+      ->group(motion->get_group());
 }
 
 Motion read_motion(const std::string& file, const std::string& up) {
@@ -53,8 +57,14 @@ Motion read_motion(const std::string& file, const std::string& up) {
 
 void add_rest_options(CLI::App& command, RestWords& words, CLI::Option* needed, const std::string& group) {
   const std::string which = ": T, A, anatomical, or file for as it lies (default: the map's)";
-  command.add_option("--motion-rest", words.motion, "what the motion's rest pose stands for" + which)->type_name("POSE")->needs(needed)->group(group);
-  command.add_option("--rig-rest", words.rig, "what the rig's rest pose stands for" + which)->type_name("POSE")->needs(needed)->group(group);
+  command.add_option("--motion-rest", words.motion, "what the motion's rest pose stands for" + which)
+      ->type_name("POSE")
+      ->needs(needed)
+      ->group(group);
+  command.add_option("--rig-rest", words.rig, "what the rig's rest pose stands for" + which)
+      ->type_name("POSE")
+      ->needs(needed)
+      ->group(group);
 }
 
 void take_over(const RestWords& words, RetargetMap& map) {
@@ -66,12 +76,20 @@ CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI:
   std::string names;
   for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
   auto* name = command.add_option("--pose-name", request.name, "pose of any body, by its joints: " + names)
-                   ->type_name("NAME")->excludes(pose)->group(pose->get_group());
+                   ->type_name("NAME")
+                   ->excludes(pose)
+                   ->group(pose->get_group());
   // An empty name would be no pose, in silence.
-  name->check([](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
-  command.add_option("--joint", request.joints, "angle of a joint from the anatomical position, over the pose (repeatable): "
-                                                "\"left hip flexion=90\", \"knees flexion=60\"")
-      ->type_name("\"JOINT MOTION=DEG\"")->expected(1)->take_all()->group(pose->get_group());
+  name->check(
+      [](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
+  command
+      .add_option("--joint", request.joints,
+                  "angle of a joint from the anatomical position, over the pose (repeatable): "
+                  "\"left hip flexion=90\", \"knees flexion=60\"")
+      ->type_name("\"JOINT MOTION=DEG\"")
+      ->expected(1)
+      ->take_all()
+      ->group(pose->get_group());
   return name;
 }
 
@@ -79,15 +97,30 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
   const std::string group = "Pose";
   auto* pose = command.add_option("--pose", options.pose, "pose file (JSON)")->type_name("P.json")->group(group);
   auto* name = add_body_pose_options(command, options.body, pose);
-  command.add_option("--flex", options.flex, "turn a bone about its hinge by degrees, positive bends further (repeatable)")
-      ->type_name("BONE=DEG")->expected(1)->take_all()->group(group);
+  command
+      .add_option("--flex", options.flex, "turn a bone about its hinge by degrees, positive bends further (repeatable)")
+      ->type_name("BONE=DEG")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
   auto* motion = command.add_option("--motion", options.motion, "motion capture (BVH) to take the pose from")
-                     ->type_name("F.bvh")->excludes(pose)->excludes(name)->group(group);
-  command.add_option("--frame", options.frame, "its frame, from 0")->type_name("N")->check(CLI::NonNegativeNumber)->group(group);
+                     ->type_name("F.bvh")
+                     ->excludes(pose)
+                     ->excludes(name)
+                     ->group(group);
+  command.add_option("--frame", options.frame, "its frame, from 0")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
   add_up_option(command, options.up, motion);
-  command.add_option("--map", options.map, "which joint moves which bone (default: by names)")->type_name("M.json")->needs(motion)->group(group);
+  command.add_option("--map", options.map, "which joint moves which bone (default: by names)")
+      ->type_name("M.json")
+      ->needs(motion)
+      ->group(group);
   add_rest_options(command, options.rests, motion, group);
-  command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")->needs(motion)->group(group);
+  command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")
+      ->needs(motion)
+      ->group(group);
 }
 
 bool wants_pose(const PoseOptions& options) {
@@ -96,7 +129,8 @@ bool wants_pose(const PoseOptions& options) {
 
 Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
   if (options.frame && options.motion.empty())
-    throw Error("--frame says which frame, but of no motion", "--frame " + std::to_string(*options.frame), "add --motion F.bvh");
+    throw Error("--frame says which frame, but of no motion", "--frame " + std::to_string(*options.frame),
+                "add --motion F.bvh");
   Pose pose = rest_pose(armature);
   if (!options.pose.empty()) pose = read_pose(options.pose, armature);
   if (!options.motion.empty()) pose = poses_of_motion(options, armature, options.frame.value_or(0)).front();
@@ -107,7 +141,8 @@ Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
 }
 
 std::vector<Pose> read_all_poses(const PoseOptions& options, const Armature& armature) {
-  if (options.motion.empty()) throw Error("there is no motion to take frames from", "--all-frames", "add --motion F.bvh");
+  if (options.motion.empty())
+    throw Error("there is no motion to take frames from", "--all-frames", "add --motion F.bvh");
   std::vector<Pose> poses = poses_of_motion(options, armature, {});
   std::set<std::string> warnings;
   for (Pose& pose : poses) apply_requests(pose, armature, options, warnings);

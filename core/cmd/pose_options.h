@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How a command is told a pose:
-//   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--motion-rest POSE] [--rig-rest POSE] [--root-motion]
+//   --pose P.json | --motion F.bvh --frame N [--up y|z|auto] [--map M.json] [--motion-rest POSE] [--rig-rest POSE]
+//   [--root-motion]
 // then, on top of it, joints by what clinicians call them, and any number of bones about their hinges
 //   [--pose-name NAME] [--joint "JOINT MOTION=DEG"]... [--flex BONE=DEG]...
 // Without any of them the pose is rest.
@@ -12,9 +13,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/motion/retarget.h"
 #include "core/pose/body_poses.h"
-#include "core/pose/pose.h"
-#include "core/rig/retarget.h"
+#include "core/rig/pose.h"
 
 namespace limber::cmd {
 

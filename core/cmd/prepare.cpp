@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
-//        [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd --rig RIG]
-#include "core/volume/grey_image.h"
-#include "core/volume/prepare.h"
+//        [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd
+//        --rig RIG]
+#include "core/prepare/prepare.h"
+#include "core/volume_io/grey_image.h"
 
 #include <algorithm>
 #include <array>
@@ -17,11 +18,11 @@
 #include "core/bones/bone_parts.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
-#include "core/rig/armature_io.h"
+#include "core/prepare/close_skin.h"
+#include "core/rig_io/rig_io.h"
 #include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
-#include "core/volume/close_skin.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -53,7 +54,8 @@ const Tissue* find_tissue(const TissueTable& tissues, const std::string& text) {
 
 const Tissue& tissue_of(const TissueTable& tissues, const std::string& text, const std::string& merge) {
   if (const Tissue* tissue = find_tissue(tissues, text)) return *tissue;
-  throw Error("the volume has no such label", "--merge " + merge + ", " + text, "name a value or a tissue that 'limber info' lists");
+  throw Error("the volume has no such label", "--merge " + merge + ", " + text,
+              "name a value or a tissue that 'limber info' lists");
 }
 
 // A=B: every A becomes B.
@@ -78,14 +80,16 @@ std::optional<Label> skin_label_of(TissueTable& tissues, const std::string& text
   }
   const auto value = number_of(text);
   if (!value || *value < 1 || *value > 65535 || *value != std::floor(*value))
-    throw Error("the volume has no such label", "--skin-label " + text, "name a tissue that 'limber info' lists, or a number from 1 to 65535");
+    throw Error("the volume has no such label", "--skin-label " + text,
+                "name a tissue that 'limber info' lists, or a number from 1 to 65535");
   Tissue skin;
   for (skin.label = static_cast<Label>(*value); tissues.find(skin.label) || skin.label == 0;) ++skin.label;
   skin.file_value = *value;
   skin.name = "Skin";
   skin.kind = TissueKind::Skin;
   apply_kind_defaults(skin);
-  const auto after = std::find_if(tissues.tissues.begin(), tissues.tissues.end(), [&](const Tissue& tissue) { return tissue.label > skin.label; });
+  const auto after = std::find_if(tissues.tissues.begin(), tissues.tissues.end(),
+                                  [&](const Tissue& tissue) { return tissue.label > skin.label; });
   return tissues.tissues.insert(after, skin)->label;
 }
 
@@ -102,7 +106,8 @@ void warn_of_cuts(const ClosedSkin& closed) {
   constexpr std::array kSides{"lowest x", "highest x", "lowest y", "highest y", "lowest z", "highest z"};
   for (int side = 0; side < 6; ++side)
     if (closed.cut[side] > 0)
-      warn({"skin: the body is cut by the volume's border at the " + std::string(kSides[side]) + " (" + std::to_string(closed.cut[side]) +
+      warn({"skin: the body is cut by the volume's border at the " + std::string(kSides[side]) + " (" +
+            std::to_string(closed.cut[side]) +
             " voxels that are not skin) and stays open there; if it ends there, put air around it with --pad 1"});
 }
 
@@ -111,16 +116,20 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   const auto label = skin_label_of(tissues, options.skin_label);
   ClosedSkin closed = close_skin(volume, tissues, inward ? SkinGrowth::Inward : SkinGrowth::Outward, label);
   warn_of_cuts(closed);
-  print(inward ? "skin: %lld voxels of flesh at the air became skin" : "skin: %lld voxels of air became skin", static_cast<long long>(closed.changed_voxels));
+  print(inward ? "skin: %lld voxels of flesh at the air became skin" : "skin: %lld voxels of air became skin",
+        static_cast<long long>(closed.changed_voxels));
   if (closed.changed_voxels > 0) {
     print(inward ? " (" : ", over voxels of ");
     print_by_tissue(closed.covered, tissues);
     print(inward ? ")" : "");
   }
   print("\n");
-  if (closed.bare_bone_voxels > 0) print("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n", static_cast<long long>(closed.bare_bone_voxels));
+  if (closed.bare_bone_voxels > 0)
+    print("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n",
+          static_cast<long long>(closed.bare_bone_voxels));
   if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold it\n");
-  if (closed.enclosed_voxels > 0) print("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
+  if (closed.enclosed_voxels > 0)
+    print("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
   return std::move(closed.volume);
 }
 
@@ -132,7 +141,8 @@ void keep_present(TissueTable& tissues, const LabelVolume& volume) {
 }
 
 // Of the volume as it is written, in the rig's world.
-void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const Options& options, Progress& progress) {
+void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const Options& options,
+                       Progress& progress) {
   const ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
   const TissueVoxels tissue(volume);
@@ -182,27 +192,42 @@ void add_prepare(CLI::App& app) {
       "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume")->required();
-  writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))->required();
+  writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))
+      ->required();
   command->add_option("--tissues", options->tissues, "label table with names and densities");
   command->add_option("--orient", options->orientation, "turn voxel axes to these directions exactly: LPS, RAS ...");
-  command->add_option("--flip", options->flip, "mirror the body along a world axis")->check(CLI::IsMember({"x", "y", "z"}));
-  command->add_option("--merge", options->merges, "A=B: every A becomes B; values in the file, or names; 0 is air (repeatable)")
+  command->add_option("--flip", options->flip, "mirror the body along a world axis")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  command
+      ->add_option("--merge", options->merges,
+                   "A=B: every A becomes B; values in the file, or names; 0 is air (repeatable)")
       ->allow_extra_args(false);
-  command->add_option("--spacing", options->spacing, "new size of a voxel in mm, by largest volume share; thin layers stay closed");
+  command->add_option("--spacing", options->spacing,
+                      "new size of a voxel in mm, by largest volume share; thin layers stay closed");
   command->add_option("--drop-specks", options->specks, "pieces of fewer voxels than this take the label around them")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--crop", options->crop, "take away air around the tissue");
   command->add_option("--pad", options->pad, "voxels of air to put on every side")->check(CLI::NonNegativeNumber);
-  auto* close = command->add_option("--close-skin", options->close_skin,
-                                    "gives the body a closed skin of one voxel where flesh lies at the outside air: inward makes skin of the outermost flesh, outward of the air beside it; "
-                                    "bones and air inside the body stay, and where the volume's border cuts the body it stays open")
-                    ->check(CLI::IsMember({"inward", "outward"}));
-  command->add_option("--skin-label", options->skin_label, "the value or name that new skin gets (default: the nearest tissue that is skin)")->needs(close);
-  auto* seams = writes(command->add_option("--seams", options->seams, "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
+  auto* close =
+      command
+          ->add_option("--close-skin", options->close_skin,
+                       "gives the body a closed skin of one voxel where flesh lies at the outside air: inward makes "
+                       "skin of the outermost flesh, outward of the air beside it; "
+                       "bones and air inside the body stay, and where the volume's border cuts the body it stays open")
+          ->check(CLI::IsMember({"inward", "outward"}));
+  command
+      ->add_option("--skin-label", options->skin_label,
+                   "the value or name that new skin gets (default: the nearest tissue that is skin)")
+      ->needs(close);
+  auto* seams = writes(
+      command->add_option("--seams", options->seams,
+                          "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the "
+                          "faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
   auto* rig = command->add_option("--rig", options->rig, "seams: the rig that says what the limbs are");
   seams->needs(rig);
   rig->needs(seams);
-  writes(command->add_option("--statistics", options->statistics, "CSV file: per label voxels, volume, mass, centre, box, pieces, surface"));
+  writes(command->add_option("--statistics", options->statistics,
+                             "CSV file: per label voxels, volume, mass, centre, box, pieces, surface"));
   add_run_options(*command, options->run);
   command->callback([options] { prepare(*options); });
 }

@@ -49,10 +49,8 @@ std::string cleaned(std::string_view text, const std::function<std::string(int c
   while (!text.empty()) {
     const std::size_t size = character_size(text);
     const int control = size == 0 ? -1 : control_of(text.substr(0, size));
-    if (size == 0 || control >= 0)
-      clean += instead(control);
-    else
-      clean += text.substr(0, size);
+    if (size == 0 || control >= 0) clean += instead(control);
+    else clean += text.substr(0, size);
     text.remove_prefix(size == 0 ? 1 : size);
   }
   return clean;

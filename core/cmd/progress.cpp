@@ -2,8 +2,8 @@
 #include <csignal>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "core/cmd/command.h"
 
@@ -31,7 +31,9 @@ void tell_failed_gates(const std::vector<std::string>& sentences) {
 }
 
 CommandProgress::CommandProgress(const std::string& mode)
-    : mode_(mode == "json" ? Mode::Json : ::isatty(STDERR_FILENO) ? Mode::Bar : Mode::Silent) {
+    : mode_(mode == "json"            ? Mode::Json
+            : ::isatty(STDERR_FILENO) ? Mode::Bar
+                                      : Mode::Silent) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 }
@@ -47,9 +49,13 @@ void CommandProgress::show(const Iteration& iteration) {
   if (mode_ != Mode::Json) return update("solving", iteration.fraction);
   stage_ = "solving";
   shown_ = iteration.fraction;
-  tell(nlohmann::json{{"stage", "solving"}, {"fraction", iteration.fraction}, {"angle_degrees", iteration.angle_degrees},
-                                              {"iteration", iteration.iteration}, {"residual_mm", iteration.residual_mm},
-                                              {"seconds_left", iteration.seconds_left}}.dump());
+  tell(nlohmann::json{{"stage", "solving"},
+                      {"fraction", iteration.fraction},
+                      {"angle_degrees", iteration.angle_degrees},
+                      {"iteration", iteration.iteration},
+                      {"residual_mm", iteration.residual_mm},
+                      {"seconds_left", iteration.seconds_left}}
+           .dump());
 }
 
 bool CommandProgress::cancelled() const { return interrupted != 0 || Progress::cancelled(); }
@@ -68,7 +74,8 @@ void CommandProgress::on_update(std::string_view stage, double fraction) {
     std::snprintf(percent, sizeof percent, "] %3.0f %%", fraction * 100);
     std::string bar = one_line(stage_);
     bar.resize(std::max(bar.size(), std::size_t{12}), ' ');
-    draw_bar(kErase + bar + " [" + std::string(full, '#') + std::string(kWidth - full, ' ') + percent + (fraction >= 1 ? kErase : ""));
+    draw_bar(kErase + bar + " [" + std::string(full, '#') + std::string(kWidth - full, ' ') + percent +
+             (fraction >= 1 ? kErase : ""));
   }
 }
 

@@ -20,16 +20,16 @@
 #include "core/cmd/command_files.h"
 #include "core/cmd/info_project.h"
 #include "core/cmd/pose_options.h"
-#include "core/pose/gltf_export.h"
+#include "core/export/gltf.h"
 #include "core/pose/pose_io.h"
 #include "core/project/carved_project.h"
 #include "core/project/database.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
-#include "core/rig/armature_io.h"
+#include "core/rig_io/rig_io.h"
 #include "core/seams/seams_io.h"
 #include "core/skin/weights_io.h"
-#include "core/volume/grey_image.h"
+#include "core/volume_io/grey_image.h"
 
 namespace limber::cmd {
 
@@ -53,7 +53,8 @@ void require(bool holds, const std::string& what, const std::string& where, cons
 
 void require_new(const Path& path, bool replace) {
   check_place(path);
-  require(replace || !std::filesystem::exists(path), "a file of that name is there already", path.string(), "choose another name, or say --replace");
+  require(replace || !std::filesystem::exists(path), "a file of that name is there already", path.string(),
+          "choose another name, or say --replace");
 }
 
 // ---- create
@@ -71,31 +72,36 @@ void read_body_parts(const Options& options, Document& document, Progress& progr
 
 Document read_parts(const Options& options, Progress& progress) {
   Document document;
-  require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true, "tissues and weights belong to a volume",
-          options.file, "name it behind create");
-  require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true, "weights and poses belong to a rig", options.file,
+  require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true,
+          "tissues and weights belong to a volume", options.file, "name it behind create");
+  require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true,
+          "weights and poses belong to a rig", options.file, "name it with --rig");
+  require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true,
+          "seams and bone maps belong to a volume", options.file, "name it behind create");
+  require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map belongs to a rig", options.file,
           "name it with --rig");
-  require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true, "seams and bone maps belong to a volume", options.file, "name it behind create");
-  require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map belongs to a rig", options.file, "name it with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
   if (!options.rig.empty()) {
     ArmatureFile rig = read_armature_file(options.rig);
     warn(rig.warnings);
     document.armature = shared(std::move(rig.armature));
-    const Pose pose = options.pose.empty() ? rest_pose(*document.armature) : read_pose(options.pose, *document.armature);
+    const Pose pose =
+        options.pose.empty() ? rest_pose(*document.armature) : read_pose(options.pose, *document.armature);
     std::vector<std::string> warnings;
     document.pose = shared(with_request(*document.armature, pose, options.body, warnings));
     warn(warnings);
   }
   if (!options.weights.empty()) {
-    WeightsFile weights = read_weights(options.weights, *document.volume, TissueVoxels(*document.volume), *document.armature);
+    WeightsFile weights =
+        read_weights(options.weights, *document.volume, TissueVoxels(*document.volume), *document.armature);
     warn(weights.warnings);
     document.weights = shared(std::move(weights.weights));
   }
   if (!options.seams.empty()) document.seams = shared(read_seams(options.seams, *document.volume, progress));
   if (!options.bone_map.empty()) {
     document.bone_map = shared(read_bone_map(options.bone_map));
-    bones_of_labels(*document.tissues, *document.armature, *document.bone_map);  // throws where it names what is not there
+    bones_of_labels(*document.tissues, *document.armature,
+                    *document.bone_map);  // throws where it names what is not there
   }
   if (!options.motion.empty()) {
     const auto motion = shared(read_motion(options.motion, options.up));
@@ -201,15 +207,18 @@ void recover(const Options& options) {
 
 template <class T>
 const T& there(const std::shared_ptr<const T>& part, const Options& options) {
-  require(part != nullptr, "the project has no such part", options.file + ", " + options.part, "see what it has: limber project " + options.file);
+  require(part != nullptr, "the project has no such part", options.file + ", " + options.part,
+          "see what it has: limber project " + options.file);
   return *part;
 }
 
 const LabelVolume& result_named(const Document& document, const Options& options) {
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
-  throw Error("the project has no such part or result", options.file + ", " + options.part,
-              "name volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result that limber project " + options.file + " lists");
+  throw Error(
+      "the project has no such part or result", options.file + ", " + options.part,
+      "name volume, tissues, rig, weights, pose, motion, gltf, seams, bone-map, or a result that limber project " +
+          options.file + " lists");
 }
 
 void export_part(const Options& options) {
@@ -222,26 +231,21 @@ void export_part(const Options& options) {
   const Document& document = project.document;
   const TissueTable tissues = document.tissues ? *document.tissues : TissueTable{};
   const FileType type = document.volume_type ? *document.volume_type : FileType{};
-  if (options.part == "volume")
-    write_volume(there(document.volume, options), options.output, tissues, type);
-  else if (options.part == "tissues")
-    write_tissue_table(there(document.tissues, options), options.output);
-  else if (options.part == "rig")
-    write_armature(there(document.armature, options), options.output);
+  if (options.part == "volume") write_volume(there(document.volume, options), options.output, tissues, type);
+  else if (options.part == "tissues") write_tissue_table(there(document.tissues, options), options.output);
+  else if (options.part == "rig") write_armature(there(document.armature, options), options.output);
   else if (options.part == "weights")
     write_weights(there(document.weights, options), *document.volume, TissueVoxels(*document.volume), options.output);
-  else if (options.part == "pose")
-    write_pose(there(document.pose, options), *document.armature, options.output);
+  else if (options.part == "pose") write_pose(there(document.pose, options), *document.armature, options.output);
   else if (options.part == "motion")
     write_bvh(there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options), options.output);
-  else if (options.part == "seams")
-    write_seams(there(document.seams, options), document.volume->grid, options.output);
-  else if (options.part == "bone-map")
-    write_bone_map(there(document.bone_map, options), options.output);
+  else if (options.part == "seams") write_seams(there(document.seams, options), document.volume->grid, options.output);
+  else if (options.part == "bone-map") write_bone_map(there(document.bone_map, options), options.output);
   else if (options.part == "gltf")
-    write_glb({there(document.volume, options), tissues, there(document.armature, options), there(document.weights, options)}, document.clips, options.output, {}, progress);
-  else
-    write_volume(result_named(document, options), options.output, tissues, type);
+    write_glb(
+        {there(document.volume, options), tissues, there(document.armature, options), there(document.weights, options)},
+        document.clips, options.output, {}, progress);
+  else write_volume(result_named(document, options), options.output, tissues, type);
 }
 
 void run(const Options& options) {
@@ -255,7 +259,8 @@ void run(const Options& options) {
 }  // namespace
 
 void add_project(CLI::App& app) {
-  auto* command = app.add_subcommand("project", "creates, inspects, verifies, recovers and takes parts out of a project file");
+  auto* command =
+      app.add_subcommand("project", "creates, inspects, verifies, recovers and takes parts out of a project file");
   auto options = std::make_shared<Options>();
   writes(command->add_option("NAME", options->file, "NAME.limber"), [options](const std::string& name) {
     return options->action == "create" ? OptionFiles{{}, {name}} : OptionFiles{{name}, {}};
@@ -270,13 +275,16 @@ void add_project(CLI::App& app) {
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");
   command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
-  add_body_pose_options(*command, options->body, command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
+  add_body_pose_options(*command, options->body,
+                        command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
   add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
-  command->add_option("--seams", options->seams, "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
+  command->add_option("--seams", options->seams,
+                      "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
   command->add_option("--bone-map", options->bone_map, "of create: JSON that says which rig bone a label follows");
   writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
   command->callback([options] { run(*options); });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber report BEFORE AFTER [--tissues T] [--field F.nrrd [--rig RIG [--bone-map FILE] POSE-OPTIONS]] [--strict] [--json]
+// limber report BEFORE AFTER [--tissues T] [--field F.nrrd [--rig RIG [--bone-map FILE] POSE-OPTIONS]] [--strict]
+// [--json]
 #include "core/report/report.h"
 
 #include <memory>
@@ -8,10 +9,10 @@
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
 #include "core/report/dice.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/grey_image.h"
-#include "core/volume/vector_volume_io.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/grey_image.h"
+#include "core/volume_io/vector_volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -53,13 +54,16 @@ VectorVolume read_field(const std::string& path, const LabelVolume& after, Repor
   VectorVolume field = read_vector_volume(path);
   report.inputs.push_back(describe_input(path));
   note(report, field.warnings);
-  if (field.grid.size != after.grid.size || glm::distance(field.grid.origin, after.grid.origin) > kSamePlaceMm || glm::distance(field.grid.spacing, after.grid.spacing) > kSamePlaceMm)
-    throw Error("the field lies on another grid than the posed volume", path, "give the field that was written with this volume");
+  if (field.grid.size != after.grid.size || glm::distance(field.grid.origin, after.grid.origin) > kSamePlaceMm ||
+      glm::distance(field.grid.spacing, after.grid.spacing) > kSamePlaceMm)
+    throw Error("the field lies on another grid than the posed volume", path,
+                "give the field that was written with this volume");
   return field;
 }
 
 // What the field, the rig and the pose add to the comparison of two volumes.
-void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after, const TissueTable& tissues, Report& report) {
+void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after,
+                        const TissueTable& tissues, Report& report) {
   JudgedPose judged{.rest = before, .posed = after, .tissues = tissues};
   const VectorVolume field = read_field(options.field, after, report);
   judged.displacement = {field.voxels.data(), field.voxels.size()};
@@ -96,8 +100,7 @@ void run(const Options& options) {
   require_labels(before.volume, tissues, options.before);
   require_labels(after.volume, merge_tissue_tables(after.tissues, user ? &*user : nullptr), options.after);
   report.seconds.read = total.seconds();
-  for (const VolumeFile* file : {&before, &after})
-    note(report, file->warnings);
+  for (const VolumeFile* file : {&before, &after}) note(report, file->warnings);
 
   report.metrics = compare(before.volume, after.volume, tissues);
   if (!options.field.empty()) measure_with_field(options, before.volume, after.volume, tissues, report);
@@ -106,10 +109,8 @@ void run(const Options& options) {
   progress.update("report", 1);
   report.seconds.total = total.seconds();
   judge(report);
-  if (options.json)
-    print_json(to_json(report));
-  else
-    print_table(report);
+  if (options.json) print_json(to_json(report));
+  else print_table(report);
   if (!options.strict) return;
   tell_failed_gates(failed_gates(report));
   if (!failed_gates(report).empty()) throw GateFailed();
@@ -122,8 +123,15 @@ void add_report(CLI::App& app) {
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table: names, kinds, densities");
-  auto* field = command->add_option("--field", options->field, "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in either direction: also judges what was exposed")->type_name("F.nrrd");
-  auto* rig = command->add_option("--rig", options->rig, "with --field: also judges bones, limbs and bands; say the pose as for resample")->needs(field);
+  auto* field = command
+                    ->add_option("--field", options->field,
+                                 "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in "
+                                 "either direction: also judges what was exposed")
+                    ->type_name("F.nrrd");
+  auto* rig = command
+                  ->add_option("--rig", options->rig,
+                               "with --field: also judges bones, limbs and bands; say the pose as for resample")
+                  ->needs(field);
   command->add_option("--bone-map", options->bone_map, "as for resample")->type_name("FILE")->needs(rig);
   add_pose_options(*command, options->pose);
   command->add_flag("--strict", options->strict, "exit code 5 when a gate fails");

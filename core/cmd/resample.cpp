@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2]
-//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--strict] [--threads N] [--progress json]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method
+// lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints]
+//        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]]
+//        [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]]
+//        [--with GREY=OUT2]
+//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames
+//        FIRST:LAST[:STEP]] [--strict] [--threads N] [--progress json]
 #include "core/resample/resample.h"
 
 #include <cstdlib>
@@ -9,8 +13,12 @@
 #include <memory>
 #include <optional>
 
-#include "core/base/outputs.h"
+#include "core/autorig/joint_axis_fit.h"
+#include "core/base/output_files.h"
 #include "core/base/parallel.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
@@ -19,22 +27,18 @@
 #include "core/cmd/mesh_share.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
-#include "core/deck/tet_phantom.h"
+#include "core/export/exporter.h"
+#include "core/export/tet_phantom.h"
 #include "core/fem/solve_pose.h"
-#include "core/mesh/tetgen_files.h"
 #include "core/report/report.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
 #include "core/resample/posed_points.h"
-#include "core/bones/bone_parts.h"
-#include "core/bones/unsure_bones.h"
-#include "core/rig/fit_joint.h"
-#include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
-#include "core/volume/landmarks.h"
-#include "core/volume/vector_volume_io.h"
-#include "core/volume/volume_files.h"
+#include "core/volume_io/landmarks.h"
+#include "core/volume_io/vector_volume_io.h"
+#include "core/volume_io/volume_files.h"
 
 namespace limber::cmd {
 
@@ -44,7 +48,8 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method = "mix", output, report, grey, field, field_direction = kToPosed, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
+  std::string weights, method = "mix", output, report, grey, field, field_direction = kToPosed, jacobian, overlap,
+                       quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -57,25 +62,43 @@ struct Companion {
 };
 Companion companion(const std::string& request, const char* what, const char* example) {
   const size_t equals = request.rfind('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == request.size()) throw Error(std::string("this is no ") + what + " and output", request, std::string("write IN=OUT, as in ") + example);
+  if (equals == std::string::npos || equals == 0 || equals + 1 == request.size())
+    throw Error(std::string("this is no ") + what + " and output", request,
+                std::string("write IN=OUT, as in ") + example);
   return {request.substr(0, equals), request.substr(equals + 1)};
 }
-Companion grey_paths(const std::string& request) { return companion(request, "grey volume", "--with ct.nii.gz=posed-ct.nii.gz"); }
-Companion landmark_paths(const std::string& request) { return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv"); }
+Companion grey_paths(const std::string& request) {
+  return companion(request, "grey volume", "--with ct.nii.gz=posed-ct.nii.gz");
+}
+Companion landmark_paths(const std::string& request) {
+  return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv");
+}
 
 // The same request for one frame of a sequence, each output with the frame's number in its name.
 Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
-  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
+  for (std::string* output :
+       {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
     *output = cmd::of_frame(*output, frame);
   return one;
 }
 
-std::string mesh_file(const std::string& name, const char* ending) {
-  Path path(name);
-  if (path.extension() == ".node" || path.extension() == ".ele") path.replace_extension();
-  return path.string() + ending;
+// NAME is NAME.node, as TetGen names it; another ending of a mesh says its format.
+Path mesh_path(const Path& name) {
+  if (name.extension() == ".ele") return Path(name).replace_extension(".node");
+  const Exporter* exporter = exporter_for(name);
+  return exporter && exporter->takes_mesh ? name : Path(name.string() + ".node");
+}
+const Exporter& mesh_exporter(const Path& name) { return *exporter_for(mesh_path(name)); }
+
+FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
+  return [options](const std::string& value) {
+    OptionFiles files;
+    for (const std::string& name : names_of(value, options->frames))
+      for (const Path& file : files_exported_as(mesh_exporter(name), mesh_path(name))) files.written.push_back(file);
+    return files;
+  };
 }
 
 // Tells the files of an output option, whose value gets each of the endings; with none, what a volume of that name is.
@@ -83,7 +106,7 @@ FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std
   return [options, endings](const std::string& value) {
     OptionFiles files;
     for (const std::string& name : names_of(value, options->frames)) {
-      for (const char* ending : endings) files.written.emplace_back(mesh_file(name, ending));
+      for (const char* ending : endings) files.written.emplace_back(name + ending);
       if (endings.empty())
         for (const Path& file : files_written_as(name)) files.written.push_back(file);
     }
@@ -110,7 +133,9 @@ void check_outputs(const Options& options) {
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
   std::vector<std::string> others = {options.report};
-  if (!options.mesh_out.empty()) others.insert(others.end(), {mesh_file(options.mesh_out, ".node"), mesh_file(options.mesh_out, ".ele"), mesh_file(options.mesh_out, ".material")});
+  if (!options.mesh_out.empty())
+    for (const Path& file : files_exported_as(mesh_exporter(options.mesh_out), mesh_path(options.mesh_out)))
+      others.push_back(file.string());
   if (!options.landmarks.empty()) others.push_back(landmark_paths(options.landmarks).to);
   if (!options.steps.empty()) others.insert(others.end(), {options.steps + ".mesh", options.steps + ".step"});
   for (const std::string& other : others)
@@ -123,7 +148,8 @@ void note(Report& report, const std::vector<std::string>& warnings) {
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
-SkinWeights new_weights(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, Report& report, Progress& progress) {
+SkinWeights new_weights(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, Report& report,
+                        Progress& progress) {
   note(report, unsure_bones(parts, body.tissues, body.rig));
   WeightsReport heat;
   SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &heat);
@@ -133,30 +159,50 @@ SkinWeights new_weights(const Body& body, const TissueVoxels& tissue, const Bone
 
 void check_sequence(const Options& options) {
   if (options.frames.empty()) return;
-  if (options.pose.motion.empty()) throw Error("--frames says which frames, but of no motion", "--frames " + options.frames, "add --motion F.bvh");
-  if (options.pose.frame) throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame), "leave --frame or --frames out");
-  if (options.fit_joints) throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints", "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
+  if (options.pose.motion.empty())
+    throw Error("--frames says which frames, but of no motion", "--frames " + options.frames, "add --motion F.bvh");
+  if (options.pose.frame)
+    throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame),
+                "leave --frame or --frames out");
+  if (options.fit_joints)
+    throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
+                "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
   if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
-  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap, options.mesh_out, options.landmarks})
+  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian,
+                                    options.overlap, options.mesh_out, options.landmarks})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
-      throw Error("every frame would be written to the same file", output, "put {frame} into its name, as in posed_{frame}.nrrd");
+      throw Error("every frame would be written to the same file", output,
+                  "put {frame} into its name, as in posed_{frame}.nrrd");
 }
 
 // Options that go with others only.
 void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
-    throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact", "leave one of the two out");
+    throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact",
+                "leave one of the two out");
   glide_settings(options.glide, options.pose, 1);
   if (options.method == "fem") return;
-  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"}, {!options.quality.empty(), "--quality"}, {!options.mesher.empty(), "--mesher"}, {!options.mesh_out.empty(), "--mesh-out"}, {options.mesh_unit != "mm", "--mesh-unit"}, {!options.steps.empty(), "--steps"}})
-    if (is_given) throw Error(std::string(name) + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
+  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"},
+                                       {!options.quality.empty(), "--quality"},
+                                       {!options.mesher.empty(), "--mesher"},
+                                       {!options.mesh_out.empty(), "--mesh-out"},
+                                       {options.mesh_unit != "mm", "--mesh-unit"},
+                                       {!options.steps.empty(), "--steps"}})
+    if (is_given)
+      throw Error(std::string(name) + " needs finite elements", "--method " + options.method,
+                  "use --method fem, or leave it out");
 }
 
 // How far the solve is, for the user, with what it takes to the end at the pace so far; and for a program that watches.
 class SolveProgress {
  public:
-  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones, const Armature& rig, const Pose& pose)
-      : progress_(progress), name_(options.steps), bones_(bones), rig_(rig), pose_(pose) {}
+  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones,
+                const Armature& rig, const Pose& pose)
+      : progress_(progress),
+        name_(options.steps),
+        bones_(bones),
+        rig_(rig),
+        pose_(pose) {}
   // What is solved from now on.
   void aim_at(const Pose& pose) { pose_ = pose; }
   void begin(const TissueModel& model) const {
@@ -169,7 +215,9 @@ class SolveProgress {
     progress_.show({step.reached, step.reached * largest_angle_degrees(pose_), step.iteration, step.residual, left});
   }
   // Where everything has come to rest.
-  void end(const FemShape& shape) const { leave({shape.reached, shape.solve.iterations, shape.solve.residual_mm, {}, shape.V}); }
+  void end(const FemShape& shape) const {
+    leave({shape.reached, shape.solve.iterations, shape.solve.residual_mm, {}, shape.V});
+  }
 
  private:
   void leave(FemStep step) const {
@@ -203,9 +251,11 @@ Method method_of(const Options& options, SolveProgress& solve) {
 void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bool contact) {
   if (deform.mesh && !deform.mesh->fallback.empty()) note(report, {deform.mesh->fallback});
   if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
-    note(report, {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
+    note(report,
+         {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
   if (!deform.solve || deform.solve->converged) return;
-  if (deform.solve->reached == 1) return note(report, {"the pose is reached, but its shape has not settled: " + deform.solve->blocked_by});
+  if (deform.solve->reached == 1)
+    return note(report, {"the pose is reached, but its shape has not settled: " + deform.solve->blocked_by});
   char share[64];
   std::snprintf(share, sizeof share, "%.0f %% (%.1f of %.1f degrees)", 100 * deform.solve->reached,
                 deform.solve->reached * largest_angle_degrees(pose), largest_angle_degrees(pose));
@@ -242,7 +292,8 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   }
   if (!options.field.empty()) settings["field_direction"] = options.field_direction;
   if (options.spacing) settings["spacing_mm"] = *options.spacing;
-  if (!options.pose.body.name.empty()) settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
+  if (!options.pose.body.name.empty())
+    settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
   if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
@@ -252,34 +303,34 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (pose.rotation[b] != glm::dquat(1, 0, 0, 0)) turned.push_back(rig.bones[b].name);
   settings["turned_bones"] = turned;
   report.joints = turned_joints(rig, pose);
-  for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights, options.pose.pose,
-                                  options.pose.motion, options.pose.map})
+  for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights,
+                                  options.pose.pose, options.pose.motion, options.pose.map})
     if (!path.empty()) report.inputs.push_back(describe_input(path));
 }
 
-// The mesh as NAME.node and NAME.ele with organ numbers, and NAME.material, where what all of them are made of is known.
-void write_mesh(const Options& options, const TissueTable& tissues, const FemShape& shape, Outputs& outputs) {
+// The mesh with organ numbers: as NAME.node and NAME.ele with NAME.material, or as the name asks for.
+void write_mesh(const Options& options, const TissueTable& tissues, const LabelVolume& posed, const FemShape& shape) {
   TetMesh mesh = posed_mesh(shape, tissues);
   if (options.mesh_unit == "cm") mesh.V /= 10;
-  const std::string materials = mesh_file(options.mesh_out, ".material");
-  outputs.expect({materials, mesh_file(options.mesh_out, ".ele"), mesh_file(options.mesh_out, ".node")});
-  write_tetgen_files(options.mesh_out, mesh);
-  std::string list;
-  try {
-    list = material_list(tissues, mesh.region, read_composition_table(), materials);
-  } catch (const Error& error) {
-    return warn(std::string("the mesh has no list of materials: ") + error.what());
-  }
-  write_file_atomically(materials, list);
+  std::vector<std::string> warnings;
+  write_export(mesh_exporter(options.mesh_out), {posed, tissues, {}, 0, &mesh, no_progress(), warnings},
+               mesh_path(options.mesh_out));
+  warn(warnings);
 }
 
 void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
-  const FieldDirection direction = options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
+  const FieldDirection direction =
+      options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
-  outputs.write(options.field, [&] { write_displacement_field(posed.volume.grid, {posed.displacement.data(), posed.displacement.size()}, direction, options.field); });
+  outputs.write(options.field, [&] {
+    write_displacement_field(posed.volume.grid, {posed.displacement.data(), posed.displacement.size()}, direction,
+                             options.field);
+  });
   outputs.write(options.jacobian, [&] { write_scalar_volume(posed.volume.grid, posed.jacobian, options.jacobian); });
-  outputs.write(options.overlap, [&] { write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true}); });
-  if (!options.mesh_out.empty()) write_mesh(options, body.tissues, *posed.shape, outputs);
+  outputs.write(options.overlap, [&] {
+    write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true});
+  });
+  if (!options.mesh_out.empty()) write_mesh(options, body.tissues, posed.volume, *posed.shape);
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
@@ -290,8 +341,10 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   for (const auto& [label, tissue] : exact.tissues) {
     if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
     const Tissue* known = tissues.find(label);
-    note(report, {(known ? known->name : "label " + std::to_string(label)) + " is " + std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
-                  (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
+    note(report,
+         {(known ? known->name : "label " + std::to_string(label)) + " is " +
+          std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
+          (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
   }
 }
 
@@ -302,11 +355,13 @@ struct Landmarks {
   const SkinWeights& weights;
 };
 
-std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options& options, const Body& body, const Pose& pose, const FemShape* shape) {
+std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options& options, const Body& body,
+                                      const Pose& pose, const FemShape* shape) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks.rest) places.push_back(landmark.position);
   const Blend blend = blend_named(options.method);
-  places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend, shape, places);
+  places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend,
+                        shape, places);
   std::vector<Landmark> there = landmarks.rest;
   for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
   return there;
@@ -314,31 +369,41 @@ std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options&
 
 // What the volumes and the map between them tell, judged.
 //   asked  #bones, posed from rest, of the pose and the rig as they were given
-void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed, Report& report) {
+void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed,
+             Report& report) {
   report.doubts = body.doubts;
   report.metrics = compare(body.file.volume, posed.volume, body.tissues);
-  const JudgedPose judged{body.file.volume, posed.volume, body.tissues, {posed.displacement.data(), posed.displacement.size()}, &body.rig, asked,
+  const JudgedPose judged{body.file.volume,
+                          posed.volume,
+                          body.tissues,
+                          {posed.displacement.data(), posed.displacement.size()},
+                          &body.rig,
+                          asked,
                           posed_from_rest(body.rig, posed.shape ? posed.shape->pose : pose)};
   measure_body(judged, body.bone_map, report);
   report.deform = std::move(posed.report);
 }
 
 // Weights from a file may be older than the rig, or painted by another program.
-void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed, Report& report) {
+void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed,
+                          Report& report) {
   const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
-  note(report, astray_bones(whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights, motions, body.bone_map)));
+  note(report, astray_bones(whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights,
+                                        motions, body.bone_map)));
 }
 
 // Everything of one pose that is posed now. False where a gate of the body failed.
-bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, const Landmarks& landmarks, Posed& posed,
-            Report& report, const Stopwatch& total) {
+bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked,
+            const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
-    throw Error("the pose bends nothing, so there is no mesh", options.mesh_out, "leave --mesh-out out, or give a pose");
+    throw Error("the pose bends nothing, so there is no mesh", options.mesh_out,
+                "leave --mesh-out out, or give a pose");
   report.seconds.mesh = posed.report.seconds_mesh;
   report.seconds.solve = posed.report.seconds_solve;
   report.seconds.deform = posed.report.seconds_deform;
   report.seconds.rasterize = posed.report.seconds_rasterize;
-  if (const std::string overlap = overlap_warning(report.glide, posed.report.bone_overlap_voxels); !overlap.empty()) note(report, {overlap});
+  if (const std::string overlap = overlap_warning(report.glide, posed.report.bone_overlap_voxels); !overlap.empty())
+    note(report, {overlap});
   note_shape(report, posed.report, pose, options.contact);
   if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
 
@@ -399,7 +464,8 @@ void run(const Options& options) {
   TissueVoxels tissue(body.file.volume);
   std::optional<BoneParts> known_parts;  // they take their time, and weights with seams do without
   const auto parts = [&]() -> const BoneParts& {
-    if (!known_parts) known_parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
+    if (!known_parts)
+      known_parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
     return *known_parts;
   };
   std::optional<WeightsFile> given;
@@ -426,25 +492,33 @@ void run(const Options& options) {
     report.seconds.glide = gliding.seconds();
   }
 
-  const ResampleSettings settings{.nearest = options.nearest, .mass_exact = options.mass_exact, .mass_limit_percent = options.mass_limit, .spacing = options.spacing,
-                                  .displacement = !options.field.empty() || !options.report.empty() || options.strict, .jacobian = !options.jacobian.empty(),
+  const ResampleSettings settings{.nearest = options.nearest,
+                                  .mass_exact = options.mass_exact,
+                                  .mass_limit_percent = options.mass_limit,
+                                  .spacing = options.spacing,
+                                  .displacement = !options.field.empty() || !options.report.empty() || options.strict,
+                                  .jacobian = !options.jacobian.empty(),
                                   .overlap = !options.overlap.empty(),
                                   .grey = grey ? &*grey : nullptr,
                                   .seams = tissue.shared_seams()};
   SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
   bool all_reached = true, all_passed = true;
   std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
-  resample_sequence(body.file.volume, body.tissues, body.rig, resampled, poses, method_of(options, solve), settings, [&](std::size_t place, Posed posed) {
-    nothing_is_being_written.reset();
-    if (posed.shape && frames.empty()) solve.end(*posed.shape);
-    all_reached &= !posed.report.solve || posed.report.solve->converged;
-    Report of_pose = report;
-    if (!glided.empty()) of_pose.glide = glided[place];
-    all_passed &= finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place], asked[place], {landmarks, tissue, weights}, posed, of_pose, total);
-    if (place + 1 == poses.size()) return;
-    solve.aim_at(poses[place + 1]);
-    nothing_is_being_written.emplace();
-  }, progress);
+  resample_sequence(
+      body.file.volume, body.tissues, body.rig, resampled, poses, method_of(options, solve), settings,
+      [&](std::size_t place, Posed posed) {
+        nothing_is_being_written.reset();
+        if (posed.shape && frames.empty()) solve.end(*posed.shape);
+        all_reached &= !posed.report.solve || posed.report.solve->converged;
+        Report of_pose = report;
+        if (!glided.empty()) of_pose.glide = glided[place];
+        all_passed &= finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place],
+                             asked[place], {landmarks, tissue, weights}, posed, of_pose, total);
+        if (place + 1 == poses.size()) return;
+        solve.aim_at(poses[place + 1]);
+        nothing_is_being_written.emplace();
+      },
+      progress);
   if (!all_reached) throw PoseNotReached();
   if (options.strict && !all_passed) throw GateFailed();
 }
@@ -458,29 +532,84 @@ void add_resample(CLI::App& app) {
   command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
   add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
-  command->add_option("--frames", options->frames, "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes once and starts each from the one before")->type_name("FIRST:LAST[:STEP]");
-  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions), mix (between the two, then flesh gets its volume back) or fem (finite elements)")->capture_default_str()->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
+  command
+      ->add_option("--frames", options->frames,
+                   "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes "
+                   "once and starts each from the one before")
+      ->type_name("FIRST:LAST[:STEP]");
+  command
+      ->add_option("--method", options->method,
+                   "lbs (linear), dqs (dual quaternions), mix (between the two, then flesh gets its volume back) or "
+                   "fem (finite elements)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
-  command->add_option("--quality", options->quality, "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")->check(CLI::IsMember({"draft", "normal", "fine"}));
-  command->add_option("--mesher", options->mesher, "fem: who fills the body's surface with tets: lattice (default) or tetgen")->check(CLI::IsMember({"lattice", "tetgen"}));
-  writes(command->add_option("--mesh-out", options->mesh_out, "fem: the posed tets of the solve as NAME.node and NAME.ele, with the tissue that fills most of each, and NAME.material in the form of particle codes. It holds the soft tissue that bends, not the whole body: how much is told"), files_written_to(options, {".node", ".ele", ".material"}))->type_name("NAME");
-  command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")->check(CLI::IsMember({"mm", "cm"}));
-  writes(command->add_option("--steps", options->steps, "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step"), files_written_to(options, {".mesh", ".step"}))->type_name("NAME");
+  command
+      ->add_option("--quality", options->quality,
+                   "fem: tets of 12 mm (draft), 8 mm (normal), or 4 mm around bent joints (fine)")
+      ->check(CLI::IsMember({"draft", "normal", "fine"}));
+  command
+      ->add_option("--mesher", options->mesher,
+                   "fem: who fills the body's surface with tets: lattice (default) or tetgen")
+      ->check(CLI::IsMember({"lattice", "tetgen"}));
+  writes(command->add_option("--mesh-out", options->mesh_out,
+                             "fem: the posed tets of the solve as NAME.node and NAME.ele, with the tissue that fills "
+                             "most of each, and NAME.material in the form of particle codes; or as another ending "
+                             "says. It holds the soft tissue that bends, not the whole body: how much is told"),
+         files_of_mesh(options))
+      ->type_name("NAME");
+  command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")
+      ->check(CLI::IsMember({"mm", "cm"}));
+  writes(command->add_option(
+             "--steps", options->steps,
+             "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step"),
+         files_written_to(options, {".mesh", ".step"}))
+      ->type_name("NAME");
   add_glide_option(*command, options->glide);
-  command->add_flag("--fit-joints", options->fit_joints, "first moves the axis of each bent joint, and with it the pose, so that its bones do not collide: as 'limber fit-joint'");
-  writes(command->add_option("-o,--output", options->output, "the posed volume"), files_written_to(options))->required();
-  writes(command->add_option("--report", options->report, "what changed: JSON there, a table on stdout"), files_written_to(options));
-  command->add_flag("--strict", options->strict, "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");
-  command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")->check(CLI::Range(1e-9, 1e6));
+  command->add_flag("--fit-joints", options->fit_joints,
+                    "first moves the axis of each bent joint, and with it the pose, so that its bones do not collide: "
+                    "as 'limber fit-joint'");
+  writes(command->add_option("-o,--output", options->output, "the posed volume"), files_written_to(options))
+      ->required();
+  writes(command->add_option("--report", options->report, "what changed: JSON there, a table on stdout"),
+         files_written_to(options));
+  command->add_flag(
+      "--strict", options->strict,
+      "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");
+  command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")
+      ->check(CLI::Range(1e-9, 1e6));
   command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
-  auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact, "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
-  command->add_option("--mass-limit", options->mass_limit, "percent of a tissue that mass-exact may make up; more is refused (default: 3)")->needs(mass_exact)->check(CLI::Range(0.0, 20.0));
-  writes(command->add_option("--with", options->grey, "a grey volume moved by the same map"), files_of_pair(options))->type_name("GREY=OUT");
-  writes(command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose"), files_of_pair(options))->type_name("IN.csv=OUT.csv");
-  auto* field = writes(command->add_option("--field", options->field, "displacement at each posed voxel, mm, world axes (LPS), zero in air: posed minus rest, from the rest place of what lies there to the voxel"), files_written_to(options));
-  command->add_option("--field-direction", options->field_direction, "of --field: to-posed (posed minus rest), or to-rest, its negative: from each posed voxel to its rest place, with which ITK and SimpleITK warp the rest volume into the pose")->capture_default_str()->check(CLI::IsMember({kToPosed, kToRest}))->needs(field);
-  writes(command->add_option("--overlap", options->overlap, "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did"), files_written_to(options));
-  writes(command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel"), files_written_to(options));
+  auto* mass_exact = command->add_flag(
+      "--mass-exact", options->mass_exact,
+      "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
+  command
+      ->add_option("--mass-limit", options->mass_limit,
+                   "percent of a tissue that mass-exact may make up; more is refused (default: 3)")
+      ->needs(mass_exact)
+      ->check(CLI::Range(0.0, 20.0));
+  writes(command->add_option("--with", options->grey, "a grey volume moved by the same map"), files_of_pair(options))
+      ->type_name("GREY=OUT");
+  writes(
+      command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose"),
+      files_of_pair(options))
+      ->type_name("IN.csv=OUT.csv");
+  auto* field = writes(command->add_option("--field", options->field,
+                                           "displacement at each posed voxel, mm, world axes (LPS), zero in air: posed "
+                                           "minus rest, from the rest place of what lies there to the voxel"),
+                       files_written_to(options));
+  command
+      ->add_option("--field-direction", options->field_direction,
+                   "of --field: to-posed (posed minus rest), or to-rest, its negative: from each posed voxel to its "
+                   "rest place, with which ITK and SimpleITK warp the rest volume into the pose")
+      ->capture_default_str()
+      ->check(CLI::IsMember({kToPosed, kToRest}))
+      ->needs(field);
+  writes(
+      command->add_option("--overlap", options->overlap,
+                          "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did"),
+      files_written_to(options));
+  writes(command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel"),
+         files_written_to(options));
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "core/base/large_blocks.h"
 #include "core/base/error.h"
+#include "core/base/large_blocks.h"
 #include "core/base/leftovers.h"
 #include "core/base/named_files.h"
 #include "core/cmd/command_files.h"
@@ -17,8 +17,10 @@ namespace limber::cmd {
 
 namespace {
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 the input or the request is wrong, one line says what, where and what to do; 2 usage; 3 cancelled; "
-    "4 finite elements could not reach the pose, the outputs hold the way to it; 5 with --strict, a gate failed, the outputs are written.";
+    "Exit codes: 0 done; 1 the input or the request is wrong, one line says what, where and what to do; 2 usage; 3 "
+    "cancelled; "
+    "4 finite elements could not reach the pose, the outputs hold the way to it; 5 with --strict, a gate failed, the "
+    "outputs are written.";
 }  // namespace
 
 void add_commands(CLI::App& app) {
@@ -79,10 +81,16 @@ int run_command(CLI::App& app, int argc, char** argv) {
   } catch (const std::system_error& error) {
     // A thread that cannot be started.
     const bool lacks_room = error.code() == std::errc::resource_unavailable_try_again;
-    if (lacks_room) return told("there is not enough memory for another thread: this request: use a coarser spacing or a smaller volume", 1);
-    return told(std::string("the system refuses: ") + error.what() + ": try again, and report it with the command that shows it if it stays", 1);
+    if (lacks_room)
+      return told(
+          "there is not enough memory for another thread: this request: use a coarser spacing or a smaller volume", 1);
+    return told(std::string("the system refuses: ") + error.what() +
+                    ": try again, and report it with the command that shows it if it stays",
+                1);
   } catch (const std::exception& error) {
-    return told(std::string("a mistake of the program itself: ") + error.what() + ": please report it with the command that shows it", 1);
+    return told(std::string("a mistake of the program itself: ") + error.what() +
+                    ": please report it with the command that shows it",
+                1);
   }
 }
 }  // namespace
@@ -94,7 +102,9 @@ int run(CLI::App& app, int argc, char** argv) {
   check_files_of_all(app);
   const int code = run_command(app, argc, argv);
   if (all_is_printed()) return code;
-  return told("what was printed could not be written: standard output: check that its disk has room and that it is open", code == 0 ? 1 : code);
+  return told(
+      "what was printed could not be written: standard output: check that its disk has room and that it is open",
+      code == 0 ? 1 : code);
 }
 
 }  // namespace limber::cmd

@@ -18,7 +18,7 @@ void add_seam_option(CLI::App& command, std::string& seams);
 
 // Into `tissue`: those of the file, none, or where nothing is said those that are found.
 //   parts  asked only where seams are looked for
-void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body, const std::function<const BoneParts&()>& parts,
-               Progress& progress);
+void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body,
+               const std::function<const BoneParts&()>& parts, Progress& progress);
 
 }  // namespace limber::cmd

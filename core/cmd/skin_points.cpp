@@ -84,8 +84,10 @@ class CaseReader {
   void read_influences(SkinCase& skin) const {
     const auto offsets = numbers(json_, "influence_offsets"), bones = numbers(json_, "influence_bones"),
                weights = numbers(json_, "influence_weights");
-    if (bones.size() != weights.size()) fail("\"influence_bones\" and \"influence_weights\" differ in length", "correct it");
-    if (offsets.size() != skin.points.size() + 1) fail("\"influence_offsets\" is not one longer than the points", "correct it");
+    if (bones.size() != weights.size())
+      fail("\"influence_bones\" and \"influence_weights\" differ in length", "correct it");
+    if (offsets.size() != skin.points.size() + 1)
+      fail("\"influence_offsets\" is not one longer than the points", "correct it");
     for (size_t i = 0; i < bones.size(); ++i) {
       if (!(bones[i] >= 0 && bones[i] < double(skin.bones.size())) || !(weights[i] >= 0))
         fail("influence " + std::to_string(i) + " has an unknown bone or a negative weight", "correct it");
@@ -93,7 +95,8 @@ class CaseReader {
     }
     double last = 0;
     for (double offset : offsets) {
-      if (!(offset >= last && offset <= double(bones.size()))) fail("\"influence_offsets\" do not rise", "correct them");
+      if (!(offset >= last && offset <= double(bones.size())))
+        fail("\"influence_offsets\" do not rise", "correct them");
       skin.offsets.push_back(static_cast<std::int64_t>(offset));
       last = offset;
     }

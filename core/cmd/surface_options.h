@@ -9,7 +9,7 @@
 
 #include "core/base/progress.h"
 #include "core/mesh/label_surfaces.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber::cmd {
 
@@ -22,6 +22,7 @@ struct SurfaceChoice {
 
 // Writes them and prints a line a tissue: triangles, vertices, Euler number, volume by mesh and by voxels.
 //   throws Error for a tissue that is not there, or when a file cannot be written (none is left then)
-void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice, const std::string& output, Progress& progress);
+void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice,
+                       const std::string& output, Progress& progress);
 
 }  // namespace limber::cmd

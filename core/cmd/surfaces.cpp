@@ -5,14 +5,14 @@
 #include <memory>
 
 #include "core/base/error.h"
-#include "core/base/outputs.h"
+#include "core/base/output_files.h"
+#include "core/base/text_parse.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/surface_options.h"
 #include "core/cmd/tissue_options.h"
-#include "core/mesh/surface_files.h"
-#include "core/volume/grey_image.h"
-#include "core/volume/header_text.h"
+#include "core/export/surface_files.h"
+#include "core/volume_io/grey_image.h"
 
 namespace limber::cmd {
 
@@ -22,16 +22,20 @@ struct Options {
   SurfaceChoice choice;
 };
 
-bool is_meant(const Tissue& tissue, const std::string& word) { return lower_case(tissue.name) == lower_case(word) || text_of(tissue.file_value) == word; }
+bool is_meant(const Tissue& tissue, const std::string& word) {
+  return lower_case(tissue.name) == lower_case(word) || text_of(tissue.file_value) == word;
+}
 
 void keep_chosen(LabelSurfaces& all, const TissueTable& tissues, const std::vector<std::string>& chosen) {
   if (chosen.empty()) return;
   for (const std::string& word : chosen)
-    if (std::none_of(tissues.tissues.begin(), tissues.tissues.end(), [&](const Tissue& tissue) { return is_meant(tissue, word); }))
+    if (std::none_of(tissues.tissues.begin(), tissues.tissues.end(),
+                     [&](const Tissue& tissue) { return is_meant(tissue, word); }))
       throw Error("there is no tissue " + in_quotes(word), "--only", "name tissues or labels that `limber info` lists");
   std::erase_if(all.surfaces, [&](const LabelSurface& surface) {
     const Tissue* tissue = tissues.find(surface.label);
-    return !tissue || std::none_of(chosen.begin(), chosen.end(), [&](const std::string& word) { return is_meant(*tissue, word); });
+    return !tissue ||
+           std::none_of(chosen.begin(), chosen.end(), [&](const std::string& word) { return is_meant(*tissue, word); });
   });
 }
 
@@ -41,9 +45,10 @@ void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const T
   print("%-28s %10s %10s %7s %14s %9s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels");
   for (const LabelSurface& surface : all.surfaces) {
     const Tissue* tissue = tissues.find(surface.label);
-    const double mm3 = enclosed_volume(all, surface), by_voxels = static_cast<double>(voxels[surface.label]) * volume.grid.voxel_volume();
-    print("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(), surface.vertex.size(), surface.euler_number(), mm3,
-                100 * mm3 / by_voxels);
+    const double mm3 = enclosed_volume(all, surface),
+                 by_voxels = static_cast<double>(voxels[surface.label]) * volume.grid.voxel_volume();
+    print("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(),
+          surface.vertex.size(), surface.euler_number(), mm3, 100 * mm3 / by_voxels);
   }
 }
 // The file, or what stands there already as a file of a tissue.
@@ -52,14 +57,18 @@ OptionFiles files_of_surfaces(const std::string& name) {
   OptionFiles files{{}, {path}};
   const std::string start = path.stem().string() + "-", end = path.extension().string();
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path.has_parent_path() ? path.parent_path() : Path("."), error))
-    if (const std::string file = entry.path().filename().string(); file.starts_with(start) && file.ends_with(end)) files.written.push_back(entry.path());
+  for (const auto& entry :
+       std::filesystem::directory_iterator(path.has_parent_path() ? path.parent_path() : Path("."), error))
+    if (const std::string file = entry.path().filename().string(); file.starts_with(start) && file.ends_with(end))
+      files.written.push_back(entry.path());
   return files;
 }
 }  // namespace
 
-void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice, const std::string& output, Progress& progress) {
-  if (!is_surface_path(output)) throw Error("surfaces cannot be written under this name", output, std::string("end it in ") + kSurfaceEndings);
+void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice,
+                       const std::string& output, Progress& progress) {
+  if (!is_surface_path(output))
+    throw Error("surfaces cannot be written under this name", output, std::string("end it in ") + kSurfaceEndings);
   LabelSurfaces all = label_surfaces(volume, choice.settings, progress);
   keep_chosen(all, tissues, choice.tissues);
   if (all.surfaces.empty()) throw Error("there is no tissue", output, "give a volume with labels");
@@ -75,10 +84,20 @@ void add_surfaces(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")->delimiter(',')->type_name("A,B");
-  command->add_option("--relax", options->choice.settings.relaxations, "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels and volumes as they are)")->check(CLI::Range(0, 1000));
-  writes(command->add_option("-o,--output", options->output, "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)"), files_of_surfaces)->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")
+      ->delimiter(',')
+      ->type_name("A,B");
+  command
+      ->add_option("--relax", options->choice.settings.relaxations,
+                   "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels "
+                   "and volumes as they are)")
+      ->check(CLI::Range(0, 1000));
+  writes(command->add_option("-o,--output", options->output,
+                             "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)"),
+         files_of_surfaces)
+      ->required();
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
   command->callback([options] {
     check_place(options->output);
     CommandProgress progress(options->progress);

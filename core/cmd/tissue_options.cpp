@@ -7,7 +7,10 @@ namespace limber::cmd {
 
 CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options) {
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP): names, kinds and densities");
-  command.add_option("--properties", options.properties, "more rows for the table of dielectric properties; they go before its own")->type_name("P.csv");
+  command
+      .add_option("--properties", options.properties,
+                  "more rows for the table of dielectric properties; they go before its own")
+      ->type_name("P.csv");
   return command.add_option("--frequency", options.frequency, "of the field, in Hz, as in 900e6")->type_name("HZ");
 }
 
@@ -17,11 +20,14 @@ TissueTable tissues_of(const VolumeFile& file, const std::string& table) {
   return merge_tissue_tables(file.tissues, &user);
 }
 
-std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options, const std::string& where) {
-  if (!options.frequency) throw Error("permittivity and conductivity go by frequency", where, "add --frequency, as in --frequency 900e6");
+std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
+                                         const std::string& where) {
+  if (!options.frequency)
+    throw Error("permittivity and conductivity go by frequency", where, "add --frequency, as in --frequency 900e6");
   TissueMaterials found = tissue_materials(tissues, read_dielectric_table(options.properties), *options.frequency);
   if (!found.unmatched.empty())
-    throw Error("no dielectric properties are known of: " + joined(found.unmatched), where, "add rows with --properties, or merge labels with `limber prepare --merge`");
+    throw Error("no dielectric properties are known of: " + joined(found.unmatched), where,
+                "add rows with --properties, or merge labels with `limber prepare --merge`");
   return std::move(found.materials);
 }
 

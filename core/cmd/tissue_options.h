@@ -8,8 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/volume/dielectric.h"
-#include "core/volume/volume_io.h"
+#include "core/tissue/dielectric.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::cmd {
 
@@ -25,7 +25,8 @@ CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options);
 TissueTable tissues_of(const VolumeFile& file, const std::string& table);
 
 // Of every tissue of the table. Throws Error without a frequency, and where one has no properties: `where` is the file.
-std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options, const std::string& where);
+std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
+                                         const std::string& where);
 
 std::string joined(const std::vector<std::string>& names);  // "a, b, c"
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity, conductivity and
-// density of each tissue of a volume, or of every row of the table, each with the row that it was matched to, and how.
+// limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity,
+// conductivity and density of each tissue of a volume, or of every row of the table, each with the row that it was
+// matched to, and how.
 #include <cstdio>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/text_parse.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/tissue_options.h"
-#include "core/volume/grey_image.h"
-#include "core/volume/header_text.h"
-#include "core/volume/tissue_rows.h"
+#include "core/tissue/tissue_rows.h"
+#include "core/volume_io/grey_image.h"
 
 namespace limber::cmd {
 
@@ -25,8 +26,9 @@ struct Options {
 std::string matched(const TissueMaterial& material) { return material.by_name ? "name" : "kind"; }
 
 std::string csv_of(const TissueMaterials& tissues) {
-  std::string text = "label,tissue,row,matched,found,density_kg_m3,density_source,properties,stand_in,"
-                     "relative_permittivity,conductivity_S_m,source\n";
+  std::string text =
+      "label,tissue,row,matched,found,density_kg_m3,density_source,properties,stand_in,"
+      "relative_permittivity,conductivity_S_m,source\n";
   for (const TissueMaterial& m : tissues.materials)
     text += text_of(m.file_value) + "," + csv_field(m.name) + "," + csv_field(m.row) + "," + matched(m) + "," +
             csv_field(m.found) + "," + text_of(m.density) + "," + csv_field(m.density_source) + "," +
@@ -36,24 +38,34 @@ std::string csv_of(const TissueMaterials& tissues) {
 }
 
 nlohmann::ordered_json json_of(const TissueMaterials& tissues, double frequency) {
-  nlohmann::ordered_json json = {{"kind", "tissue properties"}, {"frequency", frequency}, {"tissues", nlohmann::ordered_json::array()}, {"unmatched", tissues.unmatched}};
+  nlohmann::ordered_json json = {{"kind", "tissue properties"},
+                                 {"frequency", frequency},
+                                 {"tissues", nlohmann::ordered_json::array()},
+                                 {"unmatched", tissues.unmatched}};
   for (const TissueMaterial& m : tissues.materials)
-    json["tissues"].push_back({{"label", m.file_value}, {"name", m.name}, {"row", m.row}, {"matched", matched(m)},
-                               {"found", m.found}, {"density_kg_m3", m.density}, {"density_source", m.density_source},
-                               {"properties", m.properties}, {"stand_in", m.stand_in},
+    json["tissues"].push_back({{"label", m.file_value},
+                               {"name", m.name},
+                               {"row", m.row},
+                               {"matched", matched(m)},
+                               {"found", m.found},
+                               {"density_kg_m3", m.density},
+                               {"density_source", m.density_source},
+                               {"properties", m.properties},
+                               {"stand_in", m.stand_in},
                                {"relative_permittivity", m.dielectric.permittivity},
-                               {"conductivity_S_m", m.dielectric.conductivity}, {"source", m.source}});
+                               {"conductivity_S_m", m.dielectric.conductivity},
+                               {"source", m.source}});
   return json;
 }
 
 void print_table(const TissueMaterials& tissues) {
   print("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "taken for", "found by", "kg/m3", "eps_r",
-              "S/m", "properties of");
+        "S/m", "properties of");
   for (const TissueMaterial& m : tissues.materials)
-    print("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(),
-                one_line(m.name).c_str(), one_line(m.row).c_str(), one_line(m.found).c_str(), m.density,
-                m.dielectric.permittivity, m.dielectric.conductivity,
-                one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
+    print("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(), one_line(m.name).c_str(),
+          one_line(m.row).c_str(), one_line(m.found).c_str(), m.density, m.dielectric.permittivity,
+          m.dielectric.conductivity,
+          one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
 }
 
 // The user's rows and the program's, each as if it were a tissue.
@@ -86,9 +98,13 @@ void list_tissues(const Options& options) {
   }
   const TissueMaterials found = tissue_materials(tissues, table, *options.material.frequency);
   if (!options.output.empty()) write_file_atomically(options.output, csv_of(found));
-  if (options.json) print_json(json_of(found, *options.material.frequency).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (options.json)
+    print_json(
+        json_of(found, *options.material.frequency).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+        "\n");
   else if (options.output.empty()) print_table(found);
-  if (!found.unmatched.empty()) warn("no dielectric properties are known of: " + joined(found.unmatched) + ": add rows with --properties");
+  if (!found.unmatched.empty())
+    warn("no dielectric properties are known of: " + joined(found.unmatched) + ": add rows with --properties");
 }
 }  // namespace
 
@@ -98,8 +114,10 @@ void add_tissues(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
   add_material_options(*command, options->material)->required();
   command->add_flag("--json", options->json, "for programs");
-  writes(command->add_option("-o,--output", options->output, "the list as comma-separated values"))->type_name("OUT.csv");
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  writes(command->add_option("-o,--output", options->output, "the list as comma-separated values"))
+      ->type_name("OUT.csv");
+  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+      ->check(CLI::IsMember({"json"}));
   command->callback([options] { list_tissues(*options); });
 }
 

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o W.nrrd [--bender-dir DIR] [--strict]
+// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o
+// W.nrrd [--bender-dir DIR] [--strict]
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/binding/geodesic.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/binding/rigid.h"
+#include "core/bones/bone_parts.h"
+#include "core/bones/unsure_bones.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/seam_options.h"
-#include "core/bones/bone_parts.h"
-#include "core/bones/unsure_bones.h"
 #include "core/report/report.h"
 #include "core/report/whole_bones.h"
-#include "core/skin/geodesic.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/skin/rigid.h"
 #include "core/skin/weights_io.h"
 
 namespace limber::cmd {
@@ -31,12 +32,13 @@ struct Options {
 void print_table(const BoneParts& parts, const Armature& armature) {
   print("%-28s %10s   %s\n", "rig bone", "voxels", "centre of the bone part, mm");
   for (const auto& part : parts.parts)
-    print("%-28s %10lld   %.0f %.0f %.0f\n", one_line(armature.bones[part.bone].name).c_str(), static_cast<long long>(part.voxel_count),
-                part.centre.x, part.centre.y, part.centre.z);
+    print("%-28s %10lld   %.0f %.0f %.0f\n", one_line(armature.bones[part.bone].name).c_str(),
+          static_cast<long long>(part.voxel_count), part.centre.x, part.centre.y, part.centre.z);
   std::vector<bool> has_part(armature.bones.size(), false);
   for (const auto& part : parts.parts) has_part[part.bone] = true;
   for (size_t b = 0; b < armature.bones.size(); ++b)
-    if (!has_part[b]) print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
+    if (!has_part[b])
+      print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
 }
 
 // Which rig bone each label of bone follows, and how that was found.
@@ -45,21 +47,25 @@ void print_identities(const BoneParts& parts, const TissueTable& tissues, const 
   for (const auto& identity : parts.identities) {
     const Tissue* tissue = tissues.find(identity.label);
     const std::string name = tissue && !tissue->name.empty() ? tissue->name : "label " + std::to_string(identity.label);
-    print("%-44.44s %-20s %10lld   %s%s\n", one_line(name).c_str(), one_line(armature.bones[identity.bone].name).c_str(), static_cast<long long>(identity.voxel_count),
-                std::string(to_string(identity.found_by)).c_str(), identity.is_substitute ? ", not sure" : "");
+    print("%-44.44s %-20s %10lld   %s%s\n", one_line(name).c_str(),
+          one_line(armature.bones[identity.bone].name).c_str(), static_cast<long long>(identity.voxel_count),
+          std::string(to_string(identity.found_by)).c_str(), identity.is_substitute ? ", not sure" : "");
   }
 }
 
-// The gates that weights can be judged by before any pose: whether the inputs belong together, and each named bone follows its own
-// rig bone.
+// The gates that weights can be judged by before any pose: whether the inputs belong together, and each named bone
+// follows its own rig bone.
 std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& tissue, const SkinWeights& weights) {
   Report report;
   report.doubts = body.doubts;
   const std::vector<RigidTransform> at_rest(weights.bones().size());
-  report.posed_bones.whole = whole_bones(body.file.volume, tissue, body.tissues, body.rig, weights, at_rest, body.bone_map);
+  report.posed_bones.whole =
+      whole_bones(body.file.volume, tissue, body.tissues, body.rig, weights, at_rest, body.bone_map);
   judge(report);
   std::erase_if(report.gates, [](const QualityGate& gate) { return gate.id != "inputs" && gate.id != "follows"; });
-  for (const QualityGate& gate : report.gates) print("%-11s %s\n", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), one_line(gate.sentence).c_str());
+  for (const QualityGate& gate : report.gates)
+    print("%-11s %s\n", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(),
+          one_line(gate.sentence).c_str());
   return failed_gates(report);
 }
 
@@ -84,18 +90,20 @@ void make_weights(const Options& options) {
 
   TissueVoxels tissue(volume);
   const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress, body.bone_map);
-  set_seams(tissue, options.seams, body, [&]() -> const BoneParts& { return parts; }, progress);
+  set_seams(
+      tissue, options.seams, body, [&]() -> const BoneParts& { return parts; }, progress);
   WeightsReport report;
-  const SkinWeights weights =
-      options.method == "rigid"      ? bind_rigid(volume, tissue, rig, parts, progress, &report)
-      : options.method == "geodesic" ? bind_geodesic(volume, tissue, rig, parts, {}, progress, &report)
-                                     : diffuse_heat(volume, tissue, body.tissues, rig, parts, {}, progress, &report);
+  const SkinWeights weights = options.method == "rigid" ? bind_rigid(volume, tissue, rig, parts, progress, &report)
+                              : options.method == "geodesic"
+                                  ? bind_geodesic(volume, tissue, rig, parts, {}, progress, &report)
+                                  : diffuse_heat(volume, tissue, body.tissues, rig, parts, {}, progress, &report);
   warn(report.warnings);
   warn(unsure_bones(parts, body.tissues, rig));
   if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
   write_weights(weights, volume, tissue, options.output, SeamsOfWeights::OfTissue);
 
-  print("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()), one_line(body.tissues.source).c_str());
+  print("tissue: %lld voxels, table: %s\n", static_cast<long long>(tissue.size()),
+        one_line(body.tissues.source).c_str());
   print_table(parts, rig);
   print_identities(parts, body.tissues, rig);
   if (options.method == "heat") print("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
@@ -110,11 +118,15 @@ void add_weights(CLI::App& app) {
   auto* command = app.add_subcommand("weights", "how tissue follows the bones: up to four bones and weights a voxel");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
+  command->add_option("--method", options->method, "heat, geodesic or rigid")
+      ->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
   add_seam_option(*command, options->seams);
   writes(command->add_option("-o,--output", options->output, "W.nrrd"))->required();
-  writes(command->add_option("--bender-dir", options->bender_folder, "also write weight_NN.mha, one a bone, into this folder"), files_of_bender_folder);
-  command->add_flag("--strict", options->strict, "exit code 5 when the inputs do not belong together, or a named bone follows another's rig bone");
+  writes(command->add_option("--bender-dir", options->bender_folder,
+                             "also write weight_NN.mha, one a bone, into this folder"),
+         files_of_bender_folder);
+  command->add_flag("--strict", options->strict,
+                    "exit code 5 when the inputs do not belong together, or a named bone follows another's rig bone");
   add_run_options(*command, options->run);
   command->callback([options] { make_weights(*options); });
 }

@@ -33,7 +33,8 @@ class BoxBins {
   void meeting(const VoxelRange& range, std::vector<int>& found) const {
     found.clear();
     if (begin_.empty() || range.empty()) return;
-    const glm::ivec3 low = glm::max(bin_of(range.low) - first_, glm::ivec3(0)), high = glm::min(bin_of(range.high) - first_, size_ - 1);
+    const glm::ivec3 low = glm::max(bin_of(range.low) - first_, glm::ivec3(0)),
+                     high = glm::min(bin_of(range.high) - first_, size_ - 1);
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {

@@ -48,8 +48,12 @@ CarriedPoints::Hold CarriedPoints::hold_in(int tet, const glm::dvec3& world) con
   return hold;
 }
 
-CarriedPoints::CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points, double furthest_mm)
-    : mesh_(std::move(mesh)), voxel_from_world_(voxel_from_world(grid)), rest_(points.size()), holds_(points.size()) {
+CarriedPoints::CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid,
+                             const std::vector<PointToCarry>& points, double furthest_mm)
+    : mesh_(std::move(mesh)),
+      voxel_from_world_(voxel_from_world(grid)),
+      rest_(points.size()),
+      holds_(points.size()) {
   if (mesh_->T.rows() == 0) return;
   const AffineTransform world_from_voxel = limber::world_from_voxel(grid);
   const BoxBins tets = boxes_of(*mesh_, grid);
@@ -63,7 +67,9 @@ CarriedPoints::CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& gr
       tets.meeting({glm::ivec3(glm::floor(anchor)), glm::ivec3(glm::ceil(anchor))}, near);
       for (const int tet : near) {
         Hold candidate = hold_in(tet, at);
-        if (std::any_of(candidate.shares.begin(), candidate.shares.end(), [](double share) { return !(share >= -kEdge); })) continue;
+        if (std::any_of(candidate.shares.begin(), candidate.shares.end(),
+                        [](double share) { return !(share >= -kEdge); }))
+          continue;
         hold = candidate;
         break;
       }
@@ -92,7 +98,8 @@ std::vector<std::optional<glm::dvec3>> CarriedPoints::posed(const Eigen::MatrixX
       glm::dvec3 shift(0);
       for (int c = 0; c < 4; ++c) shift += hold.shares[c] * in_mm(moved, hold.nodes[c]);
       if (hold.off != glm::dvec3(0)) {
-        const Eigen::Vector3d turned = rotation_of(*mesh_, moved, hold.tet) * Eigen::Vector3d(hold.off.x, hold.off.y, hold.off.z);
+        const Eigen::Vector3d turned =
+            rotation_of(*mesh_, moved, hold.tet) * Eigen::Vector3d(hold.off.x, hold.off.y, hold.off.z);
         shift += glm::dvec3(turned.x(), turned.y(), turned.z()) - hold.off;
       }
       places[i] = voxel_from_world_ * (rest_[i] + shift);

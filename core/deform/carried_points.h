@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Points that a tet mesh carries, found once at rest and then posed as often as the mesh moves. A point in the mesh goes with
-// its tet; one beside it, no further than some mm, with the nearest place of its border, turned by the rotation of the tet there.
-// A point may be tied to an anchor instead: it then goes as if it were fixed to the tissue around that, however far the point
-// itself lies; so the corners of a lattice cell follow the one of two fingers that they are meant for.
+// Points that a tet mesh carries, found once at rest and then posed as often as the mesh moves. A point in the mesh
+// goes with its tet; one beside it, no further than some mm, with the nearest place of its border, turned by the
+// rotation of the tet there. A point may be tied to an anchor instead: it then goes as if it were fixed to the tissue
+// around that, however far the point itself lies; so the corners of a lattice cell follow the one of two fingers that
+// they are meant for.
 #pragma once
 
 #include <array>
@@ -23,7 +24,8 @@ struct PointToCarry {
 class CarriedPoints {
  public:
   //   furthest_mm  from an anchor to the mesh
-  CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points, double furthest_mm);
+  CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points,
+                double furthest_mm);
 
   const std::shared_ptr<const TetMesh>& mesh() const { return mesh_; }
   // Where they are, voxel coordinates; none for those that are too far from the mesh.    posed  #V by 3, world, mm

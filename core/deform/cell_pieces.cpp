@@ -33,9 +33,10 @@ Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
     grown = false;
     for (int z = 0; z < 8; ++z) {
       const std::uint64_t here = piece[z];
-      const std::uint64_t around = here | (here & open(0, z) & ~kLastColumn) << 1 | ((here & ~kFirstColumn) >> 1 & open(0, z)) |
-                                   (here & open(1, z)) << 8 | (here >> 8 & open(1, z)) |
-                                   (z > 0 ? piece[z - 1] & open(2, z - 1) : 0) | (z < 7 ? piece[z + 1] & open(2, z) : 0);
+      const std::uint64_t around = here | (here & open(0, z) & ~kLastColumn) << 1 |
+                                   ((here & ~kFirstColumn) >> 1 & open(0, z)) | (here & open(1, z)) << 8 |
+                                   (here >> 8 & open(1, z)) | (z > 0 ? piece[z - 1] & open(2, z - 1) : 0) |
+                                   (z < 7 ? piece[z + 1] & open(2, z) : 0);
       piece[z] = around & voxels[z];
       grown = grown || piece[z] != here;
     }
@@ -71,7 +72,11 @@ std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels
 class Gather {
  public:
   Gather(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing)
-      : tissue_(tissue), weights_(weights), step_(step), spacing_(spacing), slot_of_(weights.bones().size(), -1) {}
+      : tissue_(tissue),
+        weights_(weights),
+        step_(step),
+        spacing_(spacing),
+        slot_of_(weights.bones().size(), -1) {}
 
   void add(std::int64_t brick_index, std::vector<CellPiece>& pieces) {
     const TissueVoxels::Brick& brick = tissue_.bricks()[brick_index];
@@ -88,7 +93,8 @@ class Gather {
           left[z] &= ~piece[z];
           for (std::uint64_t bits = piece[z]; bits; bits &= bits - 1) {
             const int bit = std::countr_zero(bits);
-            piece_of_[low.x + (bit & 7) + 8 * (low.y + (bit >> 3)) + 64 * (low.z + z)] = static_cast<std::uint16_t>(std::ssize(pieces) - first);
+            piece_of_[low.x + (bit & 7) + 8 * (low.y + (bit >> 3)) + 64 * (low.z + z)] =
+                static_cast<std::uint16_t>(std::ssize(pieces) - first);
           }
         }
         pieces.push_back({brick.corner / step_ + cell, piece, 0, {}, {}, {}, cuts});
@@ -110,11 +116,13 @@ class Gather {
     for (std::int64_t piece = 0; piece < count_; ++piece)
       for (size_t slot = 0; slot < bones_.size(); ++slot)
         for (int corner = 0; corner < 8; ++corner)
-          if (const float sum = sums_[(slot * count_ + piece) * 8 + corner]; sum > 0) pieces[first + piece].shares.push_back({corner, bones_[slot], sum});
+          if (const float sum = sums_[(slot * count_ + piece) * 8 + corner]; sum > 0)
+            pieces[first + piece].shares.push_back({corner, bones_[slot], sum});
     for (const int bone : bones_) slot_of_[bone] = -1;
     for (std::int64_t piece = 0; piece < count_; ++piece) {
       auto& stiff = pieces[first + piece].stiff;
-      std::sort(stiff.begin(), stiff.end(), [](const CellPiece::Stiff& a, const CellPiece::Stiff& b) { return a.bone < b.bone; });
+      std::sort(stiff.begin(), stiff.end(),
+                [](const CellPiece::Stiff& a, const CellPiece::Stiff& b) { return a.bone < b.bone; });
     }
   }
 
@@ -131,7 +139,8 @@ class Gather {
       }
       float* sums = &sums_[(slot * count_ + piece) * 8];
       for (int i = 0; i < 8; ++i)
-        sums[i] += static_cast<float>(hold * influence.weight[n] * (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z));
+        sums[i] += static_cast<float>(hold * influence.weight[n] * (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) *
+                                      (i & 4 ? t.z : 1 - t.z));
     }
   }
 
@@ -141,7 +150,8 @@ class Gather {
     const std::uint64_t place = std::uint64_t{1} << (at.x + 4 * (at.y + 4 * at.z));
     piece.places |= place;
     for (int i = 0; i < 8; ++i) {
-      const glm::dvec3 away = (glm::dvec3(voxel) + 0.5 - glm::dvec3(i & 1, i >> 1 & 1, i >> 2) * double(step_)) * spacing_;
+      const glm::dvec3 away =
+          (glm::dvec3(voxel) + 0.5 - glm::dvec3(i & 1, i >> 1 & 1, i >> 2) * double(step_)) * spacing_;
       piece.away[i] = std::min(piece.away[i], static_cast<float>(glm::dot(away, away)));
     }
     if (influence.weight[0] != kFullWeight) return;
@@ -165,21 +175,23 @@ class Gather {
 
 }  // namespace
 
-std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing) {
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
+                                   const glm::dvec3& spacing) {
   std::vector<std::int64_t> every(tissue.bricks().size());
   std::iota(every.begin(), every.end(), 0);
   return cell_pieces(tissue, weights, step, spacing, every);
 }
 
-std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing,
-                                   std::span<const std::int64_t> bricks) {
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
+                                   const glm::dvec3& spacing, std::span<const std::int64_t> bricks) {
   std::vector<std::vector<CellPiece>> blocks((bricks.size() + kGrain - 1) / kGrain);
   parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Gather gather(tissue, weights, step, spacing);
     for (auto i = begin; i < end; ++i) gather.add(bricks[i], blocks[begin / kGrain]);
   });
   std::vector<CellPiece> pieces;
-  for (auto& block : blocks) pieces.insert(pieces.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
+  for (auto& block : blocks)
+    pieces.insert(pieces.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
   return pieces;
 }
 
@@ -194,7 +206,10 @@ bool touch(const CellPiece& a, const CellPiece& b, int axis, int step) {
 }
 
 PiecesByCell::PiecesByCell(const std::vector<CellPiece>& pieces, const glm::ivec3& first, const glm::ivec3& size)
-    : pieces_(&pieces), first_(first), size_(size), begin_(size_t(size.x) * size.y * size.z, -1) {
+    : pieces_(&pieces),
+      first_(first),
+      size_(size),
+      begin_(size_t(size.x) * size.y * size.z, -1) {
   for (size_t i = pieces.size(); i-- > 0;) {
     const glm::ivec3 c = pieces[i].cell - first;
     begin_[c.x + std::int64_t{size.x} * (c.y + std::int64_t{size.y} * c.z)] = static_cast<std::int32_t>(i);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue of coarse cells of step^3 voxels, in pieces that hang together: voxels of one cell that touch by faces. Two
-// fingers that pass through one cell are two pieces of it, and so are the two sides of a seam. Each piece says how much of what influence it gives to the
-// corners of its cell: every voxel its trilinear share, and tissue that follows one bone wholly, as bone does, a thousand
-// times as much as what is blended, so that bones stay stiff up to their border.
+// The tissue of coarse cells of step^3 voxels, in pieces that hang together: voxels of one cell that touch by faces.
+// Two fingers that pass through one cell are two pieces of it, and so are the two sides of a seam. Each piece says how
+// much of what influence it gives to the corners of its cell: every voxel its trilinear share, and tissue that follows
+// one bone wholly, as bone does, a thousand times as much as what is blended, so that bones stay stiff up to their
+// border.
 #pragma once
 
 #include <array>
@@ -32,21 +33,22 @@ struct CellPiece {
     std::uint64_t places;
   };
 
-  glm::ivec3 cell;                      // holds the voxels cell step .. cell step + step - 1
-  std::array<std::uint64_t, 8> voxels;  // bit x + 8 y of word z, from the cell's lowest voxel on
-  std::uint64_t places = 0;             // of the 4^3 of the cell, x fastest, those with tissue of the piece
-  std::array<float, 8> away;            // mm2 from each corner to the nearest voxel
-  std::vector<Share> shares;            // by bone, corners rising
-  std::vector<Stiff> stiff;             // bones rising
+  glm::ivec3 cell;                                 // holds the voxels cell step .. cell step + step - 1
+  std::array<std::uint64_t, 8> voxels;             // bit x + 8 y of word z, from the cell's lowest voxel on
+  std::uint64_t places = 0;                        // of the 4^3 of the cell, x fastest, those with tissue of the piece
+  std::array<float, 8> away;                       // mm2 from each corner to the nearest voxel
+  std::vector<Share> shares;                       // by bone, corners rising
+  std::vector<Stiff> stiff;                        // bones rising
   std::shared_ptr<const CellCuts> cuts = nullptr;  // null where no seam is near
 };
 
 // The pieces in order of the bricks that hold them; a cell lies in one brick and its pieces behind one another.
 //   step  2, 4 or 8    spacing  of voxels, mm
-std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing);
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
+                                   const glm::dvec3& spacing);
 // Of some bricks only.
-std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing,
-                                   std::span<const std::int64_t> bricks);
+std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
+                                   const glm::dvec3& spacing, std::span<const std::int64_t> bricks);
 
 // Whether voxels of both touch by faces that are not cut, `b` lying in the next cell along the axis.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);

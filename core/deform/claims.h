@@ -11,7 +11,10 @@ class Claims {
  public:
   //   priority  of the tissue, per label       depth  nullptr where no pose can make a fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
-      : map_(map), volume_(volume), priority_(priority), depth_(depth) {}
+      : map_(map),
+        volume_(volume),
+        priority_(priority),
+        depth_(depth) {}
 
   void claim(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
     const std::int64_t at = map_.index(claim.voxel);
@@ -27,10 +30,8 @@ class Claims {
   // The same where no cell was before.
   void claim_empty(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
     const std::int64_t at = map_.index(claim.voxel);
-    if (map_.cell[at] == InverseMap::kNoCell)
-      write(cell, claim, at);
-    else
-      count_overlap(rest_voxel, at, cell);
+    if (map_.cell[at] == InverseMap::kNoCell) write(cell, claim, at);
+    else count_overlap(rest_voxel, at, cell);
   }
 
  private:
@@ -42,7 +43,9 @@ class Claims {
   void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser) {
     const std::uint32_t holder = map_.cell[at];
     const glm::ivec3 size = volume_.grid.size;
-    if (are_neighbours(rest_voxel, {int(holder % size.x), int(holder / size.x % size.y), int(holder / size.x / size.y)})) return;
+    if (are_neighbours(rest_voxel,
+                       {int(holder % size.x), int(holder / size.x % size.y), int(holder / size.x / size.y)}))
+      return;
     map_.flags[at] |= InverseMap::kOverlap;
     map_.lost.push_back(volume_.voxels[loser]);
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
 #include "core/volume/float_lanes.h"
 
@@ -31,8 +31,7 @@ Eight lowest_around(const Eight* f, double squared_spacing) {
 
 }  // namespace
 
-TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing)
-    : tissue_(&tissue) {
+TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing) : tissue_(&tissue) {
   const std::size_t count = tissue.bricks().size() * kBrickVoxels;
   depth_.reserve(count);
   want_large_pages(depth_.data(), static_cast<std::int64_t>(count * sizeof(float)));
@@ -71,7 +70,9 @@ void TissueDepth::pass_along_x(double spacing) {
   const double squared_spacing = spacing * spacing;
   for_each_column(0, [&](const std::vector<int>& column) {
     for (int line = 0; line < kBrick * kBrick; ++line) {
-      const auto at = [&](int x) { return std::int64_t{column[x / kBrick]} * kBrickVoxels + line * kBrick + x % kBrick; };
+      const auto at = [&](int x) {
+        return std::int64_t{column[x / kBrick]} * kBrickVoxels + line * kBrick + x % kBrick;
+      };
       const auto is_tissue = [&](int x) {
         return tissue_->bricks()[column[x / kBrick]].mask[line / kBrick] >> (line % kBrick * kBrick + x % kBrick) & 1;
       };
@@ -90,7 +91,8 @@ void TissueDepth::pass_along_x(double spacing) {
 }
 
 void TissueDepth::pass_across(int axis, double spacing) {
-  const int along = axis == 1 ? kBrick : kBrick * kBrick, across = axis == 1 ? kBrick * kBrick : kBrick;  // strides in a brick
+  const int along = axis == 1 ? kBrick : kBrick * kBrick,
+            across = axis == 1 ? kBrick * kBrick : kBrick;  // strides in a brick
   for_each_column(axis, [&](const std::vector<int>& column) {
     std::vector<Eight> lines(column.size() * kBrick + 2);  // air at both ends
     for (int slice = 0; slice < kBrick; ++slice) {

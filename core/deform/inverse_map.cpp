@@ -35,19 +35,19 @@ Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& po
 
 // A cell of a brick, by its place there.
 PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_corner, const glm::ivec3& place) {
-  return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0), PosedLattice::place(0, 0, 1),
-                   brick_corner + place);
+  return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0),
+                   PosedLattice::place(0, 0, 1), brick_corner + place);
 }
 
 // The cells of a brick that bends, with shared corners or, where a seam is near, each with its own.
 class BentBrick {
  public:
   // Room for the brick's corners is needed where the lattice does not keep them.
-  BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room) : lowest_(lattice.tissue().bricks()[brick].corner) {
+  BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
+      : lowest_(lattice.tissue().bricks()[brick].corner) {
     if (lattice.is_split(brick))
       lattice.split_corners(brick, *(split_ = std::make_unique_for_overwrite<PosedLattice::SplitBrick>()));
-    else
-      shared_ = &lattice.corners(brick, room);
+    else shared_ = &lattice.corners(brick, room);
   }
   PosedCell at(const glm::ivec3& voxel) const {
     const glm::ivec3 v = voxel - lowest_;
@@ -61,25 +61,32 @@ class BentBrick {
   const PosedLattice::Corners* shared_ = nullptr;
 };
 
-// A brick whose cells all move as one. Their bone's motion, read backward, gives the cell and the rest point at once; only
-// next to a cell's border, where the fixed-point corners decide, are cells asked.
+// A brick whose cells all move as one. Their bone's motion, read backward, gives the cell and the rest point at once;
+// only next to a cell's border, where the fixed-point corners decide, are cells asked.
 class RigidBrick {
  public:
   // Room for the brick's corners is needed where cells are asked.
   RigidBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
-      : lattice_(lattice), brick_(brick), room_(room), cells_(lattice.tissue().bricks()[brick]),
+      : lattice_(lattice),
+        brick_(brick),
+        room_(room),
+        cells_(lattice.tissue().bricks()[brick]),
         rest_from_posed_(lattice.rest_from_posed(lattice.only_bone(brick))) {
     // Corners are rounded to whole numbers of fixed point; as much again for what else is rounded.
     const glm::dmat3& m = rest_from_posed_.linear;
-    for (int row = 0; row < 3; ++row) slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);
+    for (int row = 0; row < 3; ++row)
+      slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);
   }
 
-  bool is_precise() const { return slack_ < 0.1; }  // voxels of the output are not a thousand times larger than those at rest
+  bool is_precise() const {
+    return slack_ < 0.1;
+  }  // voxels of the output are not a thousand times larger than those at rest
 
   // claim(rest voxel, CellClaim) for every voxel of `range` whose centre lies in one of the cells.
   template <class Claim>
   void rasterize(const VoxelRange& range, const Claim& claim) {
-    const glm::dvec3 low = glm::dvec3(cells_.corner) - 0.5, step = rest_from_posed_.linear[0], ratio = lattice_.output().ratio;
+    const glm::dvec3 low = glm::dvec3(cells_.corner) - 0.5, step = rest_from_posed_.linear[0],
+                     ratio = lattice_.output().ratio;
     const double posed_per_rest = ratio.x * ratio.y * ratio.z;
     for (int z = range.low.z; z <= range.high.z; ++z)
       for (int y = range.low.y; y <= range.high.y; ++y) {
@@ -91,10 +98,8 @@ class RigidBrick {
           if (std::min({place.x, place.y, place.z}) < -slack_) continue;
           // Whole numbers below; std::floor would be a call.
           const glm::ivec3 least = glm::ivec3(place + (1 - slack_)) - 1, most(place + slack_);
-          if (least != most)
-            ask(least, most, voxel, claim);
-          else if (has(most))
-            claim(cells_.corner + most, CellClaim{voxel, low + place, posed_per_rest});
+          if (least != most) ask(least, most, voxel, claim);
+          else if (has(most)) claim(cells_.corner + most, CellClaim{voxel, low + place, posed_per_rest});
         }
       }
   }
@@ -108,7 +113,9 @@ class RigidBrick {
       for (int j = least.y; j <= most.y; ++j)
         for (int i = least.x; i <= most.x; ++i)
           if (const glm::ivec3 cell(i, j, k); has(cell))
-            cell_at(*corners_, cells_.corner, cell).rasterize({voxel, voxel}, [&](const CellClaim& exact) { claim(cells_.corner + cell, exact); });
+            cell_at(*corners_, cells_.corner, cell).rasterize({voxel, voxel}, [&](const CellClaim& exact) {
+              claim(cells_.corner + cell, exact);
+            });
   }
 
   bool has(const glm::ivec3& cell) const {
@@ -120,13 +127,13 @@ class RigidBrick {
   PosedLattice::Corners& room_;
   const TissueVoxels::Brick& cells_;
   const AffineTransform& rest_from_posed_;
-  double slack_ = 0;                                 // voxels at rest
-  const PosedLattice::Corners* corners_ = nullptr;   // once they were needed
+  double slack_ = 0;                                // voxels at rest
+  const PosedLattice::Corners* corners_ = nullptr;  // once they were needed
 };
 
 // The cells of a brick but for those of `without`; false where none is to be left out.
-bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::array<std::uint64_t, 8>& without, const VoxelRange& range,
-                    PosedLattice::Corners& room, Claims& claims) {
+bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::array<std::uint64_t, 8>& without,
+                    const VoxelRange& range, PosedLattice::Corners& room, Claims& claims) {
   if (std::all_of(without.begin(), without.end(), [](std::uint64_t slice) { return slice == 0; })) return false;
   const TissueVoxels::Brick& cells = lattice.tissue().bricks()[brick];
   if (without == cells.mask) return true;
@@ -182,7 +189,8 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
     if (lattice.is_still(brick)) {
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
         const glm::ivec3 at = voxel - lattice.output().base;
-        if (reach.contains(at)) claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, {at, glm::dvec3(voxel), 1});
+        if (reach.contains(at))
+          claims.claim(static_cast<std::uint32_t>(grid.index(voxel)), voxel, {at, glm::dvec3(voxel), 1});
       });
       continue;
     }
@@ -203,7 +211,9 @@ void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::ve
 
 RigidBones::RigidBones(const PosedLattice& lattice, const SkinWeights& weights, const LabelSet& is_bone,
                        const std::vector<RigidTransform>& posed_from_rest)
-    : lattice_(&lattice), weights_(&weights), is_bone_(&is_bone) {
+    : lattice_(&lattice),
+      weights_(&weights),
+      is_bone_(&is_bone) {
   const Grid& grid = lattice.volume().grid;
   const AffineTransform world = world_from_voxel(grid), voxel = voxel_from_world(grid);
   auto shift = [&](const RigidTransform& move) {
@@ -234,7 +244,10 @@ void RigidBones::find_pieces() {
       const VoxelRange reach{range.low - 1, range.high + 1};
       const auto [low, high] = posed_box(bone, range);
       const auto [lowest, highest] = posed_box(bone, reach);
-      pieces_.push_back({bone, brick, reach, {glm::ivec3(glm::floor(lowest)), glm::ivec3(glm::ceil(highest))},
+      pieces_.push_back({bone,
+                         brick,
+                         reach,
+                         {glm::ivec3(glm::floor(lowest)), glm::ivec3(glm::ceil(highest))},
                          {glm::ivec3(glm::ceil(low)), glm::ivec3(glm::floor(high))}});
     }
   }
@@ -244,7 +257,8 @@ void RigidBones::find_pieces() {
 std::pair<glm::dvec3, glm::dvec3> RigidBones::posed_box(int bone, const VoxelRange& voxels) const {
   glm::dvec3 low(INFINITY), high(-INFINITY);
   for (int i = 0; i < 8; ++i) {
-    const glm::dvec3 rest(i & 1 ? voxels.high.x + 0.5 : voxels.low.x - 0.5, i & 2 ? voxels.high.y + 0.5 : voxels.low.y - 0.5,
+    const glm::dvec3 rest(i & 1 ? voxels.high.x + 0.5 : voxels.low.x - 0.5,
+                          i & 2 ? voxels.high.y + 0.5 : voxels.low.y - 0.5,
                           i & 4 ? voxels.high.z + 0.5 : voxels.low.z - 0.5);
     const glm::dvec3 posed = lattice_->output().from_rest(rest + posed_shift_[bone] * rest);
     low = glm::min(low, posed);
@@ -304,7 +318,9 @@ bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampl
   if (const int own = owner(voxel); own >= 0) return own == bone;
 
   // What touches a seam belongs to one side of it alone.
-  if (const Seams* seams = lattice_->tissue().seams(); seams && lattice_->volume().grid.contains(voxel) && seams->touches(voxel)) return false;
+  if (const Seams* seams = lattice_->tissue().seams();
+      seams && lattice_->volume().grid.contains(voxel) && seams->touches(voxel))
+    return false;
   // Bone by its membership, though the nearest voxel is not: the nearest bone voxel around decides.
   double least = INFINITY;
   int found = -1;
@@ -323,15 +339,16 @@ bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampl
   return found == bone;
 }
 
-void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces, const LabelSampler& sampler, bool nearest,
-                       const TissueDepth* depth) const {
+void RigidBones::paint(InverseMap& map, const std::vector<std::int64_t>& pieces, const LabelSampler& sampler,
+                       bool nearest, const TissueDepth* depth) const {
   for (std::int64_t piece : pieces) {
     const int bone = pieces_[piece].bone;
     const VoxelRange range = intersect(pieces_[piece].posed, map.range);
     const glm::dvec3 low = glm::dvec3(pieces_[piece].rest.low) - 0.5, high = glm::dvec3(pieces_[piece].rest.high) + 0.5;
     for (int z = range.low.z; z <= range.high.z; ++z)
       for (int y = range.low.y; y <= range.high.y; ++y) {
-        const auto [first, last] = within(low, high, rest_point(bone, {range.low.x, y, z}), rest_point(bone, {range.low.x + 1, y, z}));
+        const auto [first, last] =
+            within(low, high, rest_point(bone, {range.low.x, y, z}), rest_point(bone, {range.low.x + 1, y, z}));
         for (int x = range.low.x + first; x <= std::min(range.high.x, range.low.x + last); ++x) {
           const glm::dvec3 rest = rest_point(bone, {x, y, z});
           if (glm::any(glm::lessThan(rest, low)) || glm::any(glm::greaterThan(rest, high))) continue;

@@ -10,7 +10,8 @@
 // Only cells that are no neighbours at rest (share no corner) count as overlap.
 //
 // Bones are painted rigidly, over whatever the cells say: cells at a bone's border share corners with soft tissue and
-// would bend it. A voxel is painted where a rig bone's own motion, read backward, leads to bone tissue of that rig bone.
+// would bend it. A voxel is painted where a rig bone's own motion, read backward, leads to bone tissue of that rig
+// bone.
 #pragma once
 
 #include <array>
@@ -30,15 +31,15 @@ struct InverseMap {
   static constexpr std::uint16_t kNoBone = 0xffff;
   enum Flag : std::uint8_t { kInverted = 1, kOverlap = 2, kBoneOverlap = 4 };
 
-  VoxelRange range;                  // of the posed lattice
-  std::vector<glm::vec3> rest;       // rest point
-  std::vector<std::uint32_t> cell;   // place in the rest grid of the voxel whose cell covers it, kNoCell outside all
-  std::vector<std::uint16_t> bone;   // the rig bone that paints it, kNoBone where none does
+  VoxelRange range;                 // of the posed lattice
+  std::vector<glm::vec3> rest;      // rest point
+  std::vector<std::uint32_t> cell;  // place in the rest grid of the voxel whose cell covers it, kNoCell outside all
+  std::vector<std::uint16_t> bone;  // the rig bone that paints it, kNoBone where none does
   std::vector<std::uint8_t> flags;
-  bool has_volume_ratio = true;      // whether it is wanted
-  std::vector<float> posed_per_rest; // volume ratio of the map
-  std::vector<Label> lost;           // of each claim that a cell lost to one that is no neighbour
-  RowSet row_used;                   // whether any voxel of the row is covered; the other rows are clear
+  bool has_volume_ratio = true;       // whether it is wanted
+  std::vector<float> posed_per_rest;  // volume ratio of the map
+  std::vector<Label> lost;            // of each claim that a cell lost to one that is no neighbour
+  RowSet row_used;                    // whether any voxel of the row is covered; the other rows are clear
 
   // An empty map of that range.
   void reset(const VoxelRange& new_range);

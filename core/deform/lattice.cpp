@@ -6,8 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
-#include "core/base/pages.h"
 #include "core/deform/brick_motions.h"
 #include "core/deform/settled_flesh.h"
 #include "core/deform/split_corners.h"
@@ -16,10 +16,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kFurthest = 32000;                    // output voxels from the base; fixed point holds 32 768
+constexpr double kFurthest = 32000;                          // output voxels from the base; fixed point holds 32 768
 constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // all corners of a limb, not those of a body
 constexpr int kSeveral = BrickMotions::kSeveral;
-constexpr int kHalo = TissueVoxels::kBrick + 2;        // a brick and one voxel around it
+constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
 
 // Of a byte; std::popcount is a call where the processor's own instruction may not be assumed.
@@ -33,8 +33,10 @@ constexpr std::array<std::uint8_t, 256> kBitCount = [] {
 class CornerWeights {
  public:
   //   moves_as  per bone: the one it is counted as
-  CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as, std::int64_t brick)
-      : moves_as_(moves_as), slot_of_(weights.bones().size(), -1) {
+  CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
+                std::int64_t brick)
+      : moves_as_(moves_as),
+        slot_of_(weights.bones().size(), -1) {
     const glm::ivec3 corner = tissue.bricks()[brick].corner;
     for (int k = -1; k <= 1; ++k)
       for (int j = -1; j <= 1; ++j)
@@ -63,7 +65,9 @@ class CornerWeights {
  private:
   // Voxels 0..7 of the brick itself, the last layer of a brick below, the first of one above.
   static glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
-  static glm::ivec3 last_of(const glm::ivec3& step) { return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7; }
+  static glm::ivec3 last_of(const glm::ivec3& step) {
+    return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7;
+  }
 
   void gather(const TissueVoxels::Brick& brick, const SkinWeights::Chunk& chunk, const glm::ivec3& step) {
     const glm::ivec3 first = first_of(step), last = last_of(step);
@@ -114,13 +118,15 @@ class CornerWeights {
 };
 
 bool is_full(const TissueVoxels::Brick& brick) {
-  return std::all_of(std::begin(brick.mask), std::end(brick.mask), [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
+  return std::all_of(std::begin(brick.mask), std::end(brick.mask),
+                     [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
 }
 
 // body(i, j, k) for the eight outermost corners of a brick.
 template <class Body>
 void for_each_outermost(const Body& body) {
-  for (int c = 0; c < 8; ++c) body((c & 1) * TissueVoxels::kBrick, (c >> 1 & 1) * TissueVoxels::kBrick, (c >> 2) * TissueVoxels::kBrick);
+  for (int c = 0; c < 8; ++c)
+    body((c & 1) * TissueVoxels::kBrick, (c >> 1 & 1) * TissueVoxels::kBrick, (c >> 2) * TissueVoxels::kBrick);
 }
 
 // body(i, j, k) for every corner of the brick's tissue voxels, in order of place.
@@ -143,9 +149,15 @@ void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
 PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                            const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
                            Progress& progress, const SettledFlesh* settled)
-    : volume_(&volume), tissue_(&tissue), weights_(&weights), world_from_voxel_(world_from_voxel(volume.grid)),
-      voxel_from_world_(voxel_from_world(volume.grid)), bones_(skin_transforms(posed_from_rest)), blend_(blend),
-      settled_(settled), output_{ratio} {
+    : volume_(&volume),
+      tissue_(&tissue),
+      weights_(&weights),
+      world_from_voxel_(world_from_voxel(volume.grid)),
+      voxel_from_world_(voxel_from_world(volume.grid)),
+      bones_(skin_transforms(posed_from_rest)),
+      blend_(blend),
+      settled_(settled),
+      output_{ratio} {
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
   still_.resize(count);
@@ -155,7 +167,8 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   rigid_ = std::move(brick_motions.around);
   for (const RigidTransform& posed : posed_from_rest) {
     const glm::dmat3 turn = voxel_from_world_.linear * (glm::mat3_cast(posed.rotation) - glm::dmat3(1));
-    shift_.push_back({turn * world_from_voxel_.linear, turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
+    shift_.push_back({turn * world_from_voxel_.linear,
+                      turn * world_from_voxel_.offset + voxel_from_world_.linear * posed.translation});
   }
   const bool keeps = count * std::int64_t{sizeof(Corners)} <= kKeptBytes;
   if (keeps) {
@@ -175,7 +188,8 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
       const BrickBounds posed = compute(brick, room);
       bounds_[brick] = posed.box;
       still_[brick] = posed.still;
-      split_[brick] = tissue.seams() && rigid_[brick] == kSeveral && tissue.seams()->is_near_brick(tissue.bricks()[brick].corner);
+      split_[brick] =
+          tissue.seams() && rigid_[brick] == kSeveral && tissue.seams()->is_near_brick(tissue.bricks()[brick].corner);
       if (split_[brick]) {
         bounds_[brick] = split_bounds(brick);
         still_[brick] = false;
@@ -222,7 +236,9 @@ const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& 
     return room;
   }
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
-  for_each_corner(cells, [&](int i, int j, int k) { room[place(i, j, k)] = posed_by(rigid_[brick], cells.corner + glm::ivec3(i, j, k)); });
+  for_each_corner(cells, [&](int i, int j, int k) {
+    room[place(i, j, k)] = posed_by(rigid_[brick], cells.corner + glm::ivec3(i, j, k));
+  });
   return room;
 }
 
@@ -256,7 +272,8 @@ void PosedLattice::choose_base() {
 }
 
 //   shift  beyond blending, in voxels
-FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences, const glm::dvec3& shift) const {
+FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences,
+                               const glm::dvec3& shift) const {
   const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
   const int bone = influences.front().bone;
   if (influences.size() == 1) return fixed(rest, shift_[bone] * rest + shift, bone);
@@ -303,17 +320,23 @@ PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& cor
   CornerWeights weights(*tissue_, *weights_, moves_as_, brick);
   SettledFlesh::CornerShifts shifts;
   const bool shifted = settled_ && settled_->corner_shifts(brick, shifts);
-  return compute_by(brick, every, [&](int i, int j, int k) {
-    return posed(cells.corner + glm::ivec3(i, j, k), weights.at(i, j, k), shifted ? glm::dvec3(shifts[place(i, j, k)]) : glm::dvec3(0));
-  }, corners);
+  return compute_by(
+      brick, every,
+      [&](int i, int j, int k) {
+        return posed(cells.corner + glm::ivec3(i, j, k), weights.at(i, j, k),
+                     shifted ? glm::dvec3(shifts[place(i, j, k)]) : glm::dvec3(0));
+      },
+      corners);
 }
 
 //   visit           calls its argument with the corners to be posed
 //   posed(i, j, k)  is the place of a corner
 template <class Visit, class Posed>
-PosedLattice::BrickBounds PosedLattice::compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const {
+PosedLattice::BrickBounds PosedLattice::compute_by(std::int64_t brick, const Visit& visit, const Posed& posed,
+                                                   Corners& corners) const {
   const glm::dvec3 rest = output_.from_rest(glm::dvec3(tissue_->bricks()[brick].corner) - 0.5);
-  const bool may_be_still = output_.ratio == glm::dvec3(1) && glm::all(glm::lessThan(glm::abs(rest), glm::dvec3(kFurthest)));
+  const bool may_be_still =
+      output_.ratio == glm::dvec3(1) && glm::all(glm::lessThan(glm::abs(rest), glm::dvec3(kFurthest)));
   const FixedPoint first(may_be_still ? rest * double(kFixedOne) : glm::dvec3(0));
   BrickBounds result{{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)}, may_be_still};
   visit([&](int i, int j, int k) {

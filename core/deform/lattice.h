@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A volume's tissue as a lattice of cells, posed. Every tissue voxel is a cell, its eight corners are vertices; a vertex
-// follows the mean of the influences of the tissue voxels around it (up to eight), so that cells that share a vertex at
-// rest share it posed, and the posed cells leave no gap.
+// A volume's tissue as a lattice of cells, posed. Every tissue voxel is a cell, its eight corners are vertices; a
+// vertex follows the mean of the influences of the tissue voxels around it (up to eight), so that cells that share a
+// vertex at rest share it posed, and the posed cells leave no gap.
 //
 // Coordinates. A *rest point* is in voxel coordinates of the volume (voxel centres are whole numbers). A *posed point*
 // is in voxels of the output lattice, relative to a whole-number base near the tissue, stored in fixed point: whole
@@ -9,13 +9,14 @@
 // whole numbers, is exact too. The output lattice is the volume's own, or one with another spacing that shares its
 // outermost corner.
 //
-// Corners are computed brick by brick, and kept only while all of them are small: a whole body's would be 150 MB. The same
-// corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones in
-// rising order.
+// Corners are computed brick by brick, and kept only while all of them are small: a whole body's would be 150 MB. The
+// same corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones
+// in rising order.
 //
-// Much of a posed limb follows one bone wholly, or bones that move as one: a hand whose fingers keep still goes where the
-// forearm goes. Bones that move as one are counted as one, the first of them. Corners that follow one alone take its motion
-// in voxel coordinates without blending, and where it does not move at all they stay what they are: whole halves, bit for bit.
+// Much of a posed limb follows one bone wholly, or bones that move as one: a hand whose fingers keep still goes where
+// the forearm goes. Bones that move as one are counted as one, the first of them. Corners that follow one alone take
+// its motion in voxel coordinates without blending, and where it does not move at all they stay what they are: whole
+// halves, bit for bit.
 #pragma once
 
 #include <array>
@@ -45,11 +46,13 @@ struct VoxelRange {
     return v.x >= low.x && v.y >= low.y && v.z >= low.z && v.x <= high.x && v.y <= high.y && v.z <= high.z;
   }
 };
-inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) { return {glm::max(a.low, b.low), glm::min(a.high, b.high)}; }
+inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) {
+  return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
+}
 
 // Between rest lattice and output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
 struct OutputLattice {
-  glm::dvec3 ratio{1};   // input spacing / output spacing, 1 exactly where they are equal
+  glm::dvec3 ratio{1};  // input spacing / output spacing, 1 exactly where they are equal
   glm::ivec3 base{0};
 
   glm::dvec3 from_rest(const glm::dvec3& rest) const { return (rest + 0.5) * ratio - 0.5 - glm::dvec3(base); }
@@ -59,12 +62,13 @@ struct OutputLattice {
 class PosedLattice {
  public:
   static constexpr int kSide = TissueVoxels::kBrick + 1;
-  // Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner + (i, j, k). Unset where no tissue is near.
+  // Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner + (i, j, k). Unset where no tissue is
+  // near.
   using Corners = std::array<FixedPoint, kSide * kSide * kSide>;
   static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
 
-  // Where a seam is near, every voxel has corners of its own: those of voxel (i, j, k) of the brick, in the order of bits x, y, z,
-  // begin at 8 * (i + 8 * (j + 8 * k)). Unset where no tissue is.
+  // Where a seam is near, every voxel has corners of its own: those of voxel (i, j, k) of the brick, in the order of
+  // bits x, y, z, begin at 8 * (i + 8 * (j + 8 * k)). Unset where no tissue is.
   using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
 
   struct FixedBox {
@@ -85,7 +89,8 @@ class PosedLattice {
   const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // of the brick's posed corners
   // Whether every cell of the brick lies where it lay at rest, and output voxels are the volume's own.
   bool is_still(std::int64_t brick) const { return still_[brick]; }
-  // The bone that the brick and all tissue around it follow wholly, so that its cells move as one; -1 where they are several.
+  // The bone that the brick and all tissue around it follow wholly, so that its cells move as one; -1 where they are
+  // several.
   int only_bone(std::int64_t brick) const { return rigid_[brick]; }
   // Rest points by posed points of what follows that bone wholly.
   const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
@@ -121,9 +126,9 @@ class PosedLattice {
   const SettledFlesh* settled_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
-  std::vector<std::uint8_t> still_, split_;  // by brick
+  std::vector<std::uint8_t> still_, split_;       // by brick
   std::vector<AffineTransform> rest_from_posed_;  // per bone
-  std::vector<int> moves_as_;        // per bone: the first that moves as it does
+  std::vector<int> moves_as_;                     // per bone: the first that moves as it does
   std::vector<int> rigid_;           // by brick: the bone that all tissue of it and around it moves as, or several
   std::unique_ptr<Corners[]> kept_;  // of the bricks that bend, or none
   std::vector<std::int32_t> kept_at_;

@@ -19,7 +19,10 @@ glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 
 
 }  // namespace
 
-MeshBorder::MeshBorder(const TetMesh& mesh, const Grid& grid) : mesh_(&mesh), grid_(grid), world_from_voxel_(world_from_voxel(grid)) {
+MeshBorder::MeshBorder(const TetMesh& mesh, const Grid& grid)
+    : mesh_(&mesh),
+      grid_(grid),
+      world_from_voxel_(world_from_voxel(grid)) {
   const AffineTransform voxel = voxel_from_world(grid);
   const auto neighbours = neighbours_of(mesh.T);
   std::vector<VoxelRange> boxes;
@@ -47,13 +50,16 @@ std::optional<MeshBorder::Place> MeshBorder::nearest(const glm::dvec3& rest, dou
   glm::dvec3 shares(0);
   const int furthest = 2 * std::max({grid_.size.x, grid_.size.y, grid_.size.z}) + 64;
   double searched = 0;  // mm
-  for (int reach = 2; (face < 0 || least > searched * searched) && searched < furthest_mm && reach <= 2 * furthest; reach *= 2) {
+  for (int reach = 2; (face < 0 || least > searched * searched) && searched < furthest_mm && reach <= 2 * furthest;
+       reach *= 2) {
     searched = reach * least_spacing;
     bins_.meeting({glm::ivec3(glm::floor(rest)) - reach, glm::ivec3(glm::ceil(rest)) + reach}, near);
     for (int f : near) {
       const auto& c = faces_[f].corners;
-      const glm::dvec3 s = nearest_in_triangle(world, in_mm(mesh_->V, c[0]), in_mm(mesh_->V, c[1]), in_mm(mesh_->V, c[2]));
-      const glm::dvec3 off = s.x * in_mm(mesh_->V, c[0]) + s.y * in_mm(mesh_->V, c[1]) + s.z * in_mm(mesh_->V, c[2]) - world;
+      const glm::dvec3 s =
+          nearest_in_triangle(world, in_mm(mesh_->V, c[0]), in_mm(mesh_->V, c[1]), in_mm(mesh_->V, c[2]));
+      const glm::dvec3 off =
+          s.x * in_mm(mesh_->V, c[0]) + s.y * in_mm(mesh_->V, c[1]) + s.z * in_mm(mesh_->V, c[2]) - world;
       if (const double squared = glm::dot(off, off); squared < least) {
         least = squared;
         face = f;

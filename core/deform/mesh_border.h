@@ -26,7 +26,8 @@ class MeshBorder {
   MeshBorder(const TetMesh& mesh, const Grid& grid);
 
   // The place nearest to a rest point, in voxel coordinates; none where none is within `furthest_mm`.
-  std::optional<Place> nearest(const glm::dvec3& rest, double furthest_mm = std::numeric_limits<double>::infinity()) const;
+  std::optional<Place> nearest(const glm::dvec3& rest,
+                               double furthest_mm = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Face {

@@ -17,7 +17,9 @@ constexpr double kHalf = 0.5;  // voxels: the surface lies between a bone voxel'
 
 PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                        const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest)
-    : tissue_(&tissue), weights_(&weights), spacing_(volume.grid.spacing) {
+    : tissue_(&tissue),
+      weights_(&weights),
+      spacing_(volume.grid.spacing) {
   LabelVolume bones{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
     if (is_bone[volume.at(v)]) bones.at(v) = 1;

@@ -36,7 +36,8 @@ struct TetMap {
   double posed_per_rest;
 
   TetMap(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest)
-      : from_posed(glm::dvec3(posed[0]) / double(kFixedOne)), from_rest(rest[0]) {
+      : from_posed(glm::dvec3(posed[0]) / double(kFixedOne)),
+        from_rest(rest[0]) {
     glm::dmat3 posed_edges, rest_edges;
     for (int i = 0; i < 3; ++i) {
       posed_edges[i] = glm::dvec3(posed[i + 1] - posed[0]) / double(kFixedOne);
@@ -45,7 +46,9 @@ struct TetMap {
     rest_from_posed = rest_edges * glm::inverse(posed_edges);
     posed_per_rest = glm::determinant(posed_edges) / glm::determinant(rest_edges);
   }
-  glm::dvec3 rest(const glm::ivec3& voxel) const { return from_rest + rest_from_posed * (glm::dvec3(voxel) - from_posed); }
+  glm::dvec3 rest(const glm::ivec3& voxel) const {
+    return from_rest + rest_from_posed * (glm::dvec3(voxel) - from_posed);
+  }
 };
 
 // Of a point, in a tet's corners.
@@ -55,7 +58,9 @@ glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3&
   return {1 - s.x - s.y - s.z, s};
 }
 
-std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return static_cast<std::uint32_t>(grid.index(voxel)); }
+std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) {
+  return static_cast<std::uint32_t>(grid.index(voxel));
+}
 
 }  // namespace
 
@@ -63,20 +68,24 @@ std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) { return stati
 class PosedTets::Border {
  public:
   //   rest_bins  of the tets at rest
-  Border(const PosedTets& tets, const BoxBins& rest_bins) : tets_(tets), rest_bins_(rest_bins), border_(*tets.mesh_, tets.lattice_->volume().grid) {}
+  Border(const PosedTets& tets, const BoxBins& rest_bins)
+      : tets_(tets),
+        rest_bins_(rest_bins),
+        border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
-  // Where a rest point outside the mesh goes: as far from the border as it was, but where another part of the mesh comes near no
-  // further than half of the way to that, whose other half is for what sticks out there.
+  // Where a rest point outside the mesh goes: as far from the border as it was, but where another part of the mesh
+  // comes near no further than half of the way to that, whose other half is for what sticks out there.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
     const auto place = border_.nearest(rest);  // a mesh has a border
-    glm::dvec3 from(0), moved(0);  // of the nearest point
+    glm::dvec3 from(0), moved(0);              // of the nearest point
     for (int i = 0; i < 3; ++i) {
       from += place->shares[i] * in_mm(tets_.mesh_->V, place->corners[i]);
       moved += place->shares[i] * in_mm(tets_.moved_, place->corners[i]);
     }
     const glm::dvec3 off = world_from_voxel(grid) * rest - from;
-    const Eigen::Vector3d turned = rotation_of(*tets_.mesh_, tets_.moved_, place->tet) * Eigen::Vector3d(off.x, off.y, off.z);
+    const Eigen::Vector3d turned =
+        rotation_of(*tets_.mesh_, tets_.moved_, place->tet) * Eigen::Vector3d(off.x, off.y, off.z);
     const auto at = [&](double share) {
       const glm::dvec3 shift = moved + share * glm::dvec3(turned.x(), turned.y(), turned.z()) - off;
       return tets_.lattice_->output().from_rest(rest + voxel_from_world(grid).linear * shift);
@@ -92,19 +101,22 @@ class PosedTets::Border {
     });
     if (way == kBoth) return tets_.fixed(whole);
     // What lay as near at rest is no nearer now.
-    const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners, [&](int t) { return tets_.rest_corners(t); });
+    const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners,
+                                     [&](int t) { return tets_.rest_corners(t); });
     return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
 
  private:
-  static constexpr double kBoth = 2;            // ways from the border to a point: as much is asked about, for the two sides of the air
+  static constexpr double kBoth =
+      2;  // ways from the border to a point: as much is asked about, for the two sides of the air
   static constexpr double kRounding = 1.0 / 64;  // of that way
-  static constexpr double kApart = 0.98;         // of half of the air, so that the two sides do not meet in a voxel's centre
+  static constexpr double kApart = 0.98;  // of half of the air, so that the two sides do not meet in a voxel's centre
 
-  // How far from `from` to `to` and on another part of the mesh begins, at most kBoth times that way. A tet so flat that no voxel's
-  // centre lies in its box is not seen; its neighbours are.
+  // How far from `from` to `to` and on another part of the mesh begins, at most kBoth times that way. A tet so flat
+  // that no voxel's centre lies in its box is not seen; its neighbours are.
   template <class CornersOf>
-  double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own, const CornersOf& corners_of) const {
+  double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own,
+                  const CornersOf& corners_of) const {
     const glm::dvec3 end = from + kBoth * (to - from);
     std::vector<int> near;
     bins.meeting({glm::ivec3(glm::floor(glm::min(from, end))), glm::ivec3(glm::ceil(glm::max(from, end)))}, near);
@@ -136,8 +148,12 @@ struct PosedTets::BrickOutcome {
   std::vector<Rider> riders;
 };
 
-PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice, TissueMask in_mesh, Progress& progress)
-    : mesh_(&mesh), lattice_(&lattice), in_mesh_(std::move(in_mesh)), moved_(posed - mesh.V) {
+PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice,
+                     TissueMask in_mesh, Progress& progress)
+    : mesh_(&mesh),
+      lattice_(&lattice),
+      in_mesh_(std::move(in_mesh)),
+      moved_(posed - mesh.V) {
   place_nodes();
   find_instead_of();
   const auto tets = static_cast<int>(mesh.T.rows());
@@ -157,7 +173,8 @@ PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const P
 
   std::vector<BrickOutcome> outcomes(lattice.tissue().bricks().size());
   parallel_for(std::ssize(outcomes), 8, [&](std::int64_t begin, std::int64_t end) {
-    for (auto brick = begin; brick < end && !progress.cancelled(); ++brick) run_brick(brick, rest_bins, border, outcomes[brick]);
+    for (auto brick = begin; brick < end && !progress.cancelled(); ++brick)
+      run_brick(brick, rest_bins, border, outcomes[brick]);
   });
   progress.update("pose", 1);
   FixedPoint low(INT32_MAX), high(INT32_MIN);
@@ -186,7 +203,8 @@ void PosedTets::find_instead_of() {
     for (auto brick = begin; brick < end; ++brick) {
       const glm::ivec3 first = tissue.bricks()[brick].corner;
       bool borders = false;  // on tissue outside the mesh's charge
-      for_each_neighbour_brick(tissue, first, [&](int near) { borders |= in_mesh_[near] != tissue.bricks()[near].mask; });
+      for_each_neighbour_brick(tissue, first,
+                               [&](int near) { borders |= in_mesh_[near] != tissue.bricks()[near].mask; });
       if (!borders) continue;
       tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
         bool inside = true;
@@ -213,7 +231,8 @@ void PosedTets::place_nodes() {
 
 FixedPoint PosedTets::fixed(const glm::dvec3& at) const {
   if (!(std::abs(at.x) < kFurthest && std::abs(at.y) < kFurthest && std::abs(at.z) < kFurthest))
-    throw Error("the pose tears the tissue too far apart", "tissue that bends", "check the pose and the rig, or use a coarser spacing");
+    throw Error("the pose tears the tissue too far apart", "tissue that bends",
+                "check the pose and the rig, or use a coarser spacing");
   return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
 }
 
@@ -235,7 +254,8 @@ FixedPoint PosedTets::carried(int tet, const glm::dvec3& rest) const {
   return fixed(lattice_->output().from_rest(rest + voxel_from_world(lattice_->volume().grid).linear * moved));
 }
 
-void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border, BrickOutcome& outcome) const {
+void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border,
+                          BrickOutcome& outcome) const {
   const TissueVoxels& tissue = lattice_->tissue();
   const TissueVoxels::Brick& cells = tissue.bricks()[brick];
   const auto& mine = in_mesh_[brick];
@@ -267,7 +287,8 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
     rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(TissueVoxels::kBrick - 1)},
                   [&](const glm::ivec3& v, int) { centre_held[v.z] |= std::uint64_t{1} << (v.x + 8 * v.y); });
     for (FixedPoint& corner : from_brick) corner += kFixedOne / 2;
-    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(kSide - 1)}, [&](const glm::ivec3& v, int) { tet_of[PosedLattice::place(v.x, v.y, v.z)] = t; });
+    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(kSide - 1)},
+                  [&](const glm::ivec3& v, int) { tet_of[PosedLattice::place(v.x, v.y, v.z)] = t; });
   }
 
   std::array<std::optional<FixedPoint>, kSide * kSide * kSide> posed;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tissue that a tet mesh carries, posed. Where PosedLattice makes a cell of every tissue voxel, here the mesh's tets are
-// the cells: each posed voxel centre in a tet is the image of the rest point that the tet's affine map gives, and belongs to
-// the tissue voxel that this point lies in; where it lies in air, so does its image. Tets are rasterized by the same exact
-// half-open rule (rasterize.h), after rounding to the same fixed point, so the rest pose is exact.
+// Tissue that a tet mesh carries, posed. Where PosedLattice makes a cell of every tissue voxel, here the mesh's tets
+// are the cells: each posed voxel centre in a tet is the image of the rest point that the tet's affine map gives, and
+// belongs to the tissue voxel that this point lies in; where it lies in air, so does its image. Tets are rasterized by
+// the same exact half-open rule (rasterize.h), after rounding to the same fixed point, so the rest pose is exact.
 //
-// A mesh follows the tissue's border only nearly. Tissue voxels in the mesh's charge that stick out of it, by their centre
-// or by a corner, ride on it as cubes of their own: a corner inside goes with its tet, a corner outside with the nearest
-// point of the mesh's border, turned by the rotation of the tet there, and nearer to it than at rest where another part of the mesh
-// has come near: what sticks out of skin that is pressed against skin is pressed flat. Riders write only where no tet did.
+// A mesh follows the tissue's border only nearly. Tissue voxels in the mesh's charge that stick out of it, by their
+// centre or by a corner, ride on it as cubes of their own: a corner inside goes with its tet, a corner outside with the
+// nearest point of the mesh's border, turned by the rotation of the tet there, and nearer to it than at rest where
+// another part of the mesh has come near: what sticks out of skin that is pressed against skin is pressed flat. Riders
+// write only where no tet did.
 //
-// A mesh need not hold the whole body. Tissue outside its charge is the lattice's, as ever. So is one layer of voxels on the
-// mesh's side of where the two meet: they move alike there, and no rounding opens a gap.
+// A mesh need not hold the whole body. Tissue outside its charge is the lattice's, as ever. So is one layer of voxels
+// on the mesh's side of where the two meet: they move alike there, and no rounding opens a gap.
 #pragma once
 
 #include <array>
@@ -68,10 +69,10 @@ class PosedTets {
   const TetMesh* mesh_;
   const PosedLattice* lattice_;
   TissueMask in_mesh_, instead_of_;
-  std::vector<glm::dvec3> rest_;     // #V voxel coordinates at rest, whole numbers of 1/65536
-  std::vector<FixedPoint> posed_;    // #V
-  Eigen::MatrixX3d moved_;           // #V posed - rest, world, mm
-  BoxBins bins_, rider_bins_;        // of the output
+  std::vector<glm::dvec3> rest_;   // #V voxel coordinates at rest, whole numbers of 1/65536
+  std::vector<FixedPoint> posed_;  // #V
+  Eigen::MatrixX3d moved_;         // #V posed - rest, world, mm
+  BoxBins bins_, rider_bins_;      // of the output
   std::vector<Rider> riders_;
   VoxelRange posed_tissue_;
 };

@@ -17,12 +17,13 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFineVoxels = 1'500'000;  // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
+constexpr std::int64_t kMostFineVoxels =
+    1'500'000;               // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
 constexpr int kGrain = 256;  // cells
 constexpr double kLeastWeight = 1.0 / 1024;
 constexpr double kStiff = 0.999;  // of a corner's weight that one bone must have for the cell to be stiff by itself
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
-constexpr double kApart = 0.1;  // share of a corner's weight that two sides must differ by to move apart
+constexpr double kApart = 0.1;    // share of a corner's weight that two sides must differ by to move apart
 constexpr double kStrays = 0.25;  // ... and that a cell's vertex must differ by from what its own tissue says
 
 using Influences = std::vector<BoneWeight>;
@@ -36,14 +37,16 @@ void around(const glm::ivec3& at, const glm::ivec3& low, const glm::ivec3& high,
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i) {
         const glm::ivec3 offset(i, j, k), next = at + offset;
-        if (offset == glm::ivec3(0) || glm::any(glm::lessThan(next, low)) || glm::any(glm::greaterThan(next, high))) continue;
+        if (offset == glm::ivec3(0) || glm::any(glm::lessThan(next, low)) || glm::any(glm::greaterThan(next, high)))
+          continue;
         body(next, offset);
       }
 }
 
 // Adds up what is of one bone, and leaves out what is next to nothing; bones rising, sums to one.
 void normalize(Influences& influences) {
-  std::stable_sort(influences.begin(), influences.end(), [](const BoneWeight& a, const BoneWeight& b) { return a.bone < b.bone; });
+  std::stable_sort(influences.begin(), influences.end(),
+                   [](const BoneWeight& a, const BoneWeight& b) { return a.bone < b.bone; });
   Influences sums;
   double total = 0;
   for (const BoneWeight& each : influences) {
@@ -70,14 +73,17 @@ double apart(const Influences& a, const Influences& b) {
 // Cells with tissue, and the ring around them.
 std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const TissueVoxels& tissue) {
   const glm::ivec3 size = lattice.size;
-  const auto index = [&](const glm::ivec3& c) { return size_t(c.x + std::int64_t{size.x} * (c.y + std::int64_t{size.y} * c.z)); };
+  const auto index = [&](const glm::ivec3& c) {
+    return size_t(c.x + std::int64_t{size.x} * (c.y + std::int64_t{size.y} * c.z));
+  };
   std::vector<std::uint8_t> used(size_t(size.x) * size.y * size.z);
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) { used[index(v / lattice.step - lattice.first)] = 1; });
   // Box by box, an axis at a time.
   for (const std::ptrdiff_t stride : {std::ptrdiff_t{1}, std::ptrdiff_t{size.x}, std::ptrdiff_t{size.x} * size.y}) {
     std::vector<std::uint8_t> grown = used;
     for (std::ptrdiff_t i = 0; i < std::ssize(used); ++i)
-      if (used[i]) grown[std::max(i - stride, std::ptrdiff_t{0})] = grown[std::min(i + stride, std::ssize(used) - 1)] = 1;
+      if (used[i])
+        grown[std::max(i - stride, std::ptrdiff_t{0})] = grown[std::min(i + stride, std::ssize(used) - 1)] = 1;
     used = std::move(grown);
   }
   return used;
@@ -86,7 +92,9 @@ std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const Tiss
 // What lies in a cell and the 26 around it, in sides that do not hang together there.
 class Sides {
  public:
-  Sides(const PreviewLattice& lattice, const PiecesByCell& pieces, const glm::ivec3& cell) : lattice_(lattice), cell_(cell) {
+  Sides(const PreviewLattice& lattice, const PiecesByCell& pieces, const glm::ivec3& cell)
+      : lattice_(lattice),
+        cell_(cell) {
     std::array<int, 28> begin{};  // by cell around
     for (int n = 0; n < 27; ++n) {
       begin[n] = static_cast<int>(pieces_.size());
@@ -130,7 +138,8 @@ class Sides {
       if (side_[i] != side) continue;
       for (const CellPiece::Share& share : pieces_[i]->shares) {
         const glm::ivec3 corner = pieces_[i]->cell + corner_of(share.corner) - cell_;
-        if (glm::any(glm::lessThan(corner, glm::ivec3(0))) || glm::any(glm::greaterThan(corner, glm::ivec3(1)))) continue;
+        if (glm::any(glm::lessThan(corner, glm::ivec3(0))) || glm::any(glm::greaterThan(corner, glm::ivec3(1))))
+          continue;
         corners[corner.x + 2 * corner.y + 4 * corner.z].push_back({share.bone, share.weight});
       }
     }
@@ -161,7 +170,8 @@ class Sides {
     for (size_t i = 0; i < pieces_.size(); ++i) {
       if (side_[i] == side) continue;
       const glm::ivec3 low = (pieces_[i]->cell - cell_) * 4;
-      for (std::uint64_t bits = pieces_[i]->places; bits; bits &= bits - 1) others.emplace_back(low + place_at(std::countr_zero(bits)));
+      for (std::uint64_t bits = pieces_[i]->places; bits; bits &= bits - 1)
+        others.emplace_back(low + place_at(std::countr_zero(bits)));
     }
     std::array<std::int8_t, 64> steps;
     for (int place = 0; place < 64; ++place) {
@@ -170,7 +180,8 @@ class Sides {
         const glm::vec3 away = other - glm::vec3(place_at(place));
         least = std::min(least, glm::dot(away, away));
       }
-      steps[place] = static_cast<std::int8_t>(std::min(CellPart::kStepApart * (std::sqrt(least) - 1) / 4, float(CellPart::kFarApart)));
+      steps[place] = static_cast<std::int8_t>(
+          std::min(CellPart::kStepApart * (std::sqrt(least) - 1) / 4, float(CellPart::kFarApart)));
     }
     return steps;
   }
@@ -198,13 +209,16 @@ bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& infl
       for (int x = low.x; x <= high.x; ++x) {
         const Influences& here = influences[lattice.place({x, y, z})];
         if (here.empty()) continue;
-        if (apart(first, here) > kApart || std::none_of(here.begin(), here.end(), [](const BoneWeight& each) { return each.weight > 1 - kApart; })) return true;
+        if (apart(first, here) > kApart ||
+            std::none_of(here.begin(), here.end(), [](const BoneWeight& each) { return each.weight > 1 - kApart; }))
+          return true;
       }
   return false;
 }
 
 // The parts of a cell: its sides, then what is stiff, bones rising.
-std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces, const std::vector<Influences>& influences, std::int32_t index) {
+std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces,
+                               const std::vector<Influences>& influences, std::int32_t index) {
   const glm::ivec3 cell = lattice.cells[index];
   std::vector<CellPart> parts;
   std::vector<std::uint64_t> tissue;  // places of each side's
@@ -214,7 +228,8 @@ std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell
     bool differs = found.size() > 1;
     if (found.size() == 1) {  // the cell's vertices may follow tissue on the other side of a gap all the same
       const std::array<Influences, 8> alone = sides.influences(found[0]);
-      for (int c = 0; c < 8; ++c) differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;
+      for (int c = 0; c < 8; ++c)
+        differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;
     }
     if (differs) {
       std::uint64_t all = 0;
@@ -227,14 +242,16 @@ std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell
     }
   }
   const auto follows = [](const Influences& all, int bone) {
-    return std::any_of(all.begin(), all.end(), [&](const BoneWeight& each) { return each.bone == bone && each.weight >= kStiff; });
+    return std::any_of(all.begin(), all.end(),
+                       [&](const BoneWeight& each) { return each.bone == bone && each.weight >= kStiff; });
   };
   std::map<int, std::uint64_t> stiff;
   for (const CellPiece& piece : pieces.of(cell))
     for (const CellPiece::Stiff& each : piece.stiff) stiff[each.bone] |= each.places;
   for (const auto& [bone, places] : stiff) {
     bool by_itself = parts.empty();
-    for (int corner = 0; corner < 8; ++corner) by_itself = by_itself && follows(influences[lattice.place(cell + corner_of(corner))], bone);
+    for (int corner = 0; corner < 8; ++corner)
+      by_itself = by_itself && follows(influences[lattice.place(cell + corner_of(corner))], bone);
     if (by_itself) continue;
     CellPart part{index, true, places, {}, {}};
     part.influences.fill({{bone, 1}});
@@ -283,7 +300,8 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
   std::vector<Influences> influences(lattice.places());
   lattice.depth.assign(lattice.places(), kUnknown);
   for (const CellPiece& piece : pieces) {
-    for (const CellPiece::Share& share : piece.shares) influences[lattice.place(piece.cell + corner_of(share.corner))].push_back({share.bone, share.weight});
+    for (const CellPiece::Share& share : piece.shares)
+      influences[lattice.place(piece.cell + corner_of(share.corner))].push_back({share.bone, share.weight});
     for (int corner = 0; corner < 8; ++corner) {
       float& least = lattice.depth[lattice.place(piece.cell + corner_of(corner))];
       least = std::min(least, piece.away[corner]);
@@ -351,7 +369,9 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
       }
     }
   });
-  for (auto& each : parts) lattice.parts.insert(lattice.parts.end(), std::make_move_iterator(each.begin()), std::make_move_iterator(each.end()));
+  for (auto& each : parts)
+    lattice.parts.insert(lattice.parts.end(), std::make_move_iterator(each.begin()),
+                         std::make_move_iterator(each.end()));
   return lattice;
 }
 

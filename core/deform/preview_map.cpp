@@ -23,24 +23,29 @@ constexpr int kTile = 8;             // nodes an edge of what is rasterized agai
 constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
 constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
-constexpr double kHeld = 2;          // cells beside a tet mesh that it carries
+constexpr double kHeld = 2;         // cells beside a tet mesh that it carries
 constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
 constexpr double kFar = 1.0 / 8;    // cells: nodes that chords miss by more are placed in two steps
 constexpr float kAcross = 2.5;  // steps at rest that nodes of one sheet are apart at most, for each step between them
 constexpr std::int8_t kMostApart = CellPart::kStepApart;  // what is further does not tell how far
-constexpr std::array<glm::ivec3, 8> kCorners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
+constexpr std::array<glm::ivec3, 8> kCorners = {
+    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
-glm::ivec3 tile_of(const glm::ivec3& node) { return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)}; }
+glm::ivec3 tile_of(const glm::ivec3& node) {
+  return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)};
+}
 
-// What fractions are of. A step is a whole number of them and low lies whole steps from the nodes: at rest every node is exact.
+// What fractions are of. A step is a whole number of them and low lies whole steps from the nodes: at rest every node
+// is exact.
 struct Span {
   glm::dvec3 low, extent;
 };
 Span span_of(const PreviewLattice& lattice) {
   const double step = lattice.step;
   const glm::dvec3 least = glm::dvec3(lattice.grid.size) + (2 * kMargin + 1) * step;
-  return {glm::dvec3(-(kMargin + 0.5) * step - 0.5), PreviewMap::kFullFraction * step / glm::floor(PreviewMap::kFullFraction * step / least)};
+  return {glm::dvec3(-(kMargin + 0.5) * step - 0.5),
+          PreviewMap::kFullFraction * step / glm::floor(PreviewMap::kFullFraction * step / least)};
 }
 
 // A node as whole numbers in one register.
@@ -55,7 +60,9 @@ bool any_beyond(const Lanes& a, const Lanes& limit) { return a[0] > limit[0] || 
 
 std::optional<glm::dvec3> PreviewMap::rest_at(const glm::dvec3& posed) const {
   const glm::dvec3 place = node_from_voxel(posed), corner = glm::floor(place);
-  if (!(glm::all(glm::greaterThanEqual(corner, glm::dvec3(0))) && glm::all(glm::lessThan(corner, glm::dvec3(size - 1))))) return std::nullopt;
+  if (!(glm::all(glm::greaterThanEqual(corner, glm::dvec3(0))) &&
+        glm::all(glm::lessThan(corner, glm::dvec3(size - 1)))))
+    return std::nullopt;
   const std::uint8_t cube = cubes[index(glm::ivec3(corner))];
   if (cube == kNothing) return std::nullopt;
   const glm::dvec3 nearest = glm::floor(place + 0.5);
@@ -73,7 +80,8 @@ double PreviewMap::apart_between(const glm::dvec3& place) const {
   const glm::dvec3 corner = glm::floor(place), t = place - corner;
   double sum = 0;
   for (int i = 0; i < 8; ++i) {
-    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2), node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
+    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2),
+        node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
     sum += (offset.x ? t.x : 1 - t.x) * (offset.y ? t.y : 1 - t.y) * (offset.z ? t.z : 1 - t.z) * apart[index(node)];
   }
   return sum;
@@ -85,7 +93,8 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   glm::dvec3 sum(0);
   double total = 0;
   for (int i = 0; i < 8; ++i) {
-    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2), node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
+    const glm::ivec3 offset(i & 1, i >> 1 & 1, i >> 2),
+        node = glm::clamp(glm::ivec3(corner) + offset, glm::ivec3(0), size - 1);
     const double share = (offset.x ? t.x : 1 - t.x) * (offset.y ? t.y : 1 - t.y) * (offset.z ? t.z : 1 - t.z);
     if (!covers(node)) continue;
     sum += share * rest_of_node(node);
@@ -99,12 +108,18 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
 class LivePreview::Finish {
  public:
   Finish(Made& made, const LivePreview& preview)
-      : map_(*made.map), jumps_(made.jumps), stale_(made.stale), preview_(preview), claimed_(preview.claimed_), strides_{1, map_.size.x, map_.size.x * map_.size.y} {
+      : map_(*made.map),
+        jumps_(made.jumps),
+        stale_(made.stale),
+        preview_(preview),
+        claimed_(preview.claimed_),
+        strides_{1, map_.size.x, map_.size.x * map_.size.y} {
     for (int i = 0; i < 8; ++i) offsets_[i] = map_.index(kCorners[i]);
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / map_.extent;
     for (int axis = 0; axis < 3; ++axis) {
       jump_[axis] = static_cast<int>(std::min(map_.jump() * fractions[axis], double(PreviewMap::kFullFraction)));
-      steepest_[axis] = static_cast<int>(std::min(map_.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
+      steepest_[axis] =
+          static_cast<int>(std::min(map_.steepest() * fractions[axis], double(PreviewMap::kFullFraction)));
       steps_[axis] = static_cast<float>(1 / (fractions[axis] * map_.step));
     }
   }
@@ -114,10 +129,13 @@ class LivePreview::Finish {
       const auto [first, last] = stale(y, z);
       const std::int64_t row = map_.index({0, y, z});
       std::copy(claimed_.begin() + row + first, claimed_.begin() + row + last, map_.nodes.begin() + row + first);
-      for (std::int64_t at = row + first; at < row + last; ++at) map_.apart[at] = std::min(preview_.claimed_apart_[at], kMostApart);
+      for (std::int64_t at = row + first; at < row + last; ++at)
+        map_.apart[at] = std::min(preview_.claimed_apart_[at], kMostApart);
       if (y == 0 || z == 0 || y + 1 == map_.size.y || z + 1 == map_.size.z) continue;
       for (std::int64_t at = row + std::max(first, 1), end = row + std::min(last, map_.size.x - 1); at < end; ++at)
-        if (const glm::u16vec4* here = &claimed_[at]; !here->w && (here[-1].w | here[1].w | here[-strides_[1]].w | here[strides_[1]].w | here[-strides_[2]].w | here[strides_[2]].w))
+        if (const glm::u16vec4* here = &claimed_[at];
+            !here->w && (here[-1].w | here[1].w | here[-strides_[1]].w | here[strides_[1]].w | here[-strides_[2]].w |
+                         here[strides_[2]].w))
           carry_on(at);
     }
   }
@@ -149,8 +167,8 @@ class LivePreview::Finish {
  private:
   const std::array<int, 2>& stale(int y, int z) const { return stale_[y + std::int64_t{map_.size.y} * z]; }
 
-  // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing where
-  // there are none. (The tiles leave two nodes at every border that no cell claims.)
+  // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing
+  // where there are none. (The tiles leave two nodes at every border that no cell claims.)
   void carry_on(std::int64_t at) {
     Lanes sum{}, first{};
     int count = 0, border = CellPart::kFarApart;
@@ -184,7 +202,8 @@ class LivePreview::Finish {
     if (!map_.nodes[next].w) return false;
     const Lanes here = lanes_of(map_.nodes[at]), there = lanes_of(map_.nodes[next]);
     if (const float squared = squared_steps(there - here); squared > 0.25f && squared < 2.25f) return false;
-    return any_beyond(apart(here, there), jump_) || preview_.strays(at, axis, next, map_.rest_of_node_at(next) - map_.rest_of_node_at(at));
+    return any_beyond(apart(here, there), jump_) ||
+           preview_.strays(at, axis, next, map_.rest_of_node_at(next) - map_.rest_of_node_at(at));
   }
 
   void cube(std::int64_t at) {
@@ -206,7 +225,8 @@ class LivePreview::Finish {
   // Lowest and highest of a cube's nodes, covered or not, two at a time.
   std::array<glm::u16vec4, 2> bounds(const glm::u16vec4* nodes) const {
     using Shorts = short __attribute__((vector_size(16)));
-    constexpr short kSign = std::numeric_limits<short>::min();  // turns the order of unsigned numbers into that of signed ones
+    constexpr short kSign =
+        std::numeric_limits<short>::min();  // turns the order of unsigned numbers into that of signed ones
     constexpr Shorts kSigns{kSign, kSign, kSign, kSign, kSign, kSign, kSign, kSign};
     Shorts low, high;
     for (const int i : {0, 2, 4, 6}) {
@@ -243,7 +263,8 @@ class LivePreview::Finish {
     if (squared_steps(high - low) <= kAcross * kAcross) return false;
     for (int i = 0; i < count; ++i)
       for (int j = 0; j < i; ++j)
-        if (squared_steps(c[i] - c[j]) > kAcross * kAcross * std::popcount(unsigned(corner[i] ^ corner[j]))) return true;
+        if (squared_steps(c[i] - c[j]) > kAcross * kAcross * std::popcount(unsigned(corner[i] ^ corner[j])))
+          return true;
     return false;
   }
 
@@ -255,7 +276,7 @@ class LivePreview::Finish {
   std::array<std::int64_t, 3> strides_;
   std::array<std::int64_t, 8> offsets_;  // of a cube's corners
   Lanes jump_{}, steepest_{};
-  glm::vec3 steps_{0};                // of a fraction
+  glm::vec3 steps_{0};  // of a fraction
 };
 
 // What is rasterized again: whole tiles of nodes.
@@ -267,7 +288,9 @@ struct LivePreview::Tiles {
     const glm::ivec3 t = tile - first;
     return t.x + std::int64_t{size.x} * (t.y + std::int64_t{size.y} * t.z);
   }
-  glm::ivec3 at(std::int64_t i) const { return first + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y); }
+  glm::ivec3 at(std::int64_t i) const {
+    return first + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
+  }
 
   // body(index) for the tiles that a range reaches.
   template <class Body>
@@ -311,8 +334,10 @@ class LivePreview::Tile {
         row[x] = glm::u16vec4(0);
         continue;
       }
-      if (const CellPart* part = preview_.part(cell_[at])) apart[x] = part->apart[CellPart::place_of(preview_.middle(cell_[at]), rest_[at], preview_.lattice_.step)];
-      const glm::dvec3 voxel = (preview_.in_bent_cell(cell_[at], low_ + glm::ivec3(x, y, z), rest_[at]) + 0.5) * step - 0.5;
+      if (const CellPart* part = preview_.part(cell_[at]))
+        apart[x] = part->apart[CellPart::place_of(preview_.middle(cell_[at]), rest_[at], preview_.lattice_.step)];
+      const glm::dvec3 voxel =
+          (preview_.in_bent_cell(cell_[at], low_ + glm::ivec3(x, y, z), rest_[at]) + 0.5) * step - 0.5;
       const glm::dvec3 f = glm::clamp((voxel - span.low) * fractions, 0.0, double(PreviewMap::kFullFraction));
       row[x] = glm::u16vec4(std::lrint(f.x), std::lrint(f.y), std::lrint(f.z), PreviewMap::kFullFraction);
     }
@@ -326,7 +351,8 @@ class LivePreview::Tile {
     const int mine = preview_.priority_[label_at(rest)], theirs = preview_.priority_[label_at(rest_[at])];
     if (mine != theirs) return mine > theirs;
     const PreviewLattice& lattice = preview_.lattice_;
-    const double my_depth = lattice.depth_in(preview_.middle(cell), rest), their_depth = lattice.depth_in(preview_.middle(cell_[at]), rest_[at]);
+    const double my_depth = lattice.depth_in(preview_.middle(cell), rest),
+                 their_depth = lattice.depth_in(preview_.middle(cell_[at]), rest_[at]);
     if (my_depth != their_depth) return my_depth > their_depth;
     return cell < cell_[at];
   }
@@ -342,31 +368,43 @@ class LivePreview::Tile {
   std::array<bool, kNodes> inverted_;
 };
 
-LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
-                         const SkinWeights& weights, int step)
-    : volume_(std::move(volume)), lattice_(preview_lattice(volume_->grid, tissue, weights, step)), priority_(65536, 0),
-      posed_(lattice_.places()), posed_parts_(lattice_.parts.size()), moved_(lattice_.places()), part_moved_(lattice_.parts.size()),
-      range_(lattice_.cells.size() + lattice_.parts.size()), before_(range_) {
+LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues,
+                         const TissueVoxels& tissue, const SkinWeights& weights, int step)
+    : volume_(std::move(volume)),
+      lattice_(preview_lattice(volume_->grid, tissue, weights, step)),
+      priority_(65536, 0),
+      posed_(lattice_.places()),
+      posed_parts_(lattice_.parts.size()),
+      moved_(lattice_.places()),
+      part_moved_(lattice_.parts.size()),
+      range_(lattice_.cells.size() + lattice_.parts.size()),
+      before_(range_) {
   priority_[0] = std::numeric_limits<int>::min();
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
 
   std::vector<int> only(lattice_.places(), -1);  // bone that a vertex follows alone
   for (size_t i = 0; i < lattice_.vertices.size(); ++i)
-    if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1) only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
+    if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1)
+      only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
   motion_of_.assign(lattice_.places(), -1);
   for (size_t i = 0; i < lattice_.cells.size(); ++i) {
     if (lattice_.has_sides[i]) continue;
     const glm::ivec3 cell = lattice_.cells[i];
     const std::int64_t first = lattice_.place(cell);
-    if (only[first] >= 0 && std::all_of(kCorners.begin(), kCorners.end(), [&](const glm::ivec3& c) { return only[lattice_.place(cell + c)] == only[first]; })) continue;
+    if (only[first] >= 0 && std::all_of(kCorners.begin(), kCorners.end(), [&](const glm::ivec3& c) {
+          return only[lattice_.place(cell + c)] == only[first];
+        }))
+      continue;
     for (const glm::ivec3& c : kCorners) motion_of_[lattice_.place(cell + c)] = 0;
   }
   std::int32_t count = 0;
   for (std::int32_t& motion : motion_of_)
     if (motion == 0) motion = count++;
   for (const CellPart& part : lattice_.parts) {
-    const bool bends = std::any_of(part.influences.begin(), part.influences.end(), [&](const auto& each) { return each.size() > 1 || each[0].bone != part.influences[0][0].bone; });
+    const bool bends = std::any_of(part.influences.begin(), part.influences.end(), [&](const auto& each) {
+      return each.size() > 1 || each[0].bone != part.influences[0][0].bone;
+    });
     first_motion_.push_back(bends ? std::exchange(count, count + 8) : -1);
     for (const auto& each : part.influences) {
       part_offsets_.push_back(static_cast<std::int32_t>(part_influences_.size()));
@@ -377,7 +415,8 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   motion_.resize(count);
 }
 
-std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh) {
+std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
+                                                      const MeshPose& mesh) {
   if (!pose_vertices(posed_from_rest, blend, mesh)) return map_;
   bound_cells();
   rasterize();
@@ -394,7 +433,8 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   const double step = lattice_.step;
   const auto voxel = [&](const glm::dvec3& cell) { return (cell + 0.5) * step - 0.5; };
   std::vector<PointToCarry> points;
-  for (const glm::ivec3& vertex : lattice_.vertices) points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
+  for (const glm::ivec3& vertex : lattice_.vertices)
+    points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
   for (const CellPart& part : lattice_.parts) {
     // The place of a side that is furthest from all other sides is surely its own.
     int deepest = 0;
@@ -402,9 +442,11 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
       if (part.holds(place) && (!part.holds(deepest) || part.apart[place] > part.apart[deepest])) deepest = place;
     const glm::dvec3 in_cell = (glm::dvec3(deepest % 4, deepest / 4 % 4, deepest / 16) + 0.5) / 4.0 - 0.5;
     const glm::ivec3 middle = lattice_.cells[part.cell];
-    for (const glm::ivec3& c : kCorners) points.push_back({voxel(glm::dvec3(middle + c) - 0.5), voxel(glm::dvec3(middle) + in_cell)});
+    for (const glm::ivec3& c : kCorners)
+      points.push_back({voxel(glm::dvec3(middle + c) - 0.5), voxel(glm::dvec3(middle) + in_cell)});
   }
-  const double furthest = kHeld * step * std::max({lattice_.grid.spacing.x, lattice_.grid.spacing.y, lattice_.grid.spacing.z});
+  const double furthest =
+      kHeld * step * std::max({lattice_.grid.spacing.x, lattice_.grid.spacing.y, lattice_.grid.spacing.z});
   carried_.emplace(mesh, lattice_.grid, points, furthest);
 }
 
@@ -414,7 +456,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   if (all) size_ = glm::ivec3(0);
   bone_moved_.assign(posed_from_rest.size(), all);
   for (size_t b = 0; b < posed_from_rest.size() && !all; ++b)
-    bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation || posed_from_rest[b].translation != posed_from_rest_[b].translation;
+    bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation ||
+                     posed_from_rest[b].translation != posed_from_rest_[b].translation;
   if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_) return false;
   map_ = nullptr;  // until this update has ended: what throws half way leaves nothing to build upon
 
@@ -424,7 +467,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const auto is_held = [&](std::int64_t point) { return !held.empty() && held[point]; };
 
   const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
-  const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid), voxel_from_world = limber::voxel_from_world(lattice_.grid);
+  const AffineTransform world_from_voxel = limber::world_from_voxel(lattice_.grid),
+                        voxel_from_world = limber::voxel_from_world(lattice_.grid);
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
@@ -432,12 +476,14 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   std::vector<AffineTransform> moves;
   for (const RigidTransform& bone : posed_from_rest) {
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
-    moves.push_back({cell_from_world_ * turn * world_from_cell_.linear, cell_from_world_ * (turn * (world_from_cell_ * glm::dvec3(-0.5)) + bone.translation)});
+    moves.push_back({cell_from_world_ * turn * world_from_cell_.linear,
+                     cell_from_world_ * (turn * (world_from_cell_ * glm::dvec3(-0.5)) + bone.translation)});
   }
   const auto fixed_at = [](const glm::dvec3& at) {
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(at[axis]) < kFurthest))
-        throw Error("the pose carries the tissue too far away", "while the volume follows the pose", "check the pose and the rig");
+        throw Error("the pose carries the tissue too far away", "while the volume follows the pose",
+                    "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
   //   motion  where what the bones do together is kept for cells that bend; null: nowhere
@@ -457,11 +503,13 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   };
   const auto held_at = [&](std::int64_t point) { return fixed_at((*held[point] + 0.5) / step - 0.5); };
   const auto rests = [&](std::span<const BoneWeight> influences) {
-    return std::none_of(influences.begin(), influences.end(), [&](const BoneWeight& each) { return bone_moved_[each.bone]; });
+    return std::none_of(influences.begin(), influences.end(),
+                        [&](const BoneWeight& each) { return bone_moved_[each.bone]; });
   };
   parallel_for(std::ssize(lattice_.vertices), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
-      const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i], lattice_.offsets[i + 1] - lattice_.offsets[i]);
+      const std::span<const BoneWeight> influences(lattice_.influences.data() + lattice_.offsets[i],
+                                                   lattice_.offsets[i + 1] - lattice_.offsets[i]);
       const std::int64_t place = lattice_.place(lattice_.vertices[i]);
       moved_[place] = 0;
       if (is_held(i)) {
@@ -482,15 +530,18 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       part_moved_[i] = 0;
       for (int c = 0; c < 8; ++c) {
         const std::int64_t corner = 8 * i + c;
-        if (const std::int64_t point = std::ssize(lattice_.vertices) + corner; is_held(point) && !lattice_.parts[i].is_stiff) {
+        if (const std::int64_t point = std::ssize(lattice_.vertices) + corner;
+            is_held(point) && !lattice_.parts[i].is_stiff) {
           part_moved_[i] = 1;
           posed_parts_[i][c] = held_at(point);
           continue;
         }
-        const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner], part_offsets_[corner + 1] - part_offsets_[corner]);
+        const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner],
+                                                     part_offsets_[corner + 1] - part_offsets_[corner]);
         if (rests(influences)) continue;
         part_moved_[i] = 1;
-        posed_parts_[i][c] = posed(lattice_.cells[lattice_.parts[i].cell] + kCorners[c], influences, first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c]);
+        posed_parts_[i][c] = posed(lattice_.cells[lattice_.parts[i].cell] + kCorners[c], influences,
+                                   first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c]);
       }
     }
   });
@@ -508,7 +559,8 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   if (std::any_of(corners.begin(), corners.end(), [](const BoneWeight& each) { return each.bone < 0; })) return rest;
   const auto posed = [&](const glm::dvec3& at) {
     const glm::dvec3 t = at - glm::dvec3(middle) + 0.5, world = world_from_cell_ * at;
-    for (int i = 0; i < 8; ++i) corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
+    for (int i = 0; i < 8; ++i)
+      corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
     return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world);
   };
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);
@@ -541,7 +593,8 @@ std::int32_t LivePreview::motion(std::int64_t cell, int corner) const {
 glm::dmat3 LivePreview::slope(std::int64_t cell) const {
   glm::dmat3 slope(0);
   for (int i = 0; i < 8; ++i)
-    for (int axis = 0; axis < 3; ++axis) slope[axis] += (i >> axis & 1 ? 0.25 : -0.25) / kFixedOne * glm::dvec3(corner(cell, i));
+    for (int axis = 0; axis < 3; ++axis)
+      slope[axis] += (i >> axis & 1 ? 0.25 : -0.25) / kFixedOne * glm::dvec3(corner(cell, i));
   return slope;
 }
 
@@ -575,7 +628,8 @@ PosedCell LivePreview::posed_cell(std::int64_t cell) const {
   return PosedCell(&posed_[lattice_.place(middle(cell))], int(lattice_.row()), int(lattice_.slice()), middle(cell));
 }
 
-// The nodes in the box of each moved cell, and the tiles that hold them all with a margin for nodes that are carried on.
+// The nodes in the box of each moved cell, and the tiles that hold them all with a margin for nodes that are carried
+// on.
 void LivePreview::bound_cells() {
   parallel_for(cell_count(), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
@@ -599,7 +653,8 @@ void LivePreview::rasterize() {
   tiles.size = tile_of(high + 2) - tiles.first + 1;
   const glm::ivec3 first = tiles.first * kTile, size = tiles.size * kTile;
   if (double(size.x) * size.y * size.z > double(kMostNodes))
-    throw Error("the pose tears the tissue too far apart", "while the volume follows the pose", "check the pose and the rig");
+    throw Error("the pose tears the tissue too far apart", "while the volume follows the pose",
+                "check the pose and the rig");
   const std::int64_t count = std::int64_t{tiles.size.x} * tiles.size.y * tiles.size.z;
   const bool fresh = first != first_ || size != size_;
   tiles.dirty.assign(count, fresh);
@@ -613,14 +668,14 @@ void LivePreview::rasterize() {
   } else {
     for (std::int64_t i = 0; i < cell_count(); ++i) {
       if (!has_moved(i)) continue;
-      for (const VoxelRange& range : {before_[i], range_[i]}) tiles.reached(range, [&](std::int64_t t) { tiles.dirty[t] = 1; });
+      for (const VoxelRange& range : {before_[i], range_[i]})
+        tiles.reached(range, [&](std::int64_t t) { tiles.dirty[t] = 1; });
     }
   }
 
   // The cells of every dirty tile, by rising index.
   std::vector<std::int64_t> begin(count + 1);
-  for (const VoxelRange& range : range_)
-    tiles.reached(range, [&](std::int64_t t) { begin[t + 1] += tiles.dirty[t]; });
+  for (const VoxelRange& range : range_) tiles.reached(range, [&](std::int64_t t) { begin[t + 1] += tiles.dirty[t]; });
   std::vector<std::int32_t> work;
   for (std::int64_t t = 0; t < count; ++t) {
     if (tiles.dirty[t]) work.push_back(static_cast<std::int32_t>(t));
@@ -636,7 +691,8 @@ void LivePreview::rasterize() {
   if (!fresh)
     for (const std::int32_t t : work) mark_stale(tiles.at(t) * kTile - first_);
   parallel_for(std::ssize(work), 1, [&](std::int64_t from, std::int64_t to) {
-    for (auto w = from; w < to; ++w) rasterize_tile(tiles.at(work[w]), cells.data() + begin[work[w]], begin[work[w] + 1] - begin[work[w]]);
+    for (auto w = from; w < to; ++w)
+      rasterize_tile(tiles.at(work[w]), cells.data() + begin[work[w]], begin[work[w] + 1] - begin[work[w]]);
   });
 }
 

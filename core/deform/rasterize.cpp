@@ -49,7 +49,8 @@ int largest(const Lanes& c) { return std::max({std::abs(c[0]), std::abs(c[1]), s
 
 }  // namespace
 
-CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest, const glm::ivec3& voxel) {
+CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest,
+                       const glm::ivec3& voxel) {
   const glm::dvec3 from = glm::dvec3(posed[0]) / double(kFixedOne);
   glm::dmat3 posed_edges, rest_edges;
   for (int i = 0; i < 3; ++i) {
@@ -60,7 +61,8 @@ CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<
                               glm::cross(posed_edges[0], posed_edges[1])};
   const double determinant = glm::dot(posed_edges[0], faces[0]);
   const glm::dvec3 p = glm::dvec3(voxel) - from;
-  const glm::dvec3 share = glm::dvec3(glm::dot(faces[0], p), glm::dot(faces[1], p), glm::dot(faces[2], p)) / determinant;
+  const glm::dvec3 share =
+      glm::dvec3(glm::dot(faces[0], p), glm::dot(faces[1], p), glm::dot(faces[2], p)) / determinant;
   return {voxel, rest[0] + rest_edges * share, determinant / glm::determinant(rest_edges)};
 }
 
@@ -118,7 +120,8 @@ std::array<FixedPoint, 4> PosedCell::posed_tet(int t) const {
 
 CellClaim PosedCell::claim_in(int t, const glm::ivec3& voxel) const {
   std::array<glm::dvec3, 4> rest;
-  for (int i = 0; i < 4; ++i) rest[i] = glm::dvec3(rest_voxel_) + 0.5 * corner_sign(kTetCorners[parity(rest_voxel_)][t][i]);
+  for (int i = 0; i < 4; ++i)
+    rest[i] = glm::dvec3(rest_voxel_) + 0.5 * corner_sign(kTetCorners[parity(rest_voxel_)][t][i]);
   return claim_in_tet(posed_tet(t), rest, voxel);
 }
 

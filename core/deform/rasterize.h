@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Which voxel centres lie in a posed cell, and which rest point each of them is the image of.
 //
-// A cube is split into five tets: one on the four corners whose coordinates add up to an even number, four cut off at the
-// odd corners. Neighbouring cubes are mirror images, so their diagonals meet. (The split into six tets around a main
-// diagonal puts every voxel centre of the rest pose on an edge of all six; here it lies in the middle of one.)
+// A cube is split into five tets: one on the four corners whose coordinates add up to an even number, four cut off at
+// the odd corners. Neighbouring cubes are mirror images, so their diagonals meet. (The split into six tets around a
+// main diagonal puts every voxel centre of the rest pose on an edge of all six; here it lies in the middle of one.)
 //
 // Every voxel centre covered by a mesh of such cells is claimed by exactly one tet, always: vertices are whole numbers
 // of 1/65536 voxel, so the side of a face a centre lies on is computed exactly, and a centre *on* a face counts as
-// moved by (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity], which is the
-// half-open rule of triangle rasterizers carried to tets. This holds where no tet is inverted and none overlap otherwise.
+// moved by (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity], which is
+// the half-open rule of triangle rasterizers carried to tets. This holds where no tet is inverted and none overlap
+// otherwise.
 //
-// Exact tests are the last resort. A cube's map is nearly affine: its inverse gives each centre's place in the cube with
-// an error bounded by the cube's departure from affine, and only centres within that bound of a face are tested exactly.
-// Where the departure is next to nothing that place is the rest point too, and the tets are not asked.
+// Exact tests are the last resort. A cube's map is nearly affine: its inverse gives each centre's place in the cube
+// with an error bounded by the cube's departure from affine, and only centres within that bound of a face are tested
+// exactly. Where the departure is next to nothing that place is the rest point too, and the tets are not asked.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +48,8 @@ class TetFaces {
   explicit TetFaces(const std::array<FixedPoint, 4>& posed) {
     using Vec = std::array<Whole, 3>;
     auto edge = [&](int to, int from) {
-      return Vec{Whole(posed[to].x) - posed[from].x, Whole(posed[to].y) - posed[from].y, Whole(posed[to].z) - posed[from].z};
+      return Vec{Whole(posed[to].x) - posed[from].x, Whole(posed[to].y) - posed[from].y,
+                 Whole(posed[to].z) - posed[from].z};
     };
     auto cross = [](const Vec& a, const Vec& b) {
       return Vec{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -138,10 +140,8 @@ void rasterize_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& cli
   }
   std::int64_t extent = 0;
   for (int axis = 0; axis < 3; ++axis) extent = std::max(extent, std::int64_t{high[axis]} - low[axis]);
-  if (extent <= kSmallExtent * kFixedOne)
-    visit_tet<std::int64_t>(posed, range, visit);
-  else
-    visit_tet<__int128>(posed, range, visit);
+  if (extent <= kSmallExtent * kFixedOne) visit_tet<std::int64_t>(posed, range, visit);
+  else visit_tet<__int128>(posed, range, visit);
 }
 
 // What a cell says of a voxel centre.
@@ -153,7 +153,8 @@ struct CellClaim {
 
 // The affine map of a tet, read backward at one posed voxel centre.
 //   rest  vertices, positively oriented
-CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest, const glm::ivec3& voxel);
+CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest,
+                       const glm::ivec3& voxel);
 
 // Four whole numbers in one register, the last unused.
 using Lanes = int __attribute__((vector_size(16)));
@@ -162,7 +163,7 @@ using Lanes = int __attribute__((vector_size(16)));
 inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
   constexpr Lanes kThree{-1, -1, -1, 0};
   std::array<Lanes, 2> two;
-  std::memcpy(&two[0], points, sizeof(Lanes));                                                  // x y z x
+  std::memcpy(&two[0], points, sizeof(Lanes));                                                     // x y z x
   std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // z x y z
   two[1] = __builtin_shufflevector(two[1], two[1], 1, 2, 3, 0);
   return {two[0] & kThree, two[1] & kThree};
@@ -171,11 +172,15 @@ inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
 // A tissue voxel's posed cube.
 class PosedCell {
  public:
-  // lowest      its corner of least x, y and z at rest, in a lattice whose corners lie 1, `row` and `slice` apart; it must
+  // lowest      its corner of least x, y and z at rest, in a lattice whose corners lie 1, `row` and `slice` apart; it
+  // must
   //             outlive the cell
   // rest_voxel  its centre is the middle of the cube at rest
   PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
-      : lowest_(lowest), row_(row), slice_(slice), rest_voxel_(rest_voxel) {
+      : lowest_(lowest),
+        row_(row),
+        slice_(slice),
+        rest_voxel_(rest_voxel) {
     Lanes low = lanes_of_two(lowest)[0], high = low;
     for (int offset : {0, row, slice, slice + row})
       for (const Lanes c : lanes_of_two(lowest + offset)) {
@@ -235,7 +240,7 @@ class PosedCell {
 
   Inverse affine_inverse() const;
   int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // of a voxel inside the cube
-  int find_tet_exactly(const glm::ivec3& voxel) const;                                // -1: outside
+  int find_tet_exactly(const glm::ivec3& voxel) const;                                 // -1: outside
   template <class Whole>
   int first_tet_with(const glm::ivec3& voxel) const;
   std::array<FixedPoint, 4> posed_tet(int t) const;

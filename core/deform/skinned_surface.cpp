@@ -6,8 +6,8 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface.h"
-#include "core/rig/surface_points.h"
-#include "core/skin/skin_at.h"
+#include "core/mesh/surface_points.h"
+#include "core/skin/weight_at.h"
 
 namespace limber {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr float kSurface = 98 / 255.0f;  // the share at which rays stop
 constexpr int kLayersInside = 6;         // half voxels in which the shown tissue is looked for
 constexpr std::int64_t kGrain = 4096;
-constexpr double kMostCells = 16e6;      // that shares are first counted in, each 8 bytes for a while
+constexpr double kMostCells = 16e6;  // that shares are first counted in, each 8 bytes for a while
 
 // As rays see the set, moved so that it ends at one half.
 //   voxels  an edge of a cell
@@ -30,7 +30,8 @@ void soften(Occupancy& body, float voxels) {
       parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin * steps[2]; i < end * steps[2]; ++i) {
           const std::int64_t place = i / steps[axis] % size[axis];
-          const float before = place > 0 ? from[i - steps[axis]] : 0, after = place + 1 < size[axis] ? from[i + steps[axis]] : 0;
+          const float before = place > 0 ? from[i - steps[axis]] : 0,
+                      after = place + 1 < size[axis] ? from[i + steps[axis]] : 0;
           body.share[i] = 0.25f * before + 0.5f * from[i] + 0.25f * after;
         }
       });
@@ -39,8 +40,10 @@ void soften(Occupancy& body, float voxels) {
 }
 
 // The first shown label from a little outside inward; the nearest tissue's where there is none.
-Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel, const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
-  const glm::dvec3 inward = -(to_voxel.linear * normal), step = 0.5 * inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z), 1e-9});
+Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel,
+                   const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
+  const glm::dvec3 inward = -(to_voxel.linear * normal),
+                   step = 0.5 * inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z), 1e-9});
   glm::dvec3 at = to_voxel * place - step;
   for (int i = 0; i < kLayersInside; ++i, at += step)
     if (const Label label = volume.at_or_air(glm::ivec3(glm::floor(at + 0.5))); shown[label]) return label;
@@ -49,7 +52,8 @@ Label label_inside(const LabelVolume& volume, const LabelSet& shown, const Affin
 
 }  // namespace
 
-SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& labels, std::int64_t vertices) {
+SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                               const LabelSet& labels, std::int64_t vertices) {
   LabelSet shown = labels;
   shown[0] = 0;  // air never counts
   // Whole voxels first, where there is room for them: coarser cells are taken together from these.
@@ -59,7 +63,9 @@ SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& ti
   soften(fine, static_cast<float>(std::cbrt(double(volume.grid.voxel_count()) / double(fine.grid.voxel_count()))));
   TriangleMesh mesh = surface_of(fine);
   for (double coarser = 1; std::ssize(mesh.V) > vertices;) {
-    coarser = std::max(coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) / double(vertices))));  // a surface has as many as its area in cells
+    coarser = std::max(
+        coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) /
+                                                    double(vertices))));  // a surface has as many as its area in cells
     mesh = surface_of(coarsened(fine, coarser * finest_of(fine.grid)));
   }
 
@@ -75,19 +81,22 @@ SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& ti
   for (std::size_t i = 0; i < mesh.V.size(); ++i) {
     surface.label[i] = label_inside(volume, shown, to_voxel, mesh.V[i], normals[i], skin[i].label);
     for (int k = 0; k < 4; ++k)
-      if (skin[i].influence.weight[k]) surface.influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / double(kFullWeight)});
+      if (skin[i].influence.weight[k])
+        surface.influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / double(kFullWeight)});
     surface.offsets.push_back(std::ssize(surface.influences));
   }
   return surface;
 }
 
-PosedSurface posed_surface(const std::shared_ptr<const SkinnedSurface>& at_rest, const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
+PosedSurface posed_surface(const std::shared_ptr<const SkinnedSurface>& at_rest,
+                           const std::vector<RigidTransform>& posed_from_rest, Blend blend) {
   const SkinnedSurface& rest = *at_rest;
   const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
   std::vector<glm::dvec3> posed(rest.V.size());
   parallel_for(std::ssize(rest.V), kGrain, [&](std::int64_t begin, std::int64_t end) {
     const std::size_t count = static_cast<std::size_t>(end - begin);
-    blend_points(blend, bones, rest.influences, std::span(rest.offsets).subspan(begin, count + 1), std::span(rest.V).subspan(begin, count), std::span(posed).subspan(begin, count));
+    blend_points(blend, bones, rest.influences, std::span(rest.offsets).subspan(begin, count + 1),
+                 std::span(rest.V).subspan(begin, count), std::span(posed).subspan(begin, count));
   });
 
   PosedSurface surface{at_rest, {}, std::vector<glm::vec3>(posed.size(), glm::vec3(0))};

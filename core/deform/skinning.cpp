@@ -89,8 +89,10 @@ glm::dvec3 blend_dual(std::span<const SkinTransform> bones, std::span<const Bone
 }
 
 template <bool Stretched>
-glm::dvec3 blend_mixed(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences, const glm::dvec3& p) {
-  const glm::dvec3 linear = blend_linear(bones, influences, p) - p, dual = blend_dual<Stretched>(bones, influences, p) - p;
+glm::dvec3 blend_mixed(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
+                       const glm::dvec3& p) {
+  const glm::dvec3 linear = blend_linear(bones, influences, p) - p,
+                   dual = blend_dual<Stretched>(bones, influences, p) - p;
   return p + ((1 - kQuaternionShare) * linear + kQuaternionShare * dual);
 }
 
@@ -100,7 +102,9 @@ bool any_stretch(std::span<const SkinTransform> bones) {
 
 }  // namespace
 
-Blend blend_named(std::string_view word) { return word == "mix" ? Blend::Mixed : word == "dqs" ? Blend::DualQuaternion : Blend::Linear; }
+Blend blend_named(std::string_view word) {
+  return word == "mix" ? Blend::Mixed : word == "dqs" ? Blend::DualQuaternion : Blend::Linear;
+}
 
 SkinTransform skin_transform(const RigidTransform& posed_from_rest) {
   SkinTransform bone;
@@ -123,7 +127,8 @@ SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4
   glm::dmat4 rigid = posed_from_rest;
 
   const glm::dmat4 posed_from_bone = posed_from_rest * world_from_bone;
-  const glm::dvec3 scale(glm::length(posed_from_bone[0]), glm::length(posed_from_bone[1]), glm::length(posed_from_bone[2]));
+  const glm::dvec3 scale(glm::length(posed_from_bone[0]), glm::length(posed_from_bone[1]),
+                         glm::length(posed_from_bone[2]));
   bone.has_stretch = !(glm::determinant(linear) > 0) || glm::length(scale - 1.0) > kSmallestStretch;
   if (bone.has_stretch) {
     glm::dmat4 turned(rotation_along_y(glm::dmat3(posed_from_bone)));
@@ -138,7 +143,8 @@ SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4
   return bone;
 }
 
-SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences) {
+SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones,
+                                std::span<const BoneWeight> influences) {
   SkinTransform sum;
   if (blend != Blend::Linear) sum.dual_quaternion = {};
   for (const auto& [bone, weight] : influences) {
@@ -153,8 +159,11 @@ glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::s
                        const glm::dvec3& rest_point) {
   if (blend == Blend::Linear) return blend_linear(bones, influences, rest_point);
   for (const BoneWeight& influence : influences)
-    if (bones[influence.bone].has_stretch) return blend == Blend::Mixed ? blend_mixed<true>(bones, influences, rest_point) : blend_dual<true>(bones, influences, rest_point);
-  return blend == Blend::Mixed ? blend_mixed<false>(bones, influences, rest_point) : blend_dual<false>(bones, influences, rest_point);
+    if (bones[influence.bone].has_stretch)
+      return blend == Blend::Mixed ? blend_mixed<true>(bones, influences, rest_point)
+                                   : blend_dual<true>(bones, influences, rest_point);
+  return blend == Blend::Mixed ? blend_mixed<false>(bones, influences, rest_point)
+                               : blend_dual<false>(bones, influences, rest_point);
 }
 
 void blend_points(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
@@ -168,16 +177,11 @@ void blend_points(Blend blend, std::span<const SkinTransform> bones, std::span<c
         posed_points[i] = kernel(bones, influences.subspan(offsets[i], offsets[i + 1] - offsets[i]), rest_points[i]);
     });
   };
-  if (blend == Blend::Linear)
-    each([](auto... a) { return blend_linear(a...); });
-  else if (blend == Blend::Mixed && stretched)
-    each([](auto... a) { return blend_mixed<true>(a...); });
-  else if (blend == Blend::Mixed)
-    each([](auto... a) { return blend_mixed<false>(a...); });
-  else if (stretched)
-    each([](auto... a) { return blend_dual<true>(a...); });
-  else
-    each([](auto... a) { return blend_dual<false>(a...); });
+  if (blend == Blend::Linear) each([](auto... a) { return blend_linear(a...); });
+  else if (blend == Blend::Mixed && stretched) each([](auto... a) { return blend_mixed<true>(a...); });
+  else if (blend == Blend::Mixed) each([](auto... a) { return blend_mixed<false>(a...); });
+  else if (stretched) each([](auto... a) { return blend_dual<true>(a...); });
+  else each([](auto... a) { return blend_dual<false>(a...); });
 }
 
 }  // namespace limber

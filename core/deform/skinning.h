@@ -5,10 +5,12 @@
 //   dual quaternion   the unit dual quaternions of the bones are added, each with the sign that agrees with the
 //                     *running sum in influence order* (Blender's rule, which differs from aligning to the first or to
 //                     the heaviest bone where rotations are more than 180 degrees apart), and the sum is normalized
-//                     [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion blending]
-//   mixed             between the two, kQuaternionShare of the way from linear to dual quaternions: linear blending thins bent
-//                     and twisted joints, dual quaternions make them bulge, and most of both cancels. Whole bodies that sit or
-//                     raise their arms keep their volume best that way (assets/docs/guide.md has the figures).
+//                     [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion
+//                     blending]
+//   mixed             between the two, kQuaternionShare of the way from linear to dual quaternions: linear blending
+//   thins bent
+//                     and twisted joints, dual quaternions make them bulge, and most of both cancels. Whole bodies that
+//                     sit or raise their arms keep their volume best that way (assets/docs/guide.md has the figures).
 // Dual quaternions hold no scale. A bone that stretches is split into a stretch along its own rest axes, then a rigid
 // motion; the stretches are blended linearly and applied first.
 #pragma once
@@ -37,9 +39,10 @@ struct BoneWeight {
 
 // A bone's skinning transform, ready for both blends.
 struct SkinTransform {
-  std::array<double, 12> displacement{};          // of p: columns of M - 1, then the translation
-  std::array<double, 8> dual_quaternion{1};       // unit; real then dual part, each w x y z
-  std::array<double, 12> stretch{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};  // before the rigid part: columns, then translation
+  std::array<double, 12> displacement{};     // of p: columns of M - 1, then the translation
+  std::array<double, 8> dual_quaternion{1};  // unit; real then dual part, each w x y z
+  std::array<double, 12> stretch{1, 0, 0, 0, 1, 0,
+                                 0, 0, 1, 0, 0, 0};  // before the rigid part: columns, then translation
   bool has_stretch = false;
 };
 
@@ -51,7 +54,8 @@ std::vector<SkinTransform> skin_transforms(const std::vector<RigidTransform>& po
 SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4& world_from_bone);
 
 // What rigid bones do together, as one that `blend` may blend further. Weights sum to one; no bone stretches.
-SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences);
+SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones,
+                                std::span<const BoneWeight> influences);
 
 // Weights need not sum to one (they are divided by their sum); a sum of zero leaves the point at rest.
 glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,

@@ -6,13 +6,17 @@
 
 namespace limber {
 
-SplitCorners::SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as, std::int64_t brick)
-    : seams_(*tissue.seams()), moves_as_(moves_as), corner_(tissue.bricks()[brick].corner) {
+SplitCorners::SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
+                           std::int64_t brick)
+    : seams_(*tissue.seams()),
+      moves_as_(moves_as),
+      corner_(tissue.bricks()[brick].corner) {
   for (int z = -1; z <= TissueVoxels::kBrick; ++z)
     for (int y = -1; y <= TissueVoxels::kBrick; ++y)
       for (int x = -1; x <= TissueVoxels::kBrick; ++x) {
         const glm::ivec3 v(x, y, z), at = corner_ + v;
-        if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, tissue.grid_size()))) continue;
+        if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, tissue.grid_size())))
+          continue;
         const std::int64_t there = tissue.index_of(at);
         if (there < 0) continue;
         const int holder = tissue.brick_at(at);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the corners of a brick's voxels follow where a seam is near. The voxels around a corner that do not hang together there,
-// through faces that are not cut, share no vertex: each side has its own, and so have voxels that touch along an edge only, as
-// skin does in the crease beside a seam. So every voxel is asked for its own eight corners.
+// What the corners of a brick's voxels follow where a seam is near. The voxels around a corner that do not hang
+// together there, through faces that are not cut, share no vertex: each side has its own, and so have voxels that touch
+// along an edge only, as skin does in the crease beside a seam. So every voxel is asked for its own eight corners.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ class SplitCorners {
  public:
   // References are kept; `tissue` has seams.
   //   moves_as  per bone: the one it is counted as
-  SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as, std::int64_t brick);
+  SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
+               std::int64_t brick);
 
   // The influences of a voxel's corner in rising bone order, summed over the voxels that hang together with it there.
   //   voxel   of the brick, 0 .. 7 on each axis; it must be tissue

@@ -235,7 +235,8 @@ class Minimizer {
     });
   }
 
-  // Of a push, by how much tissue hangs on the node: a crumb of flesh is as heavy to its cell as a full cell to its own.
+  // Of a push, by how much tissue hangs on the node: a crumb of flesh is as heavy to its cell as a full cell to its
+  // own.
   float strength(std::int64_t node) const {
     double fill = 0;
     for (auto i = of_node_.begin[node]; i < of_node_.begin[node + 1]; ++i) fill += cells_.fill[of_node_.place[i] >> 3];
@@ -327,9 +328,9 @@ class Minimizer {
   const double h2_;  // mm2: the square of a cell's edge, by its volume
   const std::int64_t count_;
   int taken_ = 0;
-  std::vector<glm::mat3> start_, pull_;                                         // by cell
-  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;              // by node
-  std::vector<FourFloats> direction_;                                           // by node; it is read most
+  std::vector<glm::mat3> start_, pull_;                             // by cell
+  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // by node
+  std::vector<FourFloats> direction_;                               // by node; it is read most
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;

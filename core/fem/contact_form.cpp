@@ -11,14 +11,16 @@
 namespace limber {
 
 namespace {
-constexpr double kOfRest = 0.5;      // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 1.6;        // thicknesses: pairs this near that the way watched brings within one are in the matrix before they
-                                     // touch
-constexpr double kPressed = 0.6;     // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
-constexpr double kNear = 0.5;        // of the thickness: what is further apart may come within half of this in one step, for it is not yet, or
-                                     // hardly, pushed apart
-constexpr double kAbout = 0.2;       // of the thickness, that a node's way may change before what comes near it is looked for anew
-constexpr double kParallel = 1e-3;   // of the squared product of two edges at rest, below which they count as parallel
+constexpr double kOfRest = 0.5;  // of what a pair is apart at rest: no thickness is more
+constexpr double kSoon = 1.6;  // thicknesses: pairs this near that the way watched brings within one are in the matrix
+                               // before they touch
+constexpr double kPressed =
+    0.6;  // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
+constexpr double kNear = 0.5;  // of the thickness: what is further apart may come within half of this in one step, for
+                               // it is not yet, or hardly, pushed apart
+constexpr double kAbout =
+    0.2;  // of the thickness, that a node's way may change before what comes near it is looked for anew
+constexpr double kParallel = 1e-3;  // of the squared product of two edges at rest, below which they count as parallel
 constexpr std::int64_t kGrain = 2048;
 
 // b(d / h) and its derivatives by d.
@@ -44,8 +46,12 @@ double mean_area(const Eigen::MatrixX3i& F, const Places& V) {
 double share_of(ContactPair::Kind kind) { return kind == ContactPair::Kind::EdgeEdge ? 0.5 : 1; }
 }  // namespace
 
-ContactForm::ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid, const ContactSettings& settings)
-    : surface_(F, rest, rigid), rest_(rest), settings_(settings), scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest)) {}
+ContactForm::ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid,
+                         const ContactSettings& settings)
+    : surface_(F, rest, rigid),
+      rest_(rest),
+      settings_(settings),
+      scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest)) {}
 
 double ContactForm::thickness(const ContactPair& pair) const {
   return std::min(settings_.thickness_mm, kOfRest * nearest_points(pair, rest_).distance);
@@ -54,9 +60,12 @@ double ContactForm::thickness(const ContactPair& pair) const {
 ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) const {
   Fade fade{1, Eigen::Matrix<double, 3, 4>::Zero()};
   if (pair.kind == ContactPair::Kind::PointTriangle) return fade;
-  const auto edge = [&](const Places& p, int k) { return Eigen::Vector3d((p.row(pair.node[k + 1]) - p.row(pair.node[k])).transpose()); };
+  const auto edge = [&](const Places& p, int k) {
+    return Eigen::Vector3d((p.row(pair.node[k + 1]) - p.row(pair.node[k])).transpose());
+  };
   const Eigen::Vector3d u = edge(x, 0), v = edge(x, 2);
-  const double c = u.cross(v).squaredNorm(), full = kParallel * edge(rest_, 0).squaredNorm() * edge(rest_, 2).squaredNorm();
+  const double c = u.cross(v).squaredNorm(),
+               full = kParallel * edge(rest_, 0).squaredNorm() * edge(rest_, 2).squaredNorm();
   if (c >= full) return fade;
   const double t = c / full, slope = (2 - 2 * t) / full;
   fade.value = (2 - t) * t;
@@ -74,7 +83,8 @@ void ContactForm::watch(const Places& x, const Places& step, double limit) {
   watched_to_.resize(0, 3);  // as long as that is not done
   know(x, end);
 
-  // What has left the place that it is known to be near, as it does when only a stretch of a way is kept, is known no more.
+  // What has left the place that it is known to be near, as it does when only a stretch of a way is kept, is known no
+  // more.
   const double about = kAbout * settings_.thickness_mm;
   std::vector<std::vector<Watched>> near((known_.size() + kGrain - 1) / kGrain), still_known(near.size());
   parallel_for(std::ssize(known_), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -98,11 +108,13 @@ void ContactForm::watch(const Places& x, const Places& step, double limit) {
   watched_limit_ = limit;
 }
 
-// A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what is known a
-// stretch is kept, and anew is looked only for what comes near nodes that are not about there.
+// A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what
+// is known a stretch is kept, and anew is looked only for what comes near nodes that are not about there.
 void ContactForm::know(const Places& from, const Places& to) {
   const double about = kAbout * settings_.thickness_mm;
-  const auto is_away = [&](const Places& a, const Places& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> { return (a - b).rowwise().squaredNorm().array() > about * about; };
+  const auto is_away = [&](const Places& a, const Places& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
+    return (a - b).rowwise().squaredNorm().array() > about * about;
+  };
   Eigen::Array<bool, Eigen::Dynamic, 1> changed;
   if (known_from_.rows() != from.rows()) {
     known_.clear();
@@ -112,7 +124,9 @@ void ContactForm::know(const Places& from, const Places& to) {
   } else {
     const Places way = known_to_ - known_from_;
     const auto nearest_on_way = [&](const Places& place) {
-      const double squared = way.squaredNorm(), on_way = squared > 0 ? std::clamp((place - known_from_).cwiseProduct(way).sum() / squared, 0.0, 1.0) : 0;
+      const double squared = way.squaredNorm(),
+                   on_way =
+                       squared > 0 ? std::clamp((place - known_from_).cwiseProduct(way).sum() / squared, 0.0, 1.0) : 0;
       Places nearest;
       std::ptrdiff_t least = place.rows() + 1;
       for (const double share : {0.0, 1.0, on_way}) {
@@ -135,7 +149,8 @@ void ContactForm::know(const Places& from, const Places& to) {
   }
   Places steps = known_to_ - known_from_, begins;
   begins.swap(known_from_);  // as long as that is not done, nothing is known
-  for (const ContactPair& pair : surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
+  for (const ContactPair& pair :
+       surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
     known_.push_back({pair, thickness(pair), {}});
   begins.swap(known_from_);
 }
@@ -147,7 +162,9 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
     Bound& bound = of_block[begin / kGrain];
     for (auto k = begin; k < end; ++k) {
       const auto& [pair, h, approach] = watched_[k];
-      if (const double length = limber::largest_step(pair, approach, x, step, bound.length, near); length < bound.length) bound = {length, pair.node};
+      if (const double length = limber::largest_step(pair, approach, x, step, bound.length, near);
+          length < bound.length)
+        bound = {length, pair.node};
     }
   });
   Bound bound{limit, {-1, -1, -1, -1}};
@@ -190,7 +207,15 @@ void ContactForm::touch(const Places& x) {
     const Barrier b = barrier(nearest.distance, h);
     const Fade faded = fade(pair, x);
     const double scale = scale_ * share_of(pair.kind);
-    Touch touch{pair, scale * b.slope * faded.value, scale * b.curvature * faded.value, nearest.distance < kPressed * h, {}, faded.slope, scale * b.value, {}, {0, 1, 2, 3}};
+    Touch touch{pair,
+                scale * b.slope * faded.value,
+                scale * b.curvature * faded.value,
+                nearest.distance < kPressed * h,
+                {},
+                faded.slope,
+                scale * b.value,
+                {},
+                {0, 1, 2, 3}};
     for (int a = 0; a < 4; ++a) touch.way.col(a) = nearest.weight[a] * nearest.direction;
     touching_.push_back(touch);
   }
@@ -198,7 +223,9 @@ void ContactForm::touch(const Places& x) {
 
 void ContactForm::add_gradient(Places& gradient) const {
   for (const Touch& touch : touching_)
-    for (int a = 0; a < 4; ++a) gradient.row(touch.pair.node[a]) += (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
+    for (int a = 0; a < 4; ++a)
+      gradient.row(touch.pair.node[a]) +=
+          (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
 }
 
 // What grows as parts come nearer; what turns the way between them only takes away, or is left out.
@@ -208,7 +235,8 @@ void ContactForm::add_curvature(std::span<double> values) const {
       for (int b = 0; b <= a; ++b, ++k) {
         const Cholesky::Place& place = touch.place[k];
         if (place.at < 0) continue;
-        const Eigen::Vector3d row = touch.way.col(touch.order[a]), column = touch.curvature * touch.way.col(touch.order[b]);
+        const Eigen::Vector3d row = touch.way.col(touch.order[a]),
+                              column = touch.curvature * touch.way.col(touch.order[b]);
         double* at = values.data() + place.at;
         for (int c = 0; c < 3; ++c, at += place.stride)
           for (int r = 0; r < 3; ++r) at[r] += row[r] * column[c];
@@ -240,7 +268,9 @@ bool ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
       }
     if (!unforeseen) continue;
     if (touch.pressed) return false;
-    const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge ? 2 : 1;  // nodes before it are of the one, the others of the other
+    const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge
+                          ? 2
+                          : 1;  // nodes before it are of the one, the others of the other
     for (int a = 0, k = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b, ++k)
         if ((touch.order[a] < sides) != (touch.order[b] < sides)) touch.place[k].at = -1;

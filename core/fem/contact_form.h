@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Contact: where parts of the skin come nearer than a few millimetres, a barrier pushes them apart, and no step takes them
-// through each other [Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang & Kaufman, Incremental Potential Contact,
-// SIGGRAPH 2020]. As long as the skin did not cross itself at the start, it never does.
-// Over each pair of a point and a triangle, or of two edges (contact_surface.h), d apart:
+// Contact: where parts of the skin come nearer than a few millimetres, a barrier pushes them apart, and no step takes
+// them through each other [Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang & Kaufman, Incremental Potential
+// Contact, SIGGRAPH 2020]. As long as the skin did not cross itself at the start, it never does. Over each pair of a
+// point and a triangle, or of two edges (contact_surface.h), d apart:
 //   c A H b(d / h),   b(t) = -(t - 1)^2 ln t below 1, else 0
-// with c in kPa and A the mean area of skin around a node (half of it for edges). h is the thickness H, but at most half of
-// what the pair is apart at rest: so nothing pushes at rest, however close the skin's triangles are; and small triangles, whose
-// folds would close soonest, push as hard as large ones. Between two edges the energy fades out as they become parallel, where
-// the way between them jumps.
+// with c in kPa and A the mean area of skin around a node (half of it for edges). h is the thickness H, but at most
+// half of what the pair is apart at rest: so nothing pushes at rest, however close the skin's triangles are; and small
+// triangles, whose folds would close soonest, push as hard as large ones. Between two edges the energy fades out as
+// they become parallel, where the way between them jumps.
 //
 // Air is not meshed for it (as in Mueller et al. 2015, Air Meshes): such a mesh cannot tell skin that unfolds from skin
 // that meets skin, and slivers of air between neighbouring triangles push where nothing touches.
@@ -30,7 +30,8 @@ class ContactForm {
  public:
   ContactForm() = default;
   // F, rigid  as for ContactSurface
-  ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid, const ContactSettings& settings = {});
+  ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid,
+              const ContactSettings& settings = {});
 
   bool empty() const { return surface_.empty(); }
   // What follows is true for places on the way from x to x + limit step.
@@ -43,7 +44,8 @@ class ContactForm {
   // x and step as they are watched, limit at most that.
   Bound largest_step(const Places& x, const Places& step, double limit) const;
 
-  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too near. x as watched.
+  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too
+  // near. x as watched.
   //   changed  #nodes; empty: asks all, about the step that is watched
   void block(const Places& x, const Places& step, const std::vector<char>& changed);
   // visit(nodes) of each that it would.
@@ -59,10 +61,11 @@ class ContactForm {
   void add_gradient(Places& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // The matrix must know who may touch: who does at x, and who soon may on the way watched. What begins to touch unforeseen pushes
-  // weakly: in the matrix each side then meets the other as if that stood still, until it is pressed.
+  // The matrix must know who may touch: who does at x, and who soon may on the way watched. What begins to touch
+  // unforeseen pushes weakly: in the matrix each side then meets the other as if that stood still, until it is pressed.
   void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
-  bool bind(const Cholesky& matrix, std::span<const int> unknown);  // after touch(); false where the matrix must know more
+  bool bind(const Cholesky& matrix,
+            std::span<const int> unknown);  // after touch(); false where the matrix must know more
 
   std::int64_t touching() const { return std::ssize(touching_); }
 

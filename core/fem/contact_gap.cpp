@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kBin = 8;                       // mm
-constexpr double kFacing = -0.3;              // cosine between normals that face each other
+constexpr int kBin = 8;           // mm
+constexpr double kFacing = -0.3;  // cosine between normals that face each other
 
 glm::dvec3 at(const Eigen::MatrixX3d& V, int i) { return {V(i, 0), V(i, 1), V(i, 2)}; }
 
@@ -23,15 +23,19 @@ std::vector<VoxelRange> boxes_of(const Eigen::MatrixX3d& V, const Eigen::MatrixX
   std::vector<VoxelRange> boxes(F.rows());
   for (int f = 0; f < F.rows(); ++f) {
     const glm::dvec3 a = at(V, F(f, 0)), b = at(V, F(f, 1)), c = at(V, F(f, 2));
-    boxes[f] = {glm::ivec3(glm::floor(glm::min(a, glm::min(b, c)))), glm::ivec3(glm::ceil(glm::max(a, glm::max(b, c))))};
+    boxes[f] = {glm::ivec3(glm::floor(glm::min(a, glm::min(b, c)))),
+                glm::ivec3(glm::ceil(glm::max(a, glm::max(b, c))))};
   }
   return boxes;
 }
 
 }  // namespace
 
-std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
-  const auto normal_of = [&](int f) { return glm::cross(at(V, F(f, 1)) - at(V, F(f, 0)), at(V, F(f, 2)) - at(V, F(f, 0))); };
+std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
+                                 double apart_mm, double reach_mm) {
+  const auto normal_of = [&](int f) {
+    return glm::cross(at(V, F(f, 1)) - at(V, F(f, 0)), at(V, F(f, 2)) - at(V, F(f, 0)));
+  };
   std::vector<glm::dvec3> normal(V.rows(), glm::dvec3(0));
   for (int f = 0; f < F.rows(); ++f)
     for (int i = 0; i < 3; ++i) normal[F(f, i)] += normal_of(f);
@@ -48,7 +52,8 @@ std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::Matr
         if ((F.row(f).array() == i).any()) continue;  // where two sheets share a node, or triangles are long
         const glm::dvec3 across = normal_of(f);
         if (glm::dot(out, across) > kFacing * glm::length(across)) continue;
-        if (glm::distance(at(rest, i), (at(rest, F(f, 0)) + at(rest, F(f, 1)) + at(rest, F(f, 2))) / 3.0) < apart_mm) continue;
+        if (glm::distance(at(rest, i), (at(rest, F(f, 0)) + at(rest, F(f, 1)) + at(rest, F(f, 2))) / 3.0) < apart_mm)
+          continue;
         const glm::dvec3 s = nearest_in_triangle(p, at(V, F(f, 0)), at(V, F(f, 1)), at(V, F(f, 2)));
         const glm::dvec3 off = s.x * at(V, F(f, 0)) + s.y * at(V, F(f, 1)) + s.z * at(V, F(f, 2)) - p;
         if (glm::dot(off, out) >= 0) gap[i] = std::min(gap[i], glm::length(off));
@@ -60,7 +65,8 @@ std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::Matr
   return gap;
 }
 
-std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
+std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V,
+                                      const Eigen::MatrixX3i& F, double apart_mm, double reach_mm) {
   std::vector<double> gap = contact_gaps(rest, V, F, apart_mm, reach_mm);
   std::erase_if(gap, [](double mm) { return std::isinf(mm); });
   if (gap.empty()) return std::nullopt;

@@ -12,10 +12,10 @@
 namespace limber {
 
 namespace {
-constexpr int kLeaf = 4;          // faces
-constexpr double kKept = 0.5;     // of a pair's distance, by one step
-constexpr double kSafe = 0.5;     // of the way that is surely free, by one advance
-constexpr int kAdvances = 400;    // more only serve to graze
+constexpr int kLeaf = 4;        // faces
+constexpr double kKept = 0.5;   // of a pair's distance, by one step
+constexpr double kSafe = 0.5;   // of the way that is surely free, by one advance
+constexpr int kAdvances = 400;  // more only serve to graze
 
 std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
 
@@ -27,8 +27,10 @@ Corners at(const ContactPair& pair, const Places& x) {
   return p;
 }
 
-// Shares of the corners b, c, d of the triangle's point nearest to a [Ericson, Real-Time Collision Detection, 2005, 5.1.5].
-Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+// Shares of the corners b, c, d of the triangle's point nearest to a [Ericson, Real-Time Collision Detection,
+// 2005, 5.1.5].
+Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                    const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
@@ -88,8 +90,9 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
-// Boxes are compared in single precision, four numbers at once; what that rounds is allowed for where they are compared.
-using Lanes = Eigen::Array4f;  // x y z 0
+// Boxes are compared in single precision, four numbers at once; what that rounds is allowed for where they are
+// compared.
+using Lanes = Eigen::Array4f;             // x y z 0
 constexpr double kRounding = 4 * 1.2e-7;  // of the furthest coordinate
 
 // Where something is, and what way it goes.
@@ -119,7 +122,8 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
   const Corners p = at(pair, x);
   NearestPoints result;
   result.weight = weights(pair.kind, p);
-  const Eigen::Vector3d way = result.weight[0] * p[0] + result.weight[1] * p[1] + result.weight[2] * p[2] + result.weight[3] * p[3];
+  const Eigen::Vector3d way =
+      result.weight[0] * p[0] + result.weight[1] * p[1] + result.weight[2] * p[2] + result.weight[3] * p[3];
   result.distance = way.norm();
   result.direction = result.distance > 0 ? Eigen::Vector3d(way / result.distance) : Eigen::Vector3d::Zero();
   return result;
@@ -127,7 +131,8 @@ NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
 
 namespace {
 // Along p + a s of a pair `now` apart at a = 0, whose parts move towards each other by at most `motion`.
-double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept, double limit) {
+double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept,
+                       double limit) {
   double length = 0;
   for (int k = 0; k < kAdvances; ++k) {
     const double advance = kSafe * now / motion;
@@ -146,14 +151,16 @@ double motion(const ContactPair& pair, const Places& step) {
   return relative_motion(pair.kind, s);
 }
 
-Approach approach(const ContactPair& pair, const Places& x, const Places& step) { return {distance(pair.kind, at(pair, x)), motion(pair, step)}; }
+Approach approach(const ContactPair& pair, const Places& x, const Places& step) {
+  return {distance(pair.kind, at(pair, x)), motion(pair, step)};
+}
 
 namespace {
-// Whether the pair comes nearer than `kept` between two places on its way, where it is apart by what is known: in between at least by
-// what neither end can lose. Where that does not tell, what is in the middle does; a part of
-// the way too short to go on with counts as nearer.
-bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from, double apart_from, double to,
-                  double apart_to) {
+// Whether the pair comes nearer than `kept` between two places on its way, where it is apart by what is known: in
+// between at least by what neither end can lose. Where that does not tell, what is in the middle does; a part of the
+// way too short to go on with counts as nearer.
+bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from,
+                  double apart_from, double to, double apart_to) {
   constexpr double kShortest = 1.0 / 512;
   if (apart_from + apart_to - (to - from) * motion > 2 * kept) return false;
   if (to - from < kShortest) return true;
@@ -161,11 +168,13 @@ bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, do
   Corners there = p;
   for (int a = 0; a < 4; ++a) there[a] += middle * s[a];
   const double apart = distance(kind, there);
-  return apart < kept || comes_nearer(kind, p, s, motion, kept, from, apart_from, middle, apart) || comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
+  return apart < kept || comes_nearer(kind, p, s, motion, kept, from, apart_from, middle, apart) ||
+         comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
 }
 
 // Along p + a s from a = 0 to `limit`.
-bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const Approach& approach, double kept, double limit) {
+bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const Approach& approach, double kept,
+           double limit) {
   Corners end = p;
   for (int a = 0; a < 4; ++a) end[a] += limit * s[a];
   const double apart = distance(kind, end);
@@ -173,7 +182,8 @@ bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const App
 }
 }  // namespace
 
-double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near) {
+double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step,
+                    double limit, double near) {
   const double kept = kKept * std::min(approach.apart, near);
   if (approach.apart - limit * approach.motion > kept) return limit;
   const Corners p = at(pair, x);
@@ -189,7 +199,8 @@ bool is_too_far(const ContactPair& pair, const Approach& approach, const Places&
 }
 
 ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)
-    : rest_(rest), rigid_(rigid) {
+    : rest_(rest),
+      rigid_(rigid) {
   std::vector<Eigen::Vector3d> centre;
   std::vector<std::uint64_t> edges;
   for (const auto& f : F.rowwise()) {
@@ -226,15 +237,16 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
   Eigen::Index axis = 0;
   box.sizes().maxCoeff(&axis);
   const int middle = (begin + end) / 2;
-  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
-                   [&](int a, int b) { return centre[a][axis] != centre[b][axis] ? centre[a][axis] < centre[b][axis] : a < b; });
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
+    return centre[a][axis] != centre[b][axis] ? centre[a][axis] < centre[b][axis] : a < b;
+  });
   grow(order, centre, begin, middle);
   tree_[here].right = int(tree_.size());
   grow(order, centre, middle, end);
 }
 
-std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit, const Nearness& nearness,
-                                              const std::vector<char>& asked) const {
+std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit,
+                                              const Nearness& nearness, const std::vector<char>& asked) const {
   if (faces_.empty()) return {};
   std::vector<Moving> node(x.rows()), face(faces_.size());
   double furthest = 0;
@@ -251,9 +263,13 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   // Of every branch, last first, so that what is below is known: its place, and its whole step.
   std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
-  const auto face_asked = [&](const Face& face) { return asked.empty() || asked[face.node[0]] || asked[face.node[1]] || asked[face.node[2]]; };
+  const auto face_asked = [&](const Face& face) {
+    return asked.empty() || asked[face.node[0]] || asked[face.node[1]] || asked[face.node[2]];
+  };
   std::vector<char> branch_asked(tree_.size(), 0);
-  const auto join = [&](std::size_t b, int rigid, bool first) { rigid_as[b] = first || rigid_as[b] == rigid ? rigid : -1; };
+  const auto join = [&](std::size_t b, int rigid, bool first) {
+    rigid_as[b] = first || rigid_as[b] == rigid ? rigid : -1;
+  };
   for (std::size_t b = tree_.size(); b-- > 0;) {
     if (tree_[b].right) {
       for (const std::size_t below : {b + 1, std::size_t(tree_[b].right)}) {
@@ -278,12 +294,14 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
     if (!branch_asked[a] && !branch_asked[b]) continue;
     if (rigid_as[a] >= 0 && rigid_as[a] == rigid_as[b]) continue;
     if (a == b) {
-      if (tree_[a].right) open.insert(open.end(), {{tree_[a].right, tree_[a].right}, {a + 1, tree_[a].right}, {a + 1, a + 1}});
+      if (tree_[a].right)
+        open.insert(open.end(), {{tree_[a].right, tree_[a].right}, {a + 1, tree_[a].right}, {a + 1, a + 1}});
       else leaves.emplace_back(a, a);
       continue;
     }
     if (apart(branch[a], branch[b], reach_of_boxes)) continue;
-    const bool split_a = tree_[a].right && (!tree_[b].right || tree_[a].end - tree_[a].begin >= tree_[b].end - tree_[b].begin);
+    const bool split_a =
+        tree_[a].right && (!tree_[b].right || tree_[a].end - tree_[a].begin >= tree_[b].end - tree_[b].begin);
     if (split_a) open.insert(open.end(), {{tree_[a].right, b}, {a + 1, b}});
     else if (tree_[b].right) open.insert(open.end(), {{a, tree_[b].right}, {a, b + 1}});
     else leaves.emplace_back(a, b);
@@ -292,7 +310,8 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
   constexpr std::int64_t kGrain = 256;
   std::vector<std::vector<ContactPair>> found((leaves.size() + kGrain - 1) / kGrain);
   const auto one_rigid = [&](const std::array<int, 4>& four) {
-    return rigid_[four[0]] >= 0 && rigid_[four[0]] == rigid_[four[1]] && rigid_[four[0]] == rigid_[four[2]] && rigid_[four[0]] == rigid_[four[3]];
+    return rigid_[four[0]] >= 0 && rigid_[four[0]] == rigid_[four[1]] && rigid_[four[0]] == rigid_[four[2]] &&
+           rigid_[four[0]] == rigid_[four[3]];
   };
   parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
     auto& mine = found[begin / kGrain];
@@ -303,13 +322,16 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
       const ContactPair pair{four, kind};
       const auto [apart, motion] = approach(pair, x, step);
       const double nearest = apart - limit * motion - nearness.margin;
-      if (nearest < nearness.reach && (nearness.of_rest == INFINITY || nearest < nearness.of_rest * distance(kind, at(pair, rest_)))) mine.push_back(pair);
+      if (nearest < nearness.reach &&
+          (nearness.of_rest == INFINITY || nearest < nearness.of_rest * distance(kind, at(pair, rest_))))
+        mine.push_back(pair);
     };
     const auto points = [&](const Face& a, const Face& b, const Moving& all_of_b) {
       for (int k = 0; k < 3; ++k) {
         const int v = a.node[k];
         if (!(a.own_nodes >> k & 1) || v == b.node[0] || v == b.node[1] || v == b.node[2]) continue;
-        if (!apart(node[v], all_of_b, reach_of_boxes)) consider(ContactPair::Kind::PointTriangle, {v, b.node[0], b.node[1], b.node[2]});
+        if (!apart(node[v], all_of_b, reach_of_boxes))
+          consider(ContactPair::Kind::PointTriangle, {v, b.node[0], b.node[1], b.node[2]});
       }
     };
     const auto edges = [&](const Face& a, const Face& b) {
@@ -320,7 +342,8 @@ std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& ste
         for (int l = 0; l < 3; ++l) {
           const int other_v = b.node[l], other_w = b.node[(l + 1) % 3];
           if (!(b.own_edges >> l & 1) || v == other_v || v == other_w || w == other_v || w == other_w) continue;
-          if (!apart(edge, around(node[other_v], node[other_w]), reach_of_boxes)) consider(ContactPair::Kind::EdgeEdge, {v, w, other_v, other_w});
+          if (!apart(edge, around(node[other_v], node[other_w]), reach_of_boxes))
+            consider(ContactPair::Kind::EdgeEdge, {v, w, other_v, other_w});
         }
       }
     };

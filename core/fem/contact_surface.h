@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Which parts of a surface come near each other while its nodes move, and how far they may move before they touch.
 //
-// Two triangles meet first in a corner of one and the inside of the other, or in an edge of each. So a surface is watched by
-// such pairs, found in a tree of boxes [Gottschalk, Lin & Manocha, OBBTree, SIGGRAPH 1996, with boxes along the axes] that
-// holds places and steps: what moves together stays apart and is left out early, however far it moves. How far a pair may go
-// is found by steps that cannot pass a contact [Li, Kaufman & Jiang, Codimensional Incremental Potential Contact,
-// SIGGRAPH 2021: additive continuous collision detection]. mm.
+// Two triangles meet first in a corner of one and the inside of the other, or in an edge of each. So a surface is
+// watched by such pairs, found in a tree of boxes [Gottschalk, Lin & Manocha, OBBTree, SIGGRAPH 1996, with boxes along
+// the axes] that holds places and steps: what moves together stays apart and is left out early, however far it moves.
+// How far a pair may go is found by steps that cannot pass a contact [Li, Kaufman & Jiang, Codimensional Incremental
+// Potential Contact, SIGGRAPH 2021: additive continuous collision detection]. mm.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ struct ContactPair {
   Kind kind;
 };
 
-// The shortest way between the two parts: `distance` long, along n = sum of weight_a x_a / distance. Its change with the nodes
-// is weight_a n.
+// The shortest way between the two parts: `distance` long, along n = sum of weight_a x_a / distance. Its change with
+// the nodes is weight_a n.
 struct NearestPoints {
   double distance;
   Eigen::Vector4d weight;
@@ -41,10 +41,11 @@ struct Approach {
 Approach approach(const ContactPair& pair, const Places& x, const Places& step);
 double motion(const ContactPair& pair, const Places& step);
 
-// How much of `step`, at most `limit`, a pair may take and keep half of its distance, or half of `near` where it is further apart:
-// maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth, folds close faster than what
-// pushes them open can tell, and Newton's method has then no room left to move in.)
-double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double limit, double near = INFINITY);
+// How much of `step`, at most `limit`, a pair may take and keep half of its distance, or half of `near` where it is
+// further apart: maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth,
+// folds close faster than what pushes them open can tell, and Newton's method has then no room left to move in.)
+double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step,
+                    double limit, double near = INFINITY);
 // Whether it keeps less on the whole step, or as good as less.
 bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near);
 
@@ -56,13 +57,16 @@ class ContactSurface {
   ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid);
 
   bool empty() const { return faces_.empty(); }
-  // What counts as near: less than `reach`, and than the share `of_rest` of what a pair is apart at rest; `margin` more than both.
+  // What counts as near: less than `reach`, and than the share `of_rest` of what a pair is apart at rest; `margin` more
+  // than both.
   struct Nearness {
     double reach, of_rest = INFINITY, margin = 0;
   };
-  // Pairs without a common node that may come near on the way from x to x + limit step. Each once, the same for any number of threads.
+  // Pairs without a common node that may come near on the way from x to x + limit step. Each once, the same for any
+  // number of threads.
   //   asked  #V: only pairs with such a node; empty: all
-  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, const Nearness& nearness, const std::vector<char>& asked = {}) const;
+  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, const Nearness& nearness,
+                                const std::vector<char>& asked = {}) const;
 
  private:
   struct Face {
@@ -70,12 +74,12 @@ class ContactSurface {
     std::uint8_t own_nodes, own_edges;  // bits: corner k, edge from corner k to k + 1
   };
   struct Branch {
-    std::int32_t begin, end;   // faces
-    std::int32_t right;        // of the two below, the left one follows at once; 0: none below
+    std::int32_t begin, end;  // faces
+    std::int32_t right;       // of the two below, the left one follows at once; 0: none below
   };
   void grow(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centre, int begin, int end);
 
-  std::vector<Face> faces_;    // in the order of the tree
+  std::vector<Face> faces_;  // in the order of the tree
   std::vector<Branch> tree_;
   Places rest_;
   std::vector<int> rigid_;

@@ -19,9 +19,10 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kChunk = 48;    // tets, at least: large enough to have few neighbours, small enough for many in a colour
+constexpr std::int64_t kChunk =
+    48;  // tets, at least: large enough to have few neighbours, small enough for many in a colour
 constexpr std::int64_t kPatches = 256;  // of a loop without writes to nodes
-constexpr std::int64_t kGrain = 2048;  // tets of a loop without writes to nodes
+constexpr std::int64_t kGrain = 2048;   // tets of a loop without writes to nodes
 
 Eigen::Matrix3d deformation_of(const ElasticForm::Tet& tet, const Places& x) {
   const Eigen::Vector3d o = x.row(tet.node[0]);
@@ -69,7 +70,8 @@ ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_coun
         later.push_back(chunk);
         continue;
       }
-      for (auto e = chunk.begin; e < chunk.end; ++e) nodes_of(e, [&](int node) { used[node] |= std::uint64_t{1} << colour; });
+      for (auto e = chunk.begin; e < chunk.end; ++e)
+        nodes_of(e, [&](int node) { used[node] |= std::uint64_t{1} << colour; });
       if (of_colour.size() < round + colour + 1) of_colour.resize(round + colour + 1);
       of_colour[round + colour].push_back(chunk);
     }
@@ -84,7 +86,8 @@ ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_coun
   return result;
 }
 
-ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy, std::vector<std::int64_t> first) {
+ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
+                         std::vector<std::int64_t> first) {
   tets_.resize(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
     Tet& tet = tets_[t];
@@ -141,7 +144,8 @@ void ElasticForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
       const Patch& patch = patches_[p];
       const auto begin = node_.begin() + patch.node_begin, end = node_.begin() + patch.node_end;
       by_rank.clear(), unknowns.clear();
-      for (auto at = begin; at != end; ++at) by_rank.push_back({unknown[*at] < 0 ? -1 : matrix.rank(unknown[*at]), *at});
+      for (auto at = begin; at != end; ++at)
+        by_rank.push_back({unknown[*at] < 0 ? -1 : matrix.rank(unknown[*at]), *at});
       std::sort(by_rank.begin(), by_rank.end());
       std::transform(by_rank.begin(), by_rank.end(), begin, [](const auto& each) { return each.second; });
       for (const auto& [rank, node] : by_rank) unknowns.push_back(unknown[node]);
@@ -195,7 +199,10 @@ void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure
 // Blocks of one patch after the other: of its tets first, then of what they have in common.
 class ElasticForm::PatchSum {
  public:
-  PatchSum(const ElasticForm& form, const PatchStiffness& stiffness, std::span<double> matrix) : form_(form), stiffness_(stiffness), matrix_(matrix) {}
+  PatchSum(const ElasticForm& form, const PatchStiffness& stiffness, std::span<double> matrix)
+      : form_(form),
+        stiffness_(stiffness),
+        matrix_(matrix) {}
 
   void begin(std::int64_t p) {
     patch_ = p;
@@ -254,8 +261,8 @@ class ElasticForm::PatchSum {
   std::vector<Eigen::Vector3d> slope_;  // #nodes: G
 };
 
-void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness, Curvature curvature,
-                                  Places& gradient, std::span<double> matrix) const {
+void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness,
+                                  Curvature curvature, Places& gradient, std::span<double> matrix) const {
   constexpr int kTets = TetDerivatives::kTets;
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
     const auto first = patches_[chunk.begin].begin, last = patches_[chunk.end - 1].end;
@@ -288,7 +295,8 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
         state.curvature = term.curvature;
         if (curvature == Curvature::Projected) {
           state.axes = &axes_of[t - first];
-          const NegativeCurvature negative = negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
+          const NegativeCurvature negative =
+              negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);
           state.negative.count = negative.count;
           std::copy_n(negative.direction, negative.count, state.negative.direction);
         }

@@ -13,9 +13,10 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
-constexpr double kSteady = 1e-9;    // of a node's own curvature where it has least, added to it: what hangs by an edge can turn at no cost,
-                                    // and a matrix that is singular but for rounding may count as indefinite
-constexpr double kKeep = 0.05;      // det F that no step goes below; what has less than twice that is halved at most
+constexpr double kSteady =
+    1e-9;  // of a node's own curvature where it has least, added to it: what hangs by an edge can turn at no cost,
+           // and a matrix that is singular but for rounding may count as indefinite
+constexpr double kKeep = 0.05;  // det F that no step goes below; what has less than twice that is halved at most
 
 // Of this process and of those it has started and seen end.
 double cpu_seconds() {
@@ -32,8 +33,10 @@ double cpu_seconds() {
 CpuTimer::CpuTimer(double& sum) : sum_(sum), start_(cpu_seconds()) {}
 CpuTimer::~CpuTimer() { sum_ += cpu_seconds() - start_; }
 
-FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material, double weak_barrier_kpa, int patch_size)
-    : node_count_(int(rest.rows())), rest_(rest) {
+FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
+                     double weak_barrier_kpa, int patch_size)
+    : node_count_(int(rest.rows())),
+      rest_(rest) {
   std::vector<double> bulk(T.rows()), shear(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) bulk[t] = patch_bulk(material[t]), shear[t] = material[t].shear_modulus;
   const PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
@@ -65,7 +68,8 @@ void FemEnergy::guard(const Eigen::MatrixX4i& guarded) {
   bounded_.resize(flesh_tets_.rows() + guarded.rows(), 4);
   bounded_ << flesh_tets_, guarded;
   keep_.resize(bounded_.rows());
-  for (Eigen::Index t = 0; t < bounded_.rows(); ++t) keep_[t] = kKeep * determinant(rest_, bounded_(t, 0), bounded_(t, 1), bounded_(t, 2), bounded_(t, 3));
+  for (Eigen::Index t = 0; t < bounded_.rows(); ++t)
+    keep_[t] = kKeep * determinant(rest_, bounded_(t, 0), bounded_(t, 1), bounded_(t, 2), bounded_(t, 3));
   first_at_.assign(node_count_ + 1, 0);
   for (const int node : bounded_.reshaped()) ++first_at_[node + 1];
   std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
@@ -211,15 +215,18 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
   contact_.watch(x, step, std::max(bound.length, std::min(limit, 1.0)));  // what yielding() would ask about too
-  if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length) bound = {free.length, Obstacle::Contact, free.node};
+  if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
+    bound = {free.length, Obstacle::Contact, free.node};
   return bound;
 }
 
 Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>& fixed) {
   constexpr double kBorne = 0.2;  // of a tet's volume,
-  constexpr double kBeyond = 1.2;  // or of what a step must leave of it: more than both, so that the step is not bounded
+  constexpr double kBeyond =
+      1.2;  // or of what a step must leave of it: more than both, so that the step is not bounded
   constexpr int kRounds = 40;
-  constexpr int kSeen = 20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
+  constexpr int kSeen =
+      20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   Places sum(x.rows(), 3), there = x + step;
@@ -231,7 +238,8 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
       for (auto k = begin; k < end; ++k) {
         const int t = asked[k];
         const double before = determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3));
-        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) < std::max(kBorne * before, kBeyond * std::min(0.5 * before, keep_[t]));
+        flattened[t] = determinant(there, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) <
+                       std::max(kBorne * before, kBeyond * std::min(0.5 * before, keep_[t]));
       }
     });
     std::erase_if(asked, [&](int t) { return !flattened[t]; });

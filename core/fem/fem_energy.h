@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// All that a step's shape is the least energy of: flesh (elastic_form.h) with its patches (patch_form.h), the springs of the
-// bones (pin_form.h), and with contact what keeps skins apart (contact_form.h); and the matrix of its curvature.
+// All that a step's shape is the least energy of: flesh (elastic_form.h) with its patches (patch_form.h), the springs
+// of the bones (pin_form.h), and with contact what keeps skins apart (contact_form.h); and the matrix of its curvature.
 // Nodes deep in a bone, whose tets all belong to that bone alone, are no unknowns: they go where the bone goes.
 #pragma once
 
@@ -44,11 +44,13 @@ class CpuTimer {
 
 class FemEnergy {
  public:
-  // Flesh: T and material of the tets that deform, #T each. weak_barrier_kpa ends the oscillation of single tets near J 0.
-  FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material, double weak_barrier_kpa, int patch_size = 8);
+  // Flesh: T and material of the tets that deform, #T each. weak_barrier_kpa ends the oscillation of single tets near J
+  // 0.
+  FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
+            double weak_barrier_kpa, int patch_size = 8);
 
-  // Springs, and what moves without being asked: `carried` nodes go to `carried_target`. Keeps the matrix when the nodes are
-  // those of the last call.
+  // Springs, and what moves without being asked: `carried` nodes go to `carried_target`. Keeps the matrix when the
+  // nodes are those of the last call.
   void hold(PinForm pins, std::vector<int> carried, Places carried_target);
   // Volume that must not invert although it costs nothing.
   void guard(const Eigen::MatrixX4i& guarded);
@@ -56,14 +58,14 @@ class FemEnergy {
 
   int node_count() const { return node_count_; }
 
-  // Energy and derivatives know who may touch on one way: that of the last largest_step() or yielding(). Elsewhere this comes first,
-  // whose way is x alone.
+  // Energy and derivatives know who may touch on one way: that of the last largest_step() or yielding(). Elsewhere this
+  // comes first, whose way is x alone.
   void watch(const Places& x);
   // Infinite where a tet is inverted.
   double value(const Places& x);
   void gradient(const Places& x, Places& gradient);
-  // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along it, to
-  // first order (above 0).
+  // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along
+  // it, to first order (above 0).
   //   towards  where nothing holds a node, as a flap that hangs by two nodes, it takes this step; none: it stays
   bool newton_step(const Places& x, Curvature curvature, Places& step, double& slope, const Places* towards = nullptr);
   enum class Obstacle { None, Flesh, Guarded, Contact };
@@ -74,12 +76,12 @@ class FemEnergy {
   };
   Bound largest_step(const Places& x, const Places& step, double limit);
 
-  // The step where it would flatten tets, or take parts of the skin too near each other, made smoother, until it does not or
-  // rounds are over: what moves all alike keeps its volume and its distances.
+  // The step where it would flatten tets, or take parts of the skin too near each other, made smoother, until it does
+  // not or rounds are over: what moves all alike keeps its volume and its distances.
   //   fixed  #nodes: 1 for those whose step stays; empty: none
   Places yielding(const Places& x, Places step, const std::vector<char>& fixed);
 
-  double min_ratio(const Places& x) const;      // smallest det F of flesh
+  double min_ratio(const Places& x) const;                          // smallest det F of flesh
   const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded
 
   Cholesky& matrix();  // of the last newton_step()
@@ -97,7 +99,8 @@ class FemEnergy {
   Places rest_;
   std::vector<double> keep_;  // of bounded_, as for largest_step
   Eigen::MatrixX4i flesh_tets_, bounded_;
-  std::vector<int> first_at_, tet_at_;  // of bounded_, those around each node: tet_at_[first_at_[v] .. first_at_[v + 1])
+  std::vector<int> first_at_,
+      tet_at_;  // of bounded_, those around each node: tet_at_[first_at_[v] .. first_at_[v + 1])
   ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;

@@ -3,8 +3,8 @@
 //   W = mu/2 (|F|^2 - 3) - mu ln J + lambda/2 (J - 1)^2,   J = det F > 0
 // [the compressible neo-Hookean energy of Bonet & Wood 2008, with the volume term in J]. Its zero is rest, a rotation
 // costs nothing, and no finite energy turns a tet inside out.
-// Linear tets lock when lambda is large. So lambda is split: what a Poisson ratio of 0.4 has stays with each tet, the rest
-// acts on the mean of J over a patch of tets (patch_form.h).
+// Linear tets lock when lambda is large. So lambda is split: what a Poisson ratio of 0.4 has stays with each tet, the
+// rest acts on the mean of J over a patch of tets (patch_form.h).
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace limber {
 struct TetMaterial {
   double shear_modulus = 1;    // mu, kPa, above 0
   double poisson_ratio = 0.4;  // [0, 0.5)
-  double filled = 1;           // above 0: volume of tissue by volume of tet, whose mean counts among others (patch_form.h)
+  double filled = 1;  // above 0: volume of tissue by volume of tet, whose mean counts among others (patch_form.h)
 };
 
 inline double lame_lambda(double shear_modulus, double poisson_ratio) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small matrices of several tets at once: what is written for lanes is compiled for two numbers and for four, and four are taken
-// where the processor has AVX2. Every helper is inlined, so that it is compiled for the processor that its caller is compiled
-// for; the same comes out for each, to the bit.
-// Included by .cpp files only.
+// Small matrices of several tets at once: what is written for lanes is compiled for two numbers and for four, and four
+// are taken where the processor has AVX2. Every helper is inlined, so that it is compiled for the processor that its
+// caller is compiled for; the same comes out for each, to the bit. Included by .cpp files only.
 #pragma once
 
 #include "core/fem/principal.h"

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/volume/distance.h"
+#include "core/volume/distance_transform.h"
 
 namespace limber {
 
 namespace {
 
-constexpr int kCell = 4;             // voxels
-constexpr double kWhole = 0.98;      // of the weight on one motion: such tissue goes with it
+constexpr int kCell = 4;         // voxels
+constexpr double kWhole = 0.98;  // of the weight on one motion: such tissue goes with it
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));
@@ -26,7 +26,9 @@ std::vector<int> first_alike_on_path(const BonePath& path, const std::vector<dou
   for (int i = 0; i < std::ssize(first); ++i) {
     first[i] = i;
     for (int k = 0; k < i && first[i] == i; ++k)
-      if (first[k] == k && std::all_of(ways.begin(), ways.end(), [&](const auto& motions) { return alike(motions[i], motions[k]); })) first[i] = k;
+      if (first[k] == k &&
+          std::all_of(ways.begin(), ways.end(), [&](const auto& motions) { return alike(motions[i], motions[k]); }))
+        first[i] = k;
   }
   return first;
 }
@@ -47,7 +49,8 @@ Main main_motion(const Influence& influence, const std::vector<int>& moves_as) {
     if (at == count) sums[count++] = {motion, 0};
     sums[at].second += influence.weight[i];
   }
-  const auto best = std::max_element(sums.begin(), sums.begin() + count, [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto best = std::max_element(sums.begin(), sums.begin() + count,
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
   return {best->first, best->second / double(kFullWeight)};
 }
 
@@ -58,8 +61,10 @@ bool has_any(const std::vector<std::uint8_t>& set) {
 // The box of cells around all tissue, with one of nothing around it.
 class Cells {
  public:
-  Cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as)
-      : grid_(volume.grid), tissue_(tissue) {
+  Cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+        const std::vector<int>& moves_as)
+      : grid_(volume.grid),
+        tissue_(tissue) {
     box_.lowest = glm::ivec3(-1);
     box_.size = tissue.brick_grid() * (TissueVoxels::kBrick / kCell) + 2;
     motion_.assign(box_.voxel_count(), kAir);
@@ -84,8 +89,8 @@ class Cells {
     return squared_distance(box_, seeds, spacing(), progress);
   }
 
-  // visit(place, cells) of each looked-at place of the path that is the first to bring cells near to such of another motion that were
-  // far away at rest.
+  // visit(place, cells) of each looked-at place of the path that is the first to bring cells near to such of another
+  // motion that were far away at rest.
   template <class Visit>
   void brought_near(const BonePath& path, const std::vector<double>& places, double near_mm, const Visit& visit) const {
     std::vector<std::uint8_t> before(box_.voxel_count(), 0), near;
@@ -96,7 +101,8 @@ class Cells {
       std::unordered_map<std::uint64_t, Bin> bins;
       for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
         if (motion_[at] == kAir) return;
-        const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5), posed = motions[motion_[at]] * rest;
+        const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5),
+                         posed = motions[motion_[at]] * rest;
         const glm::ivec3 place(glm::floor(posed / near_mm));
         Bin& bin = bins.try_emplace(key(place), Bin{place, motion_[at], {}}).first->second;
         if (bin.motion != motion_[at]) bin.motion = kSeveral;
@@ -109,9 +115,13 @@ class Cells {
           const auto found = bins.find(key(bin.place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
           if (found == bins.end() || (bin.motion != kSeveral && found->second.motion == bin.motion)) continue;
           for (const Placed& mine : bin.cells)
-            near[mine.at] = near[mine.at] || (!before[mine.at] && std::any_of(found->second.cells.begin(), found->second.cells.end(), [&](const Placed& other) {
-              return motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm && glm::distance(mine.rest, other.rest) > far;
-            }));
+            near[mine.at] =
+                near[mine.at] ||
+                (!before[mine.at] &&
+                 std::any_of(found->second.cells.begin(), found->second.cells.end(), [&](const Placed& other) {
+                   return motion_[other.at] != motion_[mine.at] && glm::distance(mine.posed, other.posed) < near_mm &&
+                          glm::distance(mine.rest, other.rest) > far;
+                 }));
         }
       if (!has_any(near)) continue;
       visit(k, near);
@@ -124,7 +134,8 @@ class Cells {
   std::vector<std::array<float, 8>> by_brick(const Value& value) const {
     std::vector<std::array<float, 8>> values(tissue_.bricks().size());
     for (size_t b = 0; b < values.size(); ++b)
-      for (int c = 0; c < 8; ++c) values[b][c] = value(box_.index(tissue_.bricks()[b].corner / kCell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2)));
+      for (int c = 0; c < 8; ++c)
+        values[b][c] = value(box_.index(tissue_.bricks()[b].corner / kCell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2)));
     return values;
   }
 
@@ -194,7 +205,8 @@ class Cells {
 }  // namespace
 
 bool MovingTissue::empty() const {
-  return std::all_of(free.begin(), free.end(), [](const auto& brick) { return brick == std::array<std::uint64_t, 8>{}; });
+  return std::all_of(free.begin(), free.end(),
+                     [](const auto& brick) { return brick == std::array<std::uint64_t, 8>{}; });
 }
 
 float MovingTissue::free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const {
@@ -202,8 +214,8 @@ float MovingTissue::free_from_at(const TissueVoxels& tissue, const glm::ivec3& v
   return free_from[tissue.brick_at(voxel)][cell.x + 2 * cell.y + 4 * cell.z];
 }
 
-MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const BonePath& path,
-                           const MovingSettings& settings, Progress& progress) {
+MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                           const BonePath& path, const MovingSettings& settings, Progress& progress) {
   MovingTissue result;
   result.moves_as = first_alike_on_path(path, settings.places);
   const Cells cells(volume, tissue, weights, result.moves_as);
@@ -214,18 +226,21 @@ MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;
   if (settings.contact && has_any(cells.mixed())) {
-    cells.brought_near(path, settings.places, settings.near_mm, [&](std::size_t k, const std::vector<std::uint8_t>& near) {
-      const std::vector<float> distance = cells.squared_distance_to(near, progress);
-      for (std::size_t at = 0; at < distance.size(); ++at) {
-        to_near[at] = std::min(to_near[at], distance[at]);
-        if (distance[at] <= squared(settings.give_mm)) free_from[at] = std::min(free_from[at], k ? float(settings.places[k - 1]) : 0.0f);
-      }
-    });
+    cells.brought_near(path, settings.places, settings.near_mm,
+                       [&](std::size_t k, const std::vector<std::uint8_t>& near) {
+                         const std::vector<float> distance = cells.squared_distance_to(near, progress);
+                         for (std::size_t at = 0; at < distance.size(); ++at) {
+                           to_near[at] = std::min(to_near[at], distance[at]);
+                           if (distance[at] <= squared(settings.give_mm))
+                             free_from[at] = std::min(free_from[at], k ? float(settings.places[k - 1]) : 0.0f);
+                         }
+                       });
   }
   result.free = cells.mask([&](std::int64_t at) { return free_from[at] < INFINITY; });
   result.free_from = cells.by_brick([&](std::int64_t at) { return free_from[at]; });
   result.meshed = cells.mask([&](std::int64_t at) {
-    return to_bending[at] <= squared(settings.margin_mm + settings.rim_mm) || to_near[at] <= squared(settings.give_mm + settings.rim_mm);
+    return to_bending[at] <= squared(settings.margin_mm + settings.rim_mm) ||
+           to_near[at] <= squared(settings.give_mm + settings.rim_mm);
   });
   return result;
 }
@@ -241,7 +256,8 @@ SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tiss
       const glm::ivec3 v = voxel - cells.corner;
       Influence& mine = *influence++;
       const bool is_whole = mine.weight[0] == kFullWeight;
-      if (!is_whole && !(moving.free[brick][v.z] >> (v.x + 8 * v.y) & 1)) mine = rigid_influence(main_motion(mine, moving.moves_as).motion);
+      if (!is_whole && !(moving.free[brick][v.z] >> (v.x + 8 * v.y) & 1))
+        mine = rigid_influence(main_motion(mine, moving.moves_as).motion);
     });
     rigid.set_chunk(brick, std::move(chunk));
   }

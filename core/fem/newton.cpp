@@ -7,15 +7,16 @@
 namespace limber {
 
 namespace {
-constexpr double kSufficient = 1e-4;   // of the first-order decrease that a step must bring [Armijo 1966]
-constexpr double kFurthest = 8;        // times the full step
-constexpr int kHalvings = 24;          // of a step, before the search is given up
-constexpr double kShort = 0.5;         // a step that something bounds below this is tried around it too
-constexpr double kJam = 0.05;          // a step this short is a jam;
-constexpr int kJams = 3;               // after so many in a row the solve is given up
-constexpr double kLeft = 0.25;         // of the tolerance, that a step shorter than the full one may leave undone and be the last
+constexpr double kSufficient = 1e-4;  // of the first-order decrease that a step must bring [Armijo 1966]
+constexpr double kFurthest = 8;       // times the full step
+constexpr int kHalvings = 24;         // of a step, before the search is given up
+constexpr double kShort = 0.5;        // a step that something bounds below this is tried around it too
+constexpr double kJam = 0.05;         // a step this short is a jam;
+constexpr int kJams = 3;              // after so many in a row the solve is given up
+constexpr double kLeft =
+    0.25;  // of the tolerance, that a step shorter than the full one may leave undone and be the last
 
-constexpr double kStraggle = 3;        // times the tolerance, for the few nodes that may
+constexpr double kStraggle = 3;  // times the tolerance, for the few nodes that may
 
 double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
 
@@ -78,8 +79,7 @@ NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settin
       const FemEnergy::Bound further = energy.largest_step(x, around, 1);
       if (further.length > result.bound.length && (length = search(energy, x, value, around, 0, further.length)) > 0)
         result.bound = further;
-      else
-        energy.largest_step(x, step, 1);
+      else energy.largest_step(x, step, 1);
     }
     if (length == 0) length = search(energy, x, value, step, slope, result.bound.length);
     result.shortest_search = std::min(result.shortest_search, length);

@@ -26,8 +26,10 @@ std::vector<int> morton_order(const Places& rest, const Eigen::MatrixX4i& T) {
   const double extent = std::max((rest.colwise().maxCoeff() - low).maxCoeff(), 1e-9);
   std::vector<std::uint64_t> code(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
-    const Eigen::RowVector3d centre = 0.25 * (rest.row(T(t, 0)) + rest.row(T(t, 1)) + rest.row(T(t, 2)) + rest.row(T(t, 3)));
-    for (int k = 0; k < 3; ++k) code[t] |= spread_bits(std::uint64_t((centre[k] - low[k]) / extent * ((1 << 21) - 1))) << k;
+    const Eigen::RowVector3d centre =
+        0.25 * (rest.row(T(t, 0)) + rest.row(T(t, 1)) + rest.row(T(t, 2)) + rest.row(T(t, 3)));
+    for (int k = 0; k < 3; ++k)
+      code[t] |= spread_bits(std::uint64_t((centre[k] - low[k]) / extent * ((1 << 21) - 1))) << k;
   }
   std::vector<int> order(T.rows());
   std::iota(order.begin(), order.end(), 0);
@@ -36,12 +38,15 @@ std::vector<int> morton_order(const Places& rest, const Eigen::MatrixX4i& T) {
 }
 }  // namespace
 
-PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk, const std::vector<double>& shear, int size) {
+PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
+                        const std::vector<double>& shear, int size) {
   const auto neighbour = neighbours_of(T);
   const auto order = morton_order(rest, T);
   std::vector<int> patch_of(T.rows(), -1);
   std::vector<std::vector<int>> patches;
-  const auto alike = [&](int a, int b) { return bulk[b] > 0 && shear[b] <= kAlike * shear[a] && shear[a] <= kAlike * shear[b]; };
+  const auto alike = [&](int a, int b) {
+    return bulk[b] > 0 && shear[b] <= kAlike * shear[a] && shear[a] <= kAlike * shear[b];
+  };
 
   for (const int seed : order) {
     if (patch_of[seed] >= 0) continue;
@@ -91,8 +96,11 @@ PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std
   return result;
 }
 
-PatchForm::PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk, std::vector<double> filled)
-    : first_(std::move(first)), filled_(std::move(filled)), tissue_(tets.size()) {
+PatchForm::PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk,
+                     std::vector<double> filled)
+    : first_(std::move(first)),
+      filled_(std::move(filled)),
+      tissue_(tets.size()) {
   for (std::int64_t t = 0; t < tets.size(); ++t) tissue_[t] = filled_[t] * tets.tet(t).volume;
   for (std::size_t p = 0; p + 1 < first_.size(); ++p) {
     double tissue = 0, of_bulk = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Springs from nodes to places: how bones hold their nodes. Stiff, but no more than that: where a joint leaves no room, bone
-// gives way a little before flesh is crushed.
+// Springs from nodes to places: how bones hold their nodes. Stiff, but no more than that: where a joint leaves no room,
+// bone gives way a little before flesh is crushed.
 //   sum of k/2 (x - target)^2, k in kPa mm, of each axis
 #pragma once
 

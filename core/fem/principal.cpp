@@ -27,7 +27,8 @@ LIMBER_INLINE N dot(const N* a, const N* b) {
 
 // Columns of B = F V that are perpendicular, the longest first, with their squared lengths.
 template <class Lanes>
-LIMBER_INLINE void rotate(typename Lanes::Numbers B[3][3], typename Lanes::Numbers V[3][3], typename Lanes::Numbers squared[3]) {
+LIMBER_INLINE void rotate(typename Lanes::Numbers B[3][3], typename Lanes::Numbers V[3][3],
+                          typename Lanes::Numbers squared[3]) {
   using N = typename Lanes::Numbers;
   constexpr double kPerpendicular = 1e-15;
   constexpr std::array<std::pair<int, int>, 3> kPairs{{{0, 1}, {0, 2}, {1, 2}}}, kFalling{{{0, 1}, {1, 2}, {0, 1}}};
@@ -105,8 +106,12 @@ LIMBER_INLINE void decompose_all(const Eigen::Matrix3d* F, Principal* result, st
   for (std::size_t k = 0; k < count; k += Lanes::kCount) decompose<Lanes>(F + k, result + k, count - k);
 }
 
-LIMBER_FOR_FOUR void all_by_four(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<FourLanes>(F, result, count); }
-void all_by_two(const Eigen::Matrix3d* F, Principal* result, std::size_t count) { decompose_all<TwoLanes>(F, result, count); }
+LIMBER_FOR_FOUR void all_by_four(const Eigen::Matrix3d* F, Principal* result, std::size_t count) {
+  decompose_all<FourLanes>(F, result, count);
+}
+void all_by_two(const Eigen::Matrix3d* F, Principal* result, std::size_t count) {
+  decompose_all<TwoLanes>(F, result, count);
+}
 
 }  // namespace
 

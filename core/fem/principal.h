@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Singular values of deformation gradients, two or four at once, as the processor can: a third of what assembling a matrix
-// took went there. By one-sided Jacobi rotations, which find small singular values as exactly as large ones [Demmel & Veselic 1992].
+// Singular values of deformation gradients, two or four at once, as the processor can: a third of what assembling a
+// matrix took went there. By one-sided Jacobi rotations, which find small singular values as exactly as large ones
+// [Demmel & Veselic 1992].
 #pragma once
 
 #include <span>
@@ -18,7 +19,8 @@ struct Principal {
 enum class MatrixLanes { Widest, Two };  // the same comes out, to the bit
 
 // Of each F, as many as there are.
-void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result, MatrixLanes width = MatrixLanes::Widest);
+void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result,
+               MatrixLanes width = MatrixLanes::Widest);
 Principal principal(const Eigen::Matrix3d& F);
 
 }  // namespace limber

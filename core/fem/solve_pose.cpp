@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/dual_quaternion.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/base/screw.h"
 #include "core/fem/newton.h"
 
 namespace limber {
@@ -18,15 +18,16 @@ namespace limber {
 namespace {
 // A bone gives way by 0.01 mm where flesh pulls with 50 kPa.
 constexpr double kPinStiffness = 1000;      // kPa per mm2, times the volume around a node
-constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the bones' ends
-                                            // would often not pass each other
+constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the
+                                            // bones' ends would often not pass each other
 constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
-constexpr int kSettling = 3;                  // times the iterations of a step, at the end
-constexpr double kStragglers = 1e-3;           // of the nodes, while the end settles
-constexpr double kTight = 0.25;               // of a step's tolerance, where the next one does not succeed
-constexpr double kWorth = 0.125;              // of the nodes solved for: fewer more are not worth another matrix
-constexpr double kRough = 0.5;                // of a way that tissue does not bear further than this, it is made smoother
-constexpr double kWeakBarrier = 100;        // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
+constexpr int kSettling = 3;                // times the iterations of a step, at the end
+constexpr double kStragglers = 1e-3;        // of the nodes, while the end settles
+constexpr double kTight = 0.25;             // of a step's tolerance, where the next one does not succeed
+constexpr double kWorth = 0.125;            // of the nodes solved for: fewer more are not worth another matrix
+constexpr double kRough = 0.5;              // of a way that tissue does not bear further than this, it is made smoother
+constexpr double kWeakBarrier =
+    100;  // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
   const glm::dvec3 q = transform * glm::dvec3(p[0], p[1], p[2]);
@@ -34,16 +35,22 @@ Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector
 }
 
 void check(const FemModel& model, const Eigen::MatrixX3d* start) {
-  const auto wrong = [](const char* what) { throw Error("a model for finite elements does not fit together", what, "give one entry for each"); };
+  const auto wrong = [](const char* what) {
+    throw Error("a model for finite elements does not fit together", what, "give one entry for each");
+  };
   if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
   if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("held nodes and nodes");
   if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
-        return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 || model.held_by[each.node] >= 0;
-      })) wrong("waiting nodes and free nodes");
+        return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 ||
+               model.held_by[each.node] >= 0;
+      }))
+    wrong("waiting nodes and free nodes");
   if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences and nodes");
   if (start && start->rows() != model.mesh.V.rows()) wrong("nodes at the start and nodes");
-  if (count_inverted(model.mesh.T, model.mesh.V)) throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
-  if (start && count_inverted(model.mesh.T, *start)) throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
+  if (count_inverted(model.mesh.T, model.mesh.V))
+    throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
+  if (start && count_inverted(model.mesh.T, *start))
+    throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
 bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
@@ -51,11 +58,13 @@ bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet)
   return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
 }
 
-// The model's waiting nodes; few that could wait longer than others go with those, for to solve for more nodes the matrix is ordered anew.
+// The model's waiting nodes; few that could wait longer than others go with those, for to solve for more nodes the
+// matrix is ordered anew.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
-  double solved_for = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size()), more = 0, since = 0;
+  double solved_for = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size()),
+         more = 0, since = 0;
   for (auto begin = waiting.begin(); begin != waiting.end() && begin->until < 1;) {
     const auto end = std::find_if(begin, waiting.end(), [&](const auto& each) { return each.until > begin->until; });
     more += double(end - begin);
@@ -70,15 +79,15 @@ std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   return waiting;
 }
 
-// What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is rigid; it
-// deforms nevertheless where flesh pulls at one of its nodes, for there its node may give way.
+// What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is
+// rigid; it deforms nevertheless where flesh pulls at one of its nodes, for there its node may give way.
 struct Parts {
   Eigen::MatrixX4i elastic, rigid;
   std::vector<TetMaterial> material;  // of elastic tets
   std::vector<char> is_flesh;         // of elastic tets: not rigid
   std::vector<int> pinned, carried;   // nodes that bones hold: in elastic tets or not
   std::vector<double> pin_stiffness;
-  std::vector<char> in_joint;         // nodes of tets between two bones
+  std::vector<char> in_joint;  // nodes of tets between two bones
 
   Parts() = default;
   Parts(const FemModel& model, const std::vector<int>& held_by) {
@@ -129,8 +138,14 @@ class PoseSolve {
  public:
   PoseSolve(const FemModel& model, const BonePath& path, const SolveSettings& settings, Progress& progress,
             const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start)
-      : model_(model), path_(path), settings_(settings), progress_(progress), on_step_(on_step), waiting_(worth_waiting(model)),
-        rest_(model.mesh.V), x_(start ? Places(*start) : rest_) {}
+      : model_(model),
+        path_(path),
+        settings_(settings),
+        progress_(progress),
+        on_step_(on_step),
+        waiting_(worth_waiting(model)),
+        rest_(model.mesh.V),
+        x_(start ? Places(*start) : rest_) {}
 
   SolvedPose run(double largest_angle_degrees) {
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
@@ -191,7 +206,7 @@ class PoseSolve {
   const Places rest_;
   std::vector<char> held_;  // #V: nodes that a bone holds stiffly, or carries along
   Places x_;
-  double shortest_ = 0;       // step, of the path
+  double shortest_ = 0;  // step, of the path
   std::optional<FemEnergy> energy_;
   FemSeconds seconds_;
   SolvedPose result_;
@@ -212,7 +227,9 @@ void PoseSolve::free_for(double place) {
   for (std::size_t v = 0; v < held_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
   energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
   energy_->guard(parts_.rigid);
-  if (settings_.contact) energy_->set_contact(ContactForm(boundary_of(model_.mesh.T), rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
+  if (settings_.contact)
+    energy_->set_contact(
+        ContactForm(boundary_of(model_.mesh.T), rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
 }
 
 void PoseSolve::count_spent() {
@@ -272,9 +289,10 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses where, for the paces
-// that the bones set out with; and what the bones' turns add to those. Half of the way, or a quarter, ..., where tissue does not
-// bear it. Returns the place on the path that x is now about, and that the bones are held at; `from` where there is no such way.
+// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses
+// where, for the paces that the bones set out with; and what the bones' turns add to those. Half of the way, or a
+// quarter, ..., where tissue does not bear it. Returns the place on the path that x is now about, and that the bones
+// are held at; `from` where there is no such way.
 double PoseSolve::follow(double from, double to, Places& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
@@ -282,7 +300,9 @@ double PoseSolve::follow(double from, double to, Places& x) {
     for (std::size_t b = 0; b < motion.size(); ++b) motion[b] = motion[b] * inverse(start[b]);
     return motion;
   };
-  const auto blend_of = [&](const std::vector<RigidTransform>& motion) { return blend(x, [&](int bone, const glm::dvec3& p) { return motion[bone] * p - p; }); };
+  const auto blend_of = [&](const std::vector<RigidTransform>& motion) {
+    return blend(x, [&](int bone, const glm::dvec3& p) { return motion[bone] * p - p; });
+  };
   std::vector<RigidTransform> motion = moved_to(to);
   std::vector<Screw> screw;
   for (const RigidTransform& each : motion) screw.push_back(screw_of(each));
@@ -313,7 +333,9 @@ double PoseSolve::follow(double from, double to, Places& x) {
 PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const {
   Drift drift;
   for (const int v : parts_.pinned)
-    if (const double mm = (x.row(v) - moved(pose[held_by_[v]], rest_.row(v))).norm(); !parts_.in_joint[v] && mm > drift.mm) drift = {mm, v};
+    if (const double mm = (x.row(v) - moved(pose[held_by_[v]], rest_.row(v))).norm();
+        !parts_.in_joint[v] && mm > drift.mm)
+      drift = {mm, v};
   return drift;
 }
 
@@ -325,18 +347,24 @@ std::string PoseSolve::at(const std::array<int, 4>& nodes, const Places& x) cons
     centre += 0.25 * x.row(v);
     for (const auto& [bone, weight] : model_.influences[v]) share[bone] += weight;
   }
-  const auto name = [&](std::size_t bone) { return bone < model_.bone_names.size() ? model_.bone_names[bone] : "bone " + std::to_string(bone); };
+  const auto name = [&](std::size_t bone) {
+    return bone < model_.bone_names.size() ? model_.bone_names[bone] : "bone " + std::to_string(bone);
+  };
   const auto first = std::size_t(std::max_element(share.begin(), share.end()) - share.begin());
   const double most = std::exchange(share[first], 0);
   const auto second = std::size_t(std::max_element(share.begin(), share.end()) - share.begin());
   char place[80];
   std::snprintf(place, sizeof place, " near (%.0f, %.0f, %.0f) mm", centre[0], centre[1], centre[2]);
-  return (share[second] > 0.01 * most ? "between " + name(std::min(first, second)) + " and " + name(std::max(first, second)) : "on " + name(first)) + place;
+  return (share[second] > 0.01 * most
+              ? "between " + name(std::min(first, second)) + " and " + name(std::max(first, second))
+              : "on " + name(first)) +
+         place;
 }
 
 std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) const {
   if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no lower energy";
-  const char* what = bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
+  const char* what =
+      bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
   return what + at(bound.node, x);
 }
 
@@ -350,8 +378,9 @@ void PoseSolve::tell(double at, int iteration, double residual, const Places& x)
 // To the least energy, with the bones where they are held, from x on a way that is watched.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, Places& x) {
   const int before = result_.iterations;
-  const NewtonResult solved = minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
-                                       [&](int iteration, double residual) { tell(at, before + iteration, residual, x); });
+  const NewtonResult solved =
+      minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
+               [&](int iteration, double residual) { tell(at, before + iteration, residual, x); });
   result_.iterations += solved.iterations;
   result_.residual = solved.residual;
   return solved;
@@ -443,8 +472,9 @@ bool PoseSolve::step(double to) {
 }
 }  // namespace
 
-SolvedPose solve_pose(const FemModel& model, const BonePath& path, double largest_angle_degrees, const SolveSettings& settings,
-                      Progress& progress, const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start) {
+SolvedPose solve_pose(const FemModel& model, const BonePath& path, double largest_angle_degrees,
+                      const SolveSettings& settings, Progress& progress,
+                      const std::function<void(const SolveStep&)>& on_step, const Eigen::MatrixX3d* start) {
   check(model, start);
   FemSeconds seconds;
   SolvedPose result;

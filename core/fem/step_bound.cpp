@@ -49,8 +49,10 @@ double first_root(double c0, double c1, double c2, double c3, double limit) {
 
 double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, double keep, double limit) {
   const Eigen::Vector3d o = x.row(t[0]), p = step.row(t[0]);
-  const Eigen::Vector3d a = x.row(t[1]).transpose() - o, b = x.row(t[2]).transpose() - o, c = x.row(t[3]).transpose() - o;
-  const Eigen::Vector3d u = step.row(t[1]).transpose() - p, v = step.row(t[2]).transpose() - p, w = step.row(t[3]).transpose() - p;
+  const Eigen::Vector3d a = x.row(t[1]).transpose() - o, b = x.row(t[2]).transpose() - o,
+                        c = x.row(t[3]).transpose() - o;
+  const Eigen::Vector3d u = step.row(t[1]).transpose() - p, v = step.row(t[2]).transpose() - p,
+                        w = step.row(t[3]).transpose() - p;
   const Eigen::Vector3d bc = b.cross(c), vw = v.cross(w), mixed = v.cross(c) + b.cross(w);
   const double volume = a.dot(bc);
   const double kept = std::max(kKept * volume, std::min(kHalf * volume, keep));
@@ -58,7 +60,8 @@ double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, 
 }
 }  // namespace
 
-StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit, std::span<const double> keep) {
+StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit,
+                       std::span<const double> keep) {
   std::vector<StepBound> of_block((T.rows() + kGrain - 1) / kGrain, {limit, -1});
   parallel_for(T.rows(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     StepBound& bound = of_block[begin / kGrain];

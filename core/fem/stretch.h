@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far a pose stretches and presses each tissue: the singular values of F of the tets that hold its voxels. Skin that has to
-// cover the outside of a bent joint is stretched there; where in life it would slide over what lies below, this says how much of
-// that the model makes up for by stretch.
+// How far a pose stretches and presses each tissue: the singular values of F of the tets that hold its voxels. Skin
+// that has to cover the outside of a bent joint is stretched there; where in life it would slide over what lies below,
+// this says how much of that the model makes up for by stretch.
 #pragma once
 
 #include <array>

@@ -110,7 +110,9 @@ LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivati
       for (int k = 0; k < 3; ++k) std::memcpy(&result.block[pair][j][k][first], &H[pair][j][k], sizeof(N));
 }
 
-LIMBER_FOR_FOUR void derive_four(std::span<const TetState> tets, TetDerivatives& result) { derive<FourLanes>(tets, 0, result); }
+LIMBER_FOR_FOUR void derive_four(std::span<const TetState> tets, TetDerivatives& result) {
+  derive<FourLanes>(tets, 0, result);
+}
 void derive_two_and_two(std::span<const TetState> tets, TetDerivatives& result) {
   derive<TwoLanes>(tets, 0, result);
   if (tets.size() > 2) derive<TwoLanes>(tets, 2, result);

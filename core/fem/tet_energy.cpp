@@ -10,7 +10,8 @@ namespace limber {
 
 VolumeTerm volume_term(const TetEnergy& e, double J) {
   const double ln = std::log(J);
-  VolumeTerm term{-e.shear * ln + 0.5 * e.bulk * (J - 1) * (J - 1), -e.shear / J + e.bulk * (J - 1), e.shear / (J * J) + e.bulk};
+  VolumeTerm term{-e.shear * ln + 0.5 * e.bulk * (J - 1) * (J - 1), -e.shear / J + e.bulk * (J - 1),
+                  e.shear / (J * J) + e.bulk};
   if (e.barrier > 0 && J < e.barrier_below) {
     const double t = J / e.barrier_below, d = t - 1, ln_t = std::log(t);
     term.value -= e.barrier * e.barrier_below * d * d * ln_t;
@@ -51,7 +52,8 @@ NegativeCurvature negative_curvature(double shear, double g, double h, const Eig
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> stretches(A);
   for (int k = 0; k < 3; ++k)
     if (stretches.eigenvalues()[k] < 0)
-      negative.direction[negative.count++] = {-stretches.eigenvalues()[k], stretches.eigenvectors().col(k).asDiagonal()};
+      negative.direction[negative.count++] = {-stretches.eigenvalues()[k],
+                                              stretches.eigenvectors().col(k).asDiagonal()};
   return negative;
 }
 

@@ -72,12 +72,14 @@ Influence influence_at(const SkinWeights& weights, const TissueVoxels& tissue, c
 }
 
 // Of the tissue in the 27 voxels around one of tissue.
-std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
-                                          const std::vector<int>& moves_as, const glm::ivec3& voxel) {
+std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume,
+                                          const TissueVoxels& tissue, const std::vector<int>& moves_as,
+                                          const glm::ivec3& voxel) {
   std::vector<std::pair<int, std::int64_t>> sums;  // few, rising
   std::int64_t total = 0;
   const auto add = [&](int bone, int weight) {
-    const auto at = std::lower_bound(sums.begin(), sums.end(), bone, [](const auto& sum, int wanted) { return sum.first < wanted; });
+    const auto at = std::lower_bound(sums.begin(), sums.end(), bone,
+                                     [](const auto& sum, int wanted) { return sum.first < wanted; });
     if (at != sums.end() && at->first == bone) at->second += weight;
     else sums.insert(at, {bone, weight});
   };
@@ -102,14 +104,18 @@ void find_parts(TissueModel& model, const LabelVolume& volume) {
   std::vector<glm::dvec4> shares;  // of the corners
   for (int i = 0; i <= kPlaces; ++i)
     for (int j = 0; i + j <= kPlaces; ++j)
-      for (int k = 0; i + j + k <= kPlaces; ++k) shares.push_back((glm::dvec4(i, j, k, kPlaces - i - j - k) + 0.25) / (kPlaces + 1.0));
+      for (int k = 0; i + j + k <= kPlaces; ++k)
+        shares.push_back((glm::dvec4(i, j, k, kPlaces - i - j - k) + 0.25) / (kPlaces + 1.0));
   std::vector<Label> found(shares.size());
   for (int t = 0; t < mesh.T.rows(); ++t) {
     model.first.push_back(static_cast<std::int32_t>(model.parts.size()));
     glm::dmat4x3 corners;
     for (int c = 0; c < 4; ++c) corners[c] = node[mesh.T(t, c)];
-    std::transform(shares.begin(), shares.end(), found.begin(), [&](const glm::dvec4& share) { return volume.at_or_air(glm::ivec3(glm::floor(corners * share + 0.5))); });
-    if (std::adjacent_find(found.begin(), found.end(), std::not_equal_to()) != found.end()) std::sort(found.begin(), found.end());
+    std::transform(shares.begin(), shares.end(), found.begin(), [&](const glm::dvec4& share) {
+      return volume.at_or_air(glm::ivec3(glm::floor(corners * share + 0.5)));
+    });
+    if (std::adjacent_find(found.begin(), found.end(), std::not_equal_to()) != found.end())
+      std::sort(found.begin(), found.end());
     const double each = signed_volume(mesh.V, mesh.T.row(t)) / double(found.size());
     for (auto first = found.begin(); first != found.end();) {
       const auto end = std::upper_bound(first, found.end(), *first);
@@ -146,17 +152,21 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
       if (const auto& [label, mm3] = model.parts[i]; is_soft[label]) add(label, mm3);
     glm::ivec3 nearest(0);
-    if (soft == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) + mesh.V.row(mesh.T(t, 3))) / 4,
+    if (soft == 0 && around.nearest((mesh.V.row(mesh.T(t, 0)) + mesh.V.row(mesh.T(t, 1)) + mesh.V.row(mesh.T(t, 2)) +
+                                     mesh.V.row(mesh.T(t, 3))) /
+                                        4,
                                     [&](const glm::ivec3& v) { return is_soft[volume.at(v)] != 0; }, nearest))
       add(volume.at(nearest), kLeastFilled * whole);
-    model.fem.material.push_back(soft > 0 ? TetMaterial{mu / soft, lambda / (2 * (lambda + mu)), std::max(kLeastFilled, soft / whole)} : settings.joint);
+    model.fem.material.push_back(
+        soft > 0 ? TetMaterial{mu / soft, lambda / (2 * (lambda + mu)), std::max(kLeastFilled, soft / whole)}
+                 : settings.joint);
   }
 }
 
 constexpr int kNone = -1, kSeveral = -2;
 
-// Nodes between two bones: the ways to both are together shorter than `joint_mm`. Of each bone's own nodes half at most, those
-// nearest to another bone.
+// Nodes between two bones: the ways to both are together shorter than `joint_mm`. Of each bone's own nodes half at
+// most, those nearest to another bone.
 //   bone  of each node, kNone or kSeveral
 std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector<int>& bone, double joint_mm) {
   std::vector<VoxelRange> boxes(mesh.V.rows()), of_bones(mesh.V.rows());
@@ -184,10 +194,8 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
     for (const auto& [which, distance] : to_bone) ways.push_back(distance);
     std::partial_sort(ways.begin(), ways.begin() + 2, ways.end());
     if (ways[0] + ways[1] >= joint_mm) continue;
-    if (bone[i] >= 0)
-      near_other[bone[i]].push_back({ways[1], i});
-    else
-      between[i] = 1;
+    if (bone[i] >= 0) near_other[bone[i]].push_back({ways[1], i});
+    else between[i] = 1;
   }
   for (auto& [which, nodes] : near_other) {
     std::sort(nodes.begin(), nodes.end());
@@ -198,8 +206,8 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
 }
 
 // By the regions of the tets at each node, then by what does not bend; joints are what lies between two bones.
-void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const MovingTissue& moving,
-                    double joint_mm) {
+void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
+                    const SkinWeights& weights, const MovingTissue& moving, double joint_mm) {
   const TetMesh& mesh = model.fem.mesh;
   std::vector<int> bone(mesh.V.rows(), kNone);
   for (int t = 0; t < mesh.T.rows(); ++t) {
@@ -227,7 +235,8 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
   const Surroundings around(volume);
   for (int i = 0; i < mesh.V.rows(); ++i) {
     glm::ivec3 voxel(0);
-    const bool found = around.nearest(mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
+    const bool found = around.nearest(
+        mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
     int holder = bone[i] == kSeveral || in_joint[i] ? kNone : bone[i];
     if (const float from = found && bone[i] == kNone ? moving.free_from_at(tissue, voxel) : 0; from > 0) {
       const int with = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
@@ -235,31 +244,31 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
       else holder = with;
     }
     model.fem.held_by.push_back(holder);
-    if (found)
-      model.fem.influences.push_back(influences_around(weights, volume, tissue, moving.moves_as, voxel));
-    else
-      model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
+    if (found) model.fem.influences.push_back(influences_around(weights, volume, tissue, moving.moves_as, voxel));
+    else model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
     if (holder >= 0) model.fem.influences.back() = {{holder, 1.0}};
   }
 }
 
 }  // namespace
 
-LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone, const SkinWeights& weights,
-                            const MovingTissue& moving) {
+LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
+                            const SkinWeights& weights, const MovingTissue& moving) {
   LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
       const int bone = (*influence++).bone[0];
-      if (is_in(moving.meshed, tissue, v)) regions.at(v) = is_bone[volume.at(v)] ? static_cast<Label>(2 + moving.moves_as[bone]) : Label{1};
+      if (is_in(moving.meshed, tissue, v))
+        regions.at(v) = is_bone[volume.at(v)] ? static_cast<Label>(2 + moving.moves_as[bone]) : Label{1};
     });
   }
   return regions;
 }
 
-TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
-                         const MovingTissue& moving, TetMesh mesh, const TissueModelSettings& settings) {
+TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                         const SkinWeights& weights, const MovingTissue& moving, TetMesh mesh,
+                         const TissueModelSettings& settings) {
   TissueModel model;
   model.fem.mesh = std::move(mesh);
   model.fem.bone_names = weights.bones();

@@ -25,13 +25,15 @@ struct Triangle {
 P2 flat(const P3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
 bool between(const P2& a, const P2& b, const P2& p) {  // of three points on one line
-  return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= p[1] && p[1] <= std::max(a[1], b[1]);
+  return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= p[1] &&
+         p[1] <= std::max(a[1], b[1]);
 }
 
 bool segments_meet(const P2& a, const P2& b, const P2& c, const P2& d) {
   const int abc = side_2d(a, b, c), abd = side_2d(a, b, d), cda = side_2d(c, d, a), cdb = side_2d(c, d, b);
   if (abc * abd < 0 && cda * cdb < 0) return true;
-  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) || (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
+  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) || (cda == 0 && between(c, d, a)) ||
+         (cdb == 0 && between(c, d, b));
 }
 
 bool inside(const P2 (&t)[3], const P2& p) {
@@ -43,14 +45,16 @@ int flattest_axis(const Triangle& t) {
   double normal[3];
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    normal[i] = std::abs((t.corner[1][j] - t.corner[0][j]) * (t.corner[2][k] - t.corner[0][k]) - (t.corner[1][k] - t.corner[0][k]) * (t.corner[2][j] - t.corner[0][j]));
+    normal[i] = std::abs((t.corner[1][j] - t.corner[0][j]) * (t.corner[2][k] - t.corner[0][k]) -
+                         (t.corner[1][k] - t.corner[0][k]) * (t.corner[2][j] - t.corner[0][j]));
   }
   return static_cast<int>(std::max_element(normal, normal + 3) - normal);
 }
 
 bool meets_on_plane(const P3& p, const P3& q, const Triangle& t) {
   const int axis = flattest_axis(t);
-  const P2 a = flat(p, axis), b = flat(q, axis), corner[3] = {flat(t.corner[0], axis), flat(t.corner[1], axis), flat(t.corner[2], axis)};
+  const P2 a = flat(p, axis), b = flat(q, axis),
+           corner[3] = {flat(t.corner[0], axis), flat(t.corner[1], axis), flat(t.corner[2], axis)};
   if (inside(corner, a) || inside(corner, b)) return true;
   for (int i = 0; i < 3; ++i)
     if (segments_meet(a, b, corner[i], corner[(i + 1) % 3])) return true;
@@ -61,7 +65,8 @@ bool meets_on_plane(const P3& p, const P3& q, const Triangle& t) {
 
 // Whether the segment from p to q has a point of the triangle, its border and the segment's ends counted.
 bool segment_meets(const P3& p, const P3& q, const Triangle& t) {
-  const int at_p = side_3d(t.corner[0], t.corner[1], t.corner[2], p), at_q = side_3d(t.corner[0], t.corner[1], t.corner[2], q);
+  const int at_p = side_3d(t.corner[0], t.corner[1], t.corner[2], p),
+            at_q = side_3d(t.corner[0], t.corner[1], t.corner[2], q);
   if (at_p * at_q > 0) return false;
   if (at_p == 0 && at_q == 0) return meets_on_plane(p, q, t);
   int low = 1, high = -1;
@@ -73,10 +78,12 @@ bool segment_meets(const P3& p, const P3& q, const Triangle& t) {
 }
 
 bool upon_each_other(const Triangle& one, int apex_one, const Triangle& other, int apex_other) {
-  const P3 &a = one.corner[(apex_one + 1) % 3], &b = one.corner[(apex_one + 2) % 3], &c = one.corner[apex_one], &d = other.corner[apex_other];
+  const P3 &a = one.corner[(apex_one + 1) % 3], &b = one.corner[(apex_one + 2) % 3], &c = one.corner[apex_one],
+           &d = other.corner[apex_other];
   if (side_3d(a, b, c, d) != 0) return false;
   const int axis = flattest_axis(one);
-  return side_2d(flat(a, axis), flat(b, axis), flat(c, axis)) * side_2d(flat(a, axis), flat(b, axis), flat(d, axis)) >= 0;
+  return side_2d(flat(a, axis), flat(b, axis), flat(c, axis)) * side_2d(flat(a, axis), flat(b, axis), flat(d, axis)) >=
+         0;
 }
 
 bool cross(const Triangle& one, const Triangle& other) {
@@ -93,7 +100,9 @@ bool cross(const Triangle& one, const Triangle& other) {
     return segment_meets(one.corner[(common_one + 1) % 3], one.corner[(common_one + 2) % 3], other) ||
            segment_meets(other.corner[(common_other + 1) % 3], other.corner[(common_other + 2) % 3], one);
   for (int i = 0; i < 3; ++i)
-    if (segment_meets(one.corner[i], one.corner[(i + 1) % 3], other) || segment_meets(other.corner[i], other.corner[(i + 1) % 3], one)) return true;
+    if (segment_meets(one.corner[i], one.corner[(i + 1) % 3], other) ||
+        segment_meets(other.corner[i], other.corner[(i + 1) % 3], one))
+      return true;
   return false;
 }
 
@@ -106,7 +115,9 @@ struct Box {
 struct Entry {
   std::uint64_t cell;
   int triangle;
-  bool operator<(const Entry& other) const { return cell != other.cell ? cell < other.cell : triangle < other.triangle; }
+  bool operator<(const Entry& other) const {
+    return cell != other.cell ? cell < other.cell : triangle < other.triangle;
+  }
 };
 
 class Cells {
@@ -115,7 +126,8 @@ class Cells {
     low_ = boxes[0].low;
     double size = 0;
     for (const Box& box : boxes)
-      for (int i = 0; i < 3; ++i) low_[i] = std::min(low_[i], box.low[i]), size += (box.high[i] - box.low[i]) / (3.0 * double(boxes.size()));
+      for (int i = 0; i < 3; ++i)
+        low_[i] = std::min(low_[i], box.low[i]), size += (box.high[i] - box.low[i]) / (3.0 * double(boxes.size()));
     side_ = std::max(2 * size, 1e-9);
     // Larger ones where a few triangles are far larger than most.
     constexpr double kMostEntries = 20;  // a triangle, in the mean
@@ -142,7 +154,8 @@ class Cells {
         const Box &a = boxes_[entries_[i].triangle], &b = boxes_[entries_[j].triangle];
         P3 corner;
         bool meet = true;
-        for (int k = 0; k < 3; ++k) corner[k] = std::max(a.low[k], b.low[k]), meet &= corner[k] <= std::min(a.high[k], b.high[k]);
+        for (int k = 0; k < 3; ++k)
+          corner[k] = std::max(a.low[k], b.low[k]), meet &= corner[k] <= std::min(a.high[k], b.high[k]);
         if (meet && key(cell_of(corner)) == entries_[i].cell) body(entries_[i].triangle, entries_[j].triangle);
       }
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <numbers>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -38,7 +38,13 @@ class Improver {
   // Nodes are kept in lattice axes, where the boxes are.
   //   may_lose  voxels that may come to lie outside
   Improver(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, std::int64_t may_lose)
-      : mesh_(mesh), net_(net), voxels_(voxels), may_lose_(may_lose), first_(mesh.V.rows() + 1, 0), V_(mesh.V.rows()), on_skin_(mesh.V.rows(), 0) {
+      : mesh_(mesh),
+        net_(net),
+        voxels_(voxels),
+        may_lose_(may_lose),
+        first_(mesh.V.rows() + 1, 0),
+        V_(mesh.V.rows()),
+        on_skin_(mesh.V.rows(), 0) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) turn_(i, j) = net.world_from_lattice.linear[j][i];
     offset_ << net.world_from_lattice.offset.x, net.world_from_lattice.offset.y, net.world_from_lattice.offset.z;
@@ -69,7 +75,8 @@ class Improver {
     for (int sweep = 0; sweep < most && !tets.empty(); ++sweep) {
       std::vector<int> nodes;
       for (const int tet : tets)
-        if (badness_of(mesh_.T.row(tet)) > enough) nodes.insert(nodes.end(), mesh_.T.row(tet).begin(), mesh_.T.row(tet).end());
+        if (badness_of(mesh_.T.row(tet)) > enough)
+          nodes.insert(nodes.end(), mesh_.T.row(tet).begin(), mesh_.T.row(tet).end());
       keep_once(nodes);
       tets.clear();
       for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -98,7 +105,8 @@ class Improver {
   // Of the tets around a node; any number above `limit` where that is passed.
   double worst_around(int node, double limit = 2) const {
     double worst = -1;
-    for (int i = first_[node]; i < first_[node + 1] && worst <= limit; ++i) worst = std::max(worst, badness_of(mesh_.T.row(tet_[i])));
+    for (int i = first_[node]; i < first_[node + 1] && worst <= limit; ++i)
+      worst = std::max(worst, badness_of(mesh_.T.row(tet_[i])));
     return worst;
   }
 
@@ -122,7 +130,8 @@ class Improver {
         const Point& p = V_[mesh_.T(tet_[i], k)];
         corner[k] = voxel_from_lattice_ * glm::dvec3(p[0], p[1], p[2]);
       }
-      if (glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[3] - corner[0]) < 0) std::swap(corner[0], corner[1]);
+      if (glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[3] - corner[0]) < 0)
+        std::swap(corner[0], corner[1]);
       for_each_row_in_tet(corner, grid, 0, grid.size.z - 1, [&](glm::ivec3 v, const glm::ivec3& last) {
         for (; v.x <= last.x; ++v.x)
           if (is_tissue(v)) places.push_back(grid.index(v));
@@ -221,7 +230,8 @@ class Improver {
 
 }  // namespace
 
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings, Progress& progress) {
+int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings,
+            Progress& progress) {
   const double spare = std::max(0.0, net.covered - settings.least_covered);
   Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Better tets by moving nodes [Freitag & Ollivier-Gooch, Tetrahedral mesh improvement using swapping and smoothing, 1997]:
-// each node of a flat tet goes where the smallest angle around it is largest. Nodes of the surface stay in their box of the
-// lattice, so that the surface remains one that cannot cross itself; others are free.
+// Better tets by moving nodes [Freitag & Ollivier-Gooch, Tetrahedral mesh improvement using swapping and smoothing,
+// 1997]: each node of a flat tet goes where the smallest angle around it is largest. Nodes of the surface stay in their
+// box of the lattice, so that the surface remains one that cannot cross itself; others are free.
 #pragma once
 
 #include "core/mesh/lattice_net.h"
@@ -15,9 +15,10 @@ struct ImproveSettings {
   double least_covered = 0.9992;  // share of the tissue voxels that must stay inside
 };
 
-// The first #low rows of mesh.V are the net's nodes. The smallest angle around a node never becomes smaller by its move.
-// Returns the number of moves.
+// The first #low rows of mesh.V are the net's nodes. The smallest angle around a node never becomes smaller by its
+// move. Returns the number of moves.
 //   throws Cancelled
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings = {}, Progress& progress = no_progress());
+int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings = {},
+            Progress& progress = no_progress());
 
 }  // namespace limber

@@ -16,15 +16,18 @@ constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
 
 struct Quad {
   std::array<int, 4> corner;  // vertices, around the pair of voxels, counter-clockwise seen from `above`
-  std::array<int, 4> middle;  // of the side from corner i to the next, where the surface of a tissue would have it twice; else -1
-  Label below, above;         // of the pair
-  std::int64_t voxel;         // the one below, in the grid with a border of air
-  int axis;                   // from below to above
+  std::array<int, 4>
+      middle;  // of the side from corner i to the next, where the surface of a tissue would have it twice; else -1
+  Label below, above;  // of the pair
+  std::int64_t voxel;  // the one below, in the grid with a border of air
+  int axis;            // from below to above
 };
 
 // The labels with a border of air one voxel wide.
 struct Bordered {
-  explicit Bordered(const LabelVolume& volume) : size(volume.grid.size + 2), labels(std::int64_t{size.x} * size.y * size.z, Label{0}) {
+  explicit Bordered(const LabelVolume& volume)
+      : size(volume.grid.size + 2),
+        labels(std::int64_t{size.x} * size.y * size.z, Label{0}) {
     for (int z = 0; z < volume.grid.size.z; ++z)
       for (int y = 0; y < volume.grid.size.y; ++y) {
         const auto row = volume.voxels.begin() + volume.grid.index({0, y, z});
@@ -32,14 +35,17 @@ struct Bordered {
       }
     step = {1, size.x, std::int64_t{size.x} * size.y};
   }
-  std::int64_t index(const glm::ivec3& v) const { return v.x + std::int64_t{size.x} * (v.y + std::int64_t{size.y} * v.z); }
+  std::int64_t index(const glm::ivec3& v) const {
+    return v.x + std::int64_t{size.x} * (v.y + std::int64_t{size.y} * v.z);
+  }
 
   glm::ivec3 size;
   std::vector<Label> labels;
   std::array<std::int64_t, 3> step;
 };
 
-// A tissue on one diagonal of the four voxels around an edge of the net, and nowhere else there: its surface passes that edge twice.
+// A tissue on one diagonal of the four voxels around an edge of the net, and nowhere else there: its surface passes
+// that edge twice.
 bool passes_twice(Label a, Label b, Label c, Label d) {
   return (a == c && a != 0 && b != a && d != a) || (b == d && b != 0 && a != b && c != b);
 }
@@ -54,7 +60,8 @@ class Net {
  private:
   void build(Progress& progress);
   bool is_mixed(std::int64_t cube, bool& junction) const;
-  void add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axis, const std::array<std::int64_t, 4>& sides);
+  void add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axis,
+                const std::array<std::int64_t, 4>& sides);
   void triangulate(const Quad& quad, int number);
   LabelSurface surface_of(Label label, const std::vector<int>& triangles) const;
 
@@ -84,7 +91,8 @@ bool Net::is_mixed(std::int64_t cube, bool& junction) const {
   bool mixed = false;
   junction = false;
   for (int corner = 1; corner < 8; ++corner) {
-    const Label label = body_.labels[cube + (corner & 1) * body_.step[0] + (corner >> 1 & 1) * body_.step[1] + (corner >> 2) * body_.step[2]];
+    const Label label = body_.labels[cube + (corner & 1) * body_.step[0] + (corner >> 1 & 1) * body_.step[1] +
+                                     (corner >> 2) * body_.step[2]];
     if (label == seen[0]) continue;
     junction = junction || (mixed && label != seen[1]);
     if (!mixed) seen[1] = label;
@@ -93,12 +101,15 @@ bool Net::is_mixed(std::int64_t cube, bool& junction) const {
   return mixed;
 }
 
-void Net::add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axis, const std::array<std::int64_t, 4>& sides) {
+void Net::add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axis,
+                   const std::array<std::int64_t, 4>& sides) {
   const std::int64_t up = body_.step[axis];
   Quad quad{corner, {-1, -1, -1, -1}, body_.labels[voxel], body_.labels[voxel + up], voxel, axis};
   for (int i = 0; i < 4; ++i) {
-    if (!passes_twice(quad.below, quad.above, body_.labels[voxel + up + sides[i]], body_.labels[voxel + sides[i]])) continue;
-    const std::array<int, 2> ends = {std::min(corner[i], corner[(i + 1) % 4]), std::max(corner[i], corner[(i + 1) % 4])};
+    if (!passes_twice(quad.below, quad.above, body_.labels[voxel + up + sides[i]], body_.labels[voxel + sides[i]]))
+      continue;
+    const std::array<int, 2> ends = {std::min(corner[i], corner[(i + 1) % 4]),
+                                     std::max(corner[i], corner[(i + 1) % 4])};
     quad.middle[i] = middles_.emplace(ends, static_cast<int>(middles_.size())).first->second;
   }
   quads_.push_back(quad);
@@ -120,12 +131,15 @@ void Net::build(Progress& progress) {
         here[at] = static_cast<int>(middle_.size());
         middle_.push_back(glm::dvec3(x, y, z) - 0.5);
         junction_.push_back(junction);
-        // The three pairs that leave the cube's lowest voxel, each with the four cubes around it and, per side, the way to the voxels
-        // beyond it.
+        // The three pairs that leave the cube's lowest voxel, each with the four cubes around it and, per side, the way
+        // to the voxels beyond it.
         const Label label = body_.labels[cube];
-        if (label != body_.labels[cube + sx]) add_quad({below[at - row], below[at], here[at], here[at - row]}, cube, 0, {-sz, sy, sz, -sy});
-        if (label != body_.labels[cube + sy]) add_quad({below[at - 1], here[at - 1], here[at], below[at]}, cube, 1, {-sx, sz, sx, -sz});
-        if (label != body_.labels[cube + sz]) add_quad({here[at - row - 1], here[at - row], here[at], here[at - 1]}, cube, 2, {-sy, sx, sy, -sx});
+        if (label != body_.labels[cube + sx])
+          add_quad({below[at - row], below[at], here[at], here[at - row]}, cube, 0, {-sz, sy, sz, -sy});
+        if (label != body_.labels[cube + sy])
+          add_quad({below[at - 1], here[at - 1], here[at], below[at]}, cube, 1, {-sx, sz, sx, -sz});
+        if (label != body_.labels[cube + sz])
+          add_quad({here[at - row - 1], here[at - row], here[at], here[at - 1]}, cube, 2, {-sy, sx, sy, -sx});
       }
   }
   offset_.assign(middle_.size(), glm::dvec3(0));
@@ -165,7 +179,8 @@ void Net::triangulate(const Quad& quad, int number) {
     return;
   }
   const int first_extra = static_cast<int>(middle_.size()), hub = first_extra + static_cast<int>(extra_.size());
-  extra_.push_back(0.25 * (middle_[c[0]] + offset_[c[0]] + middle_[c[1]] + offset_[c[1]] + middle_[c[2]] + offset_[c[2]] + middle_[c[3]] + offset_[c[3]]));
+  extra_.push_back(0.25 * (middle_[c[0]] + offset_[c[0]] + middle_[c[1]] + offset_[c[1]] + middle_[c[2]] +
+                           offset_[c[2]] + middle_[c[3]] + offset_[c[3]]));
   for (int i = 0; i < 4; ++i) {
     const int from = c[i], to = c[(i + 1) % 4];
     if (quad.middle[i] < 0) {
@@ -283,7 +298,8 @@ double enclosed_volume(const LabelSurfaces& all, const LabelSurface& surface) {
   const glm::dvec3 about = all.V[surface.vertex[0]];  // near it, so that nothing is lost to large coordinates
   double six_volumes = 0;
   for (const glm::ivec3& f : surface.F) {
-    const glm::dvec3 a = all.V[surface.vertex[f.x]] - about, b = all.V[surface.vertex[f.y]] - about, c = all.V[surface.vertex[f.z]] - about;
+    const glm::dvec3 a = all.V[surface.vertex[f.x]] - about, b = all.V[surface.vertex[f.y]] - about,
+                     c = all.V[surface.vertex[f.z]] - about;
     six_volumes += glm::dot(a, glm::cross(b, c));
   }
   return six_volumes / 6;

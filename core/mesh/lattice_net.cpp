@@ -35,15 +35,24 @@ std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Vox
 }
 
 // The tissue voxels in cells that hold air, which may lie outside, in brick order.
-std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SmallestCells& smallest, const TissueVoxels& tissue) {
-  return select(std::ssize(tissue.bricks()), kBricks,
-                [&](std::int64_t begin, std::int64_t end, const auto& body) { tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { body(v); }); },
-                [&](const glm::ivec3& v) { return net.is_near_air(smallest(v)); });
+std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SmallestCells& smallest,
+                                      const TissueVoxels& tissue) {
+  return select(
+      std::ssize(tissue.bricks()), kBricks,
+      [&](std::int64_t begin, std::int64_t end, const auto& body) {
+        tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { body(v); });
+      },
+      [&](const glm::ivec3& v) { return net.is_near_air(smallest(v)); });
 }
 
-std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice& lattice, const std::vector<glm::ivec3>& near_air) {
-  return select(std::ssize(near_air), kVoxels, [&](std::int64_t begin, std::int64_t end, const auto& body) { std::for_each(&near_air[begin], &near_air[0] + end, body); },
-                [&](const glm::ivec3& v) { return net.is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice& lattice,
+                                     const std::vector<glm::ivec3>& near_air) {
+  return select(
+      std::ssize(near_air), kVoxels,
+      [&](std::int64_t begin, std::int64_t end, const auto& body) {
+        std::for_each(&near_air[begin], &near_air[0] + end, body);
+      },
+      [&](const glm::ivec3& v) { return net.is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
 }
 
 struct Missed {
@@ -69,7 +78,8 @@ std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const std::vec
   return missed;
 }
 
-// Of each cell that misses voxels, the edge between tissue and air whose point lies nearest to them; null where there is none.
+// Of each cell that misses voxels, the edge between tissue and air whose point lies nearest to them; null where there
+// is none.
 std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const std::vector<Missed>& missed) {
   std::vector<int> miss_at(net.nodes().size(), -1);
   for (std::size_t m = 0; m < missed.size(); ++m)
@@ -79,7 +89,9 @@ std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const 
     if (edge.first != kAir && edge.second != kAir) continue;
     for (const int cell : edge.cell) {
       if (miss_at[cell] < 0) continue;
-      const auto far = [&](const SurfaceNet::Edge& from) { return glm::distance(net.nodes()[from.node].place, missed[miss_at[cell]].place()); };
+      const auto far = [&](const SurfaceNet::Edge& from) {
+        return glm::distance(net.nodes()[from.node].place, missed[miss_at[cell]].place());
+      };
       const SurfaceNet::Edge*& best = nearest[miss_at[cell]];
       if (!best || far(edge) < far(*best)) best = &edge;
     }
@@ -87,15 +99,18 @@ std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const 
   return nearest;
 }
 
-// Pushes the point next to the voxels that a cell misses, or else the other one: what is further away need not give way, so
-// that the surface stays close to the voxels. Late rounds are in a hurry and push both. False where none can be pushed any more.
-bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& miss, const SurfaceNet::Edge* edge, int round, Pushes& pushes) {
+// Pushes the point next to the voxels that a cell misses, or else the other one: what is further away need not give
+// way, so that the surface stays close to the voxels. Late rounds are in a hurry and push both. False where none can be
+// pushed any more.
+bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& miss, const SurfaceNet::Edge* edge,
+          int round, Pushes& pushes) {
   const int node = net.node_of(miss.cell);
   if (node < 0) return false;
   std::uint8_t none = kPushes;
   std::uint8_t& of_cell = pushes.cell[lattice.index(miss.cell.corner)];
   std::uint8_t& of_edge = edge ? pushes.edge[edge->axis][lattice.index(edge->from)] : none;
-  const bool cell_first = !edge || glm::distance(miss.place(), net.nodes()[node].place) < glm::distance(miss.place(), net.nodes()[edge->node].place);
+  const bool cell_first = !edge || glm::distance(miss.place(), net.nodes()[node].place) <
+                                       glm::distance(miss.place(), net.nodes()[edge->node].place);
   std::uint8_t &first = cell_first ? of_cell : of_edge, &second = cell_first ? of_edge : of_cell;
   const bool first_can = first < kPushes, pushes_second = second < kPushes && (!first_can || round >= kRounds / 2);
   first += first_can;
@@ -105,7 +120,8 @@ bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& mis
 
 // Makes room for `to_gain` of the voxels outside, where most are: points are pushed outwards, or samples become tissue.
 // Returns whether samples did.
-bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain, int round, Pushes& pushes) {
+bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain,
+               int round, Pushes& pushes) {
   bool any_became = false;
   const auto become_tissue = [&](const glm::ivec3& p) {
     std::uint16_t& label = lattice.label[lattice.index(p)];
@@ -120,7 +136,8 @@ bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<
     to_gain -= miss.count;
     if (round < kRounds * 3 / 4 && push(net, lattice, miss, nearest[m], round, pushes)) continue;
     const glm::dvec3 inside = miss.place() - glm::dvec3(cell.corner);
-    const bool nearest_was_air = become_tissue(cell.corner + glm::ivec3(glm::greaterThan(inside, glm::dvec3(0.5 * cell.size))) * cell.size);
+    const bool nearest_was_air =
+        become_tissue(cell.corner + glm::ivec3(glm::greaterThan(inside, glm::dvec3(0.5 * cell.size))) * cell.size);
     if (nearest_was_air && round < kRounds / 2) continue;
     for (int z = 0; z <= cell.size; ++z)
       for (int y = 0; y <= cell.size; ++y)
@@ -151,7 +168,8 @@ LatticeNet finished(const SurfaceNet& net, const SampleLattice& lattice) {
     result.surface.sides.push_back({edge.second, edge.first});
   });
   result.surface.F.resize(triangles.size(), 3);
-  for (std::size_t i = 0; i < triangles.size(); ++i) result.surface.F.row(i) << triangles[i][0], triangles[i][1], triangles[i][2];
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    result.surface.F.row(i) << triangles[i][0], triangles[i][1], triangles[i][2];
   return result;
 }
 
@@ -171,7 +189,9 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     net->place(pushes);
-    if (round > 0) std::erase_if(outside, [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+    if (round > 0)
+      std::erase_if(outside,
+                    [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
     if (round == 0 || std::ssize(outside) <= allowed) {  // a point that moved may have left others outside
       if (!std::exchange(is_known, true)) near_air = find_near_air(*net, smallest, voxels.tissue);
       outside = find_outside(*net, lattice, near_air);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A body's surface net over a lattice (surface_net.h), fitted to its voxels, and the lattice's tets inside it.
 //
-// Every sample of the lattice has a region: soft tissue, one of the bones of a rig, or air. Points of edges lie at the true
-// border of the voxels. Voxels that stay outside push the points next to them outwards, and where that is not enough the
-// samples around them become tissue, until the surface encloses them. Two bones never share a cell: between them is at least
-// a cell of soft tissue, so no node belongs to two bones.
+// Every sample of the lattice has a region: soft tissue, one of the bones of a rig, or air. Points of edges lie at the
+// true border of the voxels. Voxels that stay outside push the points next to them outwards, and where that is not
+// enough the samples around them become tissue, until the surface encloses them. Two bones never share a cell: between
+// them is at least a cell of soft tissue, so no node belongs to two bones.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +24,10 @@ struct VoxelRegions {
 };
 
 struct LatticeNetSettings {
-  double spacing_mm = 8;                 // of samples near the surface; made larger where there would be more than 12 million
-  std::vector<glm::dvec3> fine_around;   // world, mm: joints that bend
-  double fine_radius_mm = 40;            // around them samples are half as far apart
-  double least_covered = 0.9995;         // share of the voxels whose centre must lie inside
+  double spacing_mm = 8;  // of samples near the surface; made larger where there would be more than 12 million
+  std::vector<glm::dvec3> fine_around;  // world, mm: joints that bend
+  double fine_radius_mm = 40;           // around them samples are half as far apart
+  double least_covered = 0.9995;        // share of the voxels whose centre must lie inside
 };
 
 struct LatticeNet {
@@ -43,6 +43,7 @@ struct LatticeNet {
 
 // Empty for a body without voxels.
 //   throws Cancelled
-LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& settings = {}, Progress& progress = no_progress());
+LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& settings = {},
+                       Progress& progress = no_progress());
 
 }  // namespace limber

@@ -16,8 +16,10 @@ Eigen::MatrixX3i faces_of(const Eigen::MatrixX4i& T) {
   return F;
 }
 
-std::vector<Segment> plane_cut(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, const glm::dvec3& point, const glm::dvec3& normal) {
-  const Eigen::VectorXd height = (V.rowwise() - Eigen::RowVector3d(point.x, point.y, point.z)) * Eigen::Vector3d(normal.x, normal.y, normal.z);
+std::vector<Segment> plane_cut(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F, const glm::dvec3& point,
+                               const glm::dvec3& normal) {
+  const Eigen::VectorXd height =
+      (V.rowwise() - Eigen::RowVector3d(point.x, point.y, point.z)) * Eigen::Vector3d(normal.x, normal.y, normal.z);
   std::vector<Segment> lines;
   for (Eigen::Index f = 0; f < F.rows(); ++f) {
     Segment line;

@@ -27,7 +27,9 @@ double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& 
   for (int tet = 0; tet < mesh.T.rows(); ++tet) {
     double low = 1e300, high = -1e300;
     for (const int c : mesh.T.row(tet)) low = std::min(low, V[c].z), high = std::max(high, V[c].z);
-    for (int z = std::max(0, int(std::ceil(low - kHair))); z <= std::min(grid.size.z - 1, int(std::floor(high + kHair))); ++z) tets_of[z].push_back(tet);
+    for (int z = std::max(0, int(std::ceil(low - kHair)));
+         z <= std::min(grid.size.z - 1, int(std::floor(high + kHair))); ++z)
+      tets_of[z].push_back(tet);
   }
   std::vector<std::uint8_t> hit(grid.voxel_count(), 0);
   parallel_for(grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -36,7 +38,9 @@ double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& 
         glm::dvec3 corner[4];
         for (int i = 0; i < 4; ++i) corner[i] = V[mesh.T(tet, i)];
         if (mirrored) std::swap(corner[0], corner[1]);
-        for_each_row_in_tet(corner, grid, z, z, [&](const glm::ivec3& first, const glm::ivec3& last) { std::fill_n(&hit[grid.index(first)], last.x - first.x + 1, 1); });
+        for_each_row_in_tet(corner, grid, z, z, [&](const glm::ivec3& first, const glm::ivec3& last) {
+          std::fill_n(&hit[grid.index(first)], last.x - first.x + 1, 1);
+        });
       }
   });
   const double covered = parallel_sum(std::ssize(tissue.bricks()), 256, [&](std::int64_t begin, std::int64_t end) {
@@ -92,7 +96,8 @@ MeshQuality quality_of(const TetMesh& mesh, const Grid& grid, const TissueVoxels
 
 std::map<std::uint16_t, double> region_volumes(const TetMesh& mesh) {
   std::map<std::uint16_t, double> volumes;
-  for (Eigen::Index tet = 0; tet < mesh.T.rows(); ++tet) volumes[mesh.region[tet]] += signed_volume(mesh.V, mesh.T.row(tet));
+  for (Eigen::Index tet = 0; tet < mesh.T.rows(); ++tet)
+    volumes[mesh.region[tet]] += signed_volume(mesh.V, mesh.T.row(tet));
   return volumes;
 }
 
@@ -101,7 +106,8 @@ std::map<std::uint16_t, double> enclosed_volumes(const RegionSurface& surface, c
   if (surface.F.rows() == 0) return volumes;
   const Eigen::RowVector3d centre = V.topRows(surface.V.rows()).colwise().mean();
   for (Eigen::Index i = 0; i < surface.F.rows(); ++i) {
-    const Eigen::RowVector3d a = V.row(surface.F(i, 0)) - centre, b = V.row(surface.F(i, 1)) - centre, c = V.row(surface.F(i, 2)) - centre;
+    const Eigen::RowVector3d a = V.row(surface.F(i, 0)) - centre, b = V.row(surface.F(i, 1)) - centre,
+                             c = V.row(surface.F(i, 2)) - centre;
     const double volume = a.dot(b.cross(c)) / 6;
     volumes[surface.sides[i][1]] += volume;
     volumes[surface.sides[i][0]] -= volume;
@@ -123,7 +129,8 @@ std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double
   if (!(std::abs(total(has) - total(volumes)) <= tolerance)) return "the volume is not the surface's";
   for (const auto& [region, volume] : volumes) {
     const auto found = has.find(region);
-    if (!(std::abs((found == has.end() ? 0 : found->second) - volume) <= tolerance)) return "a region's volume is not that of its surface";
+    if (!(std::abs((found == has.end() ? 0 : found->second) - volume) <= tolerance))
+      return "a region's volume is not that of its surface";
   }
   return {};
 }

@@ -23,8 +23,8 @@ std::map<std::uint16_t, double> region_volumes(const TetMesh& mesh);
 // mm3 that the triangles of each region enclose, air left out.    V  places of the surface's nodes, in the first rows
 std::map<std::uint16_t, double> enclosed_volumes(const RegionSurface& surface, const Eigen::MatrixX3d& V);
 
-// Empty when every tet is positive, the boundary is closed, no face has more than two tets, and each region has the volume
-// that it should, to 1e-9 of the whole; else what is wrong.
+// Empty when every tet is positive, the boundary is closed, no face has more than two tets, and each region has the
+// volume that it should, to 1e-9 of the whole; else what is wrong.
 std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double>& volumes);
 
 }  // namespace limber

@@ -14,10 +14,13 @@ namespace {
 
 const double kLatticePerSpacing = std::cbrt(2.0);  // the body-centred cubic lattice has two nodes for each cube
 
-std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) { return find_fault(mesh, enclosed_volumes(net.surface, mesh.V)); }
+std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) {
+  return find_fault(mesh, enclosed_volumes(net.surface, mesh.V));
+}
 
 // Empty, or why there is no mesh by TetGen.
-std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress) {
+std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels,
+                           const MeshSettings& settings, Progress& progress) {
   Tetrahedralized filled = tetrahedralize_inside(net.surface, settings.limits, progress);
   if (!filled.mesh) return filled.failure;
   improve(*filled.mesh, net, voxels, ImproveSettings{}, progress);
@@ -29,8 +32,11 @@ std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const Voxe
 
 void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress) {
   const bool by_tetgen = settings.mesher == Mesher::tetgen;
-  LatticeNet net = lattice_net(voxels, {.spacing_mm = settings.spacing_mm * (by_tetgen ? 1 : kLatticePerSpacing), .fine_around = settings.fine_around,
-                                        .fine_radius_mm = settings.fine_radius_mm}, progress);
+  LatticeNet net = lattice_net(voxels,
+                               {.spacing_mm = settings.spacing_mm * (by_tetgen ? 1 : kLatticePerSpacing),
+                                .fine_around = settings.fine_around,
+                                .fine_radius_mm = settings.fine_radius_mm},
+                               progress);
   result.spacing_mm = net.spacing_mm;
   progress.update("tetrahedra", 0);
   if (by_tetgen) {
@@ -40,7 +46,8 @@ void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSetting
   }
   result.mesh = std::move(net.mesh);
   improve(result.mesh, net, voxels, ImproveSettings{}, progress);
-  if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty()) throw Error("a tet mesh is not sound", fault, "try another spacing of nodes");
+  if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty())
+    throw Error("a tet mesh is not sound", fault, "try another spacing of nodes");
 }
 
 }  // namespace

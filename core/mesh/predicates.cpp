@@ -78,9 +78,11 @@ Expansion<N> operator-(Expansion<N> a) {
 
 int sign_of(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
-int exact_side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c, const std::array<double, 3>& d) {
+int exact_side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c,
+                  const std::array<double, 3>& d) {
   Expansion<2> u[3], v[3], w[3];
-  for (int i = 0; i < 3; ++i) u[i] = difference(b[i], a[i]), v[i] = difference(c[i], a[i]), w[i] = difference(d[i], a[i]);
+  for (int i = 0; i < 3; ++i)
+    u[i] = difference(b[i], a[i]), v[i] = difference(c[i], a[i]), w[i] = difference(d[i], a[i]);
   const auto term = [&](int i, int j, int k) { return (u[j] * v[k] + -(u[k] * v[j])) * w[i]; };
   return (term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1)).sign();
 }
@@ -93,7 +95,8 @@ int side_2d(const std::array<double, 2>& a, const std::array<double, 2>& b, cons
   return (difference(b[0], a[0]) * difference(c[1], a[1]) + -(difference(b[1], a[1]) * difference(c[0], a[0]))).sign();
 }
 
-int side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c, const std::array<double, 3>& d) {
+int side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c,
+            const std::array<double, 3>& d) {
   double u[3], v[3], w[3];
   for (int i = 0; i < 3; ++i) u[i] = b[i] - a[i], v[i] = c[i] - a[i], w[i] = d[i] - a[i];
   double det = 0, size = 0;

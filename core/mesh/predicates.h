@@ -11,6 +11,7 @@ namespace limber {
 int side_2d(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c);
 
 // The sign of (b - a, c - a, d - a): 1 where d lies on the side from which a, b, c turn counter-clockwise.
-int side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c, const std::array<double, 3>& d);
+int side_3d(const std::array<double, 3>& a, const std::array<double, 3>& b, const std::array<double, 3>& c,
+            const std::array<double, 3>& d);
 
 }  // namespace limber

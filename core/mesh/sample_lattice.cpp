@@ -11,8 +11,8 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kBorder = 3;                     // usual cells of air around the tissue: room for samples that become tissue
-constexpr int kLargest = 4;                    // times the usual size, of cells deep inside
+constexpr int kBorder = 3;   // usual cells of air around the tissue: room for samples that become tissue
+constexpr int kLargest = 4;  // times the usual size, of cells deep inside
 constexpr std::int64_t kMostSamples = 12'000'000;
 
 struct Box {
@@ -61,11 +61,14 @@ void for_each_cell_of(const SampleLattice& lattice, int size, const Body& body) 
 
 void resize_cell(SampleLattice& lattice, const glm::ivec3& corner, int extent, int size) {
   for (int z = 0; z < extent; ++z)
-    for (int y = 0; y < extent; ++y) std::fill_n(lattice.cell_size.begin() + lattice.index(corner + glm::ivec3(0, y, z)), extent, static_cast<std::uint8_t>(size));
+    for (int y = 0; y < extent; ++y)
+      std::fill_n(lattice.cell_size.begin() + lattice.index(corner + glm::ivec3(0, y, z)), extent,
+                  static_cast<std::uint8_t>(size));
 }
 
 void refine(SampleLattice& lattice, const LatticeNetSettings& settings) {
-  lattice.cell_size.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z, static_cast<std::uint8_t>(lattice.usual));
+  lattice.cell_size.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z,
+                           static_cast<std::uint8_t>(lattice.usual));
   if (lattice.usual == 1) return;
   for_each_cell_of(lattice, lattice.usual, [&](const glm::ivec3& corner) {
     const glm::dvec3 centre = lattice.world_from_lattice * ((glm::dvec3(corner) + 0.5 * lattice.usual) * lattice.step);
@@ -79,7 +82,9 @@ void coarsen(SampleLattice& lattice, int size) {
   std::vector<glm::ivec3> deep;
   for_each_cell_of(lattice, 2 * size, [&](const glm::ivec3& corner) {
     const std::uint16_t region = lattice.at(corner);
-    if (region == kAir || glm::any(glm::lessThan(corner, glm::ivec3(size))) || glm::any(glm::greaterThanEqual(corner + 3 * size, lattice.size))) return;
+    if (region == kAir || glm::any(glm::lessThan(corner, glm::ivec3(size))) ||
+        glm::any(glm::greaterThanEqual(corner + 3 * size, lattice.size)))
+      return;
     for (int z = 0; z <= 2; ++z)
       for (int y = 0; y <= 2; ++y)
         for (int x = 0; x <= 2; ++x)
@@ -95,8 +100,8 @@ void coarsen(SampleLattice& lattice, int size) {
 
 // How full of tissue each sample's surroundings are, and of which bones.
 struct Filling {
-  std::vector<float> tissue;                                 // mm3 per sample
-  std::vector<std::pair<std::uint64_t, float>> bone;         // (sample << 16 | region, mm3), sorted by the first
+  std::vector<float> tissue;                          // mm3 per sample
+  std::vector<std::pair<std::uint64_t, float>> bone;  // (sample << 16 | region, mm3), sorted by the first
 };
 
 void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
@@ -155,7 +160,9 @@ struct Candidate {
 void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   std::map<std::uint16_t, std::vector<Candidate>> by_bone;
   for (const Candidate& candidate : all) by_bone[candidate.region].push_back(candidate);
-  const auto fuller = [](const Candidate& a, const Candidate& b) { return a.share != b.share ? a.share > b.share : a.at < b.at; };
+  const auto fuller = [](const Candidate& a, const Candidate& b) {
+    return a.share != b.share ? a.share > b.share : a.at < b.at;
+  };
   std::vector<Candidate> seeds, wanted;
   for (auto& [region, candidates] : by_bone) {
     std::sort(candidates.begin(), candidates.end(), fuller);
@@ -205,7 +212,8 @@ int SampleLattice::edge_length(const glm::ivec3& p, int axis) const {
   // Cells on both sides, along the other two axes; at the lattice's border one side.
   const std::int64_t here = index(p), u_low = p[u] > 0 ? strides[u] : 0, v_low = p[v] > 0 ? strides[v] : 0;
   const std::int64_t u_high = p[u] + 1 < size[u] ? 0 : strides[u], v_high = p[v] + 1 < size[v] ? 0 : strides[v];
-  const int smallest = std::min({cell_size[here - u_low - v_low], cell_size[here - u_low - v_high], cell_size[here - u_high - v_low], cell_size[here - u_high - v_high]});
+  const int smallest = std::min({cell_size[here - u_low - v_low], cell_size[here - u_low - v_high],
+                                 cell_size[here - u_high - v_low], cell_size[here - u_high - v_high]});
   return is_multiple(p, smallest) ? smallest : 0;
 }
 
@@ -243,7 +251,9 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
     if (stride < lattice.usual && std::count(lattice.cell_size.begin(), lattice.cell_size.end(), stride) == 0) break;
     const Filling filling = fill(lattice, voxels, stride);
     const double volume = std::pow(lattice.step * stride, 3);
-    const auto is_of_stride = [&](const glm::ivec3& p) { return lattice.usual == 1 || smallest_around(lattice, p) == stride; };
+    const auto is_of_stride = [&](const glm::ivec3& p) {
+      return lattice.usual == 1 || smallest_around(lattice, p) == stride;
+    };
     std::size_t next = 0;
     glm::ivec3 p;
     for (p.z = 0; p.z < lattice.size.z; p.z += stride)

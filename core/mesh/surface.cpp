@@ -14,7 +14,9 @@ struct Field {
   glm::ivec3 size;
   std::vector<float> share;
 
-  std::int64_t index(const glm::ivec3& c) const { return c.x + std::int64_t{size.x} * (c.y + std::int64_t{size.y} * c.z); }
+  std::int64_t index(const glm::ivec3& c) const {
+    return c.x + std::int64_t{size.x} * (c.y + std::int64_t{size.y} * c.z);
+  }
   float at(const glm::ivec3& c) const { return share[index(c)]; }
   bool inside(const glm::ivec3& c) const { return at(c) >= 0.5f; }
 };
@@ -35,7 +37,8 @@ void blur(Field& field) {
   std::vector<float> from;
   for (const std::int64_t step : steps) {
     from = field.share;
-    for (std::int64_t i = step; i + step < std::ssize(from); ++i) field.share[i] = 0.25f * from[i - step] + 0.5f * from[i] + 0.25f * from[i + step];
+    for (std::int64_t i = step; i + step < std::ssize(from); ++i)
+      field.share[i] = 0.25f * from[i - step] + 0.5f * from[i] + 0.25f * from[i + step];
   }
 }
 
@@ -68,7 +71,8 @@ bool crossing(const Field& field, const glm::ivec3& cube, glm::dvec3& place) {
 TriangleMesh surface_of(const Occupancy& body) {
   TriangleMesh mesh;
   Field field = padded(body);
-  if (std::all_of(body.share.begin(), body.share.end(), [](float share) { return share == 0 || share == 1; })) blur(field);
+  if (std::all_of(body.share.begin(), body.share.end(), [](float share) { return share == 0 || share == 1; }))
+    blur(field);
   const AffineTransform to_world = world_from_voxel(body.grid);
   const bool mirrored = glm::determinant(to_world.linear) < 0;
 
@@ -93,9 +97,12 @@ TriangleMesh surface_of(const Occupancy& body) {
         // The three edges that leave the cube's lowest corner, each with the four cubes around it.
         const bool inside = field.inside(cube);
         const std::int64_t row = field.size.x;
-        if (inside != field.inside(cube + glm::ivec3(1, 0, 0))) quad(below[at - row], below[at], here[at], here[at - row], inside);
-        if (inside != field.inside(cube + glm::ivec3(0, 1, 0))) quad(below[at - 1], here[at - 1], here[at], below[at], inside);
-        if (inside != field.inside(cube + glm::ivec3(0, 0, 1))) quad(here[at - row - 1], here[at - row], here[at], here[at - 1], inside);
+        if (inside != field.inside(cube + glm::ivec3(1, 0, 0)))
+          quad(below[at - row], below[at], here[at], here[at - row], inside);
+        if (inside != field.inside(cube + glm::ivec3(0, 1, 0)))
+          quad(below[at - 1], here[at - 1], here[at], below[at], inside);
+        if (inside != field.inside(cube + glm::ivec3(0, 0, 1)))
+          quad(here[at - row - 1], here[at - row], here[at], here[at - 1], inside);
       }
   }
   return mesh;

@@ -12,9 +12,10 @@ constexpr std::uint16_t kAir = RegionSurface::kAir;
 constexpr double kMargin = 0.1;      // of a cell, face or edge: points keep this far from its ends
 constexpr double kPushShare = 0.04;  // of a cell, outwards, for each time that its point was pushed
 
-// Where along an edge, in [0, 1], one region ends and the other begins. Between tissue and air: where the outermost tissue
-// ends; between two tissues: where the fewest places are on the wrong side.
-double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axis, int length, std::uint16_t first, std::uint16_t second) {
+// Where along an edge, in [0, 1], one region ends and the other begins. Between tissue and air: where the outermost
+// tissue ends; between two tissues: where the fewest places are on the wrong side.
+double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axis, int length, std::uint16_t first,
+                    std::uint16_t second) {
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length / voxel_at.voxel_along(axis))), 4, 64);
   int least_wrong = steps + 1, wrong = 0, best = 0;
   std::uint16_t seen[64];
@@ -40,7 +41,9 @@ double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axi
 
 }  // namespace
 
-VoxelLookup::VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattice) : voxels_(voxels), offset_(lattice.fine_from_voxel.offset) {
+VoxelLookup::VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattice)
+    : voxels_(voxels),
+      offset_(lattice.fine_from_voxel.offset) {
   for (int i = 0; i < 3; ++i) scale_[i] = lattice.fine_from_voxel.linear[i][i];
 }
 
@@ -64,8 +67,8 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   find_air();
 }
 
-// body(from, at, axis, length, first, second): the edges of the lattice that are not air at both ends, with the place of their first
-// sample among all and the regions of both.
+// body(from, at, axis, length, first, second): the edges of the lattice that are not air at both ends, with the place
+// of their first sample among all and the regions of both.
 template <class Body>
 void SurfaceNet::for_each_edge(const Body& body) const {
   const std::int64_t strides[3] = {1, lattice_.size.x, std::int64_t{lattice_.size.x} * lattice_.size.y};
@@ -95,16 +98,25 @@ void SurfaceNet::for_each_edge(const Body& body) const {
 
 void SurfaceNet::number_edges(const VoxelLookup& voxel_at) {
   for (auto& of_axis : edge_node_) of_axis.assign(lattice_.label.size(), -1);
-  for_each_edge([&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
-    if (first == second) return;
-    Node node{from, from, from};
-    node.low[axis] += kMargin * length;
-    node.high[axis] += (1 - kMargin) * length;
-    const int number = static_cast<int>(nodes_.size());
-    edge_node_[axis][at] = number;
-    nodes_.push_back(node);
-    edges_.push_back({from, axis, length, number, first, second, static_cast<float>(border_along(voxel_at, from, axis, length, first, second)), {}, {-1, -1, -1, -1}});
-  });
+  for_each_edge(
+      [&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
+        if (first == second) return;
+        Node node{from, from, from};
+        node.low[axis] += kMargin * length;
+        node.high[axis] += (1 - kMargin) * length;
+        const int number = static_cast<int>(nodes_.size());
+        edge_node_[axis][at] = number;
+        nodes_.push_back(node);
+        edges_.push_back({from,
+                          axis,
+                          length,
+                          number,
+                          first,
+                          second,
+                          static_cast<float>(border_along(voxel_at, from, axis, length, first, second)),
+                          {},
+                          {-1, -1, -1, -1}});
+      });
 }
 
 void SurfaceNet::number_cells() {
@@ -137,7 +149,8 @@ std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot
 }
 
 glm::ivec3 SurfaceNet::sample_at(std::int64_t index) const {
-  return {index % lattice_.size.x, index / lattice_.size.x % lattice_.size.y, index / (std::int64_t{lattice_.size.x} * lattice_.size.y)};
+  return {index % lattice_.size.x, index / lattice_.size.x % lattice_.size.y,
+          index / (std::int64_t{lattice_.size.x} * lattice_.size.y)};
 }
 
 void SurfaceNet::number_faces() {
@@ -197,7 +210,8 @@ void SurfaceNet::place(const Pushes& pushes) {
     if (edge.second == kAir) share += kPushShare * pushed;
     if (edge.first == kAir) share -= kPushShare * pushed;
     Node& node = nodes_[edge.node];
-    node.place[edge.axis] = std::clamp(edge.from[edge.axis] + share * edge.length, node.low[edge.axis], node.high[edge.axis]);
+    node.place[edge.axis] =
+        std::clamp(edge.from[edge.axis] + share * edge.length, node.low[edge.axis], node.high[edge.axis]);
     for (int slot = 0; slot < 4; ++slot) {
       if (edge.cell[slot] != edge.cell[(slot + 3) % 4]) meet(edge.cell[slot], edge);  // a coarse cell has two slots
       if (edge.face[slot] >= 0) meet(edge.face[slot], edge);
@@ -208,13 +222,15 @@ void SurfaceNet::place(const Pushes& pushes) {
     node.place = sums[i].place / double(sums[i].count);
     if (i < cells_.size())
       if (const double length = glm::length(sums[i].outwards); length > 0)
-        node.place += sums[i].outwards * (kPushShare * cells_[i].size * pushes.cell[lattice_.index(cells_[i].corner)] / length);
+        node.place +=
+            sums[i].outwards * (kPushShare * cells_[i].size * pushes.cell[lattice_.index(cells_[i].corner)] / length);
     node.place = glm::clamp(node.place, node.low, node.high);
   }
 }
 
 // Where the surface passes the face of a cell, nothing where it does not.
-std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner, int axis) const {
+std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner,
+                                                     int axis) const {
   if (cell.size != other.size) {
     const auto node = face_node_.find(3 * lattice_.index(corner) + axis);
     if (node == face_node_.end()) return std::nullopt;
@@ -225,8 +241,10 @@ std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cel
   return a + (b - a) * ((corner[axis] - a[axis]) / (b[axis] - a[axis]));
 }
 
-// On a face the borders run from its middle to the points of its edges: the region is that of the rim, seen from the middle.
-std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner, int axis, int size) const {
+// On a face the borders run from its middle to the points of its edges: the region is that of the rim, seen from the
+// middle.
+std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner,
+                                         int axis, int size) const {
   const glm::dvec3 along = place - middle;
   double reach = 1e300;
   int rim_axis = (axis + 1) % 3;
@@ -269,7 +287,8 @@ std::uint16_t SurfaceNet::region_at(const glm::dvec3& place) const {
   else --across[axis];
   int size = cell.size;
   if (cell.size > 1)
-    for (int w : {(axis + 1) % 3, (axis + 2) % 3}) across[w] += std::clamp(static_cast<int>(std::floor(exit[w])) - cell.corner[w], 0, cell.size - 1);
+    for (int w : {(axis + 1) % 3, (axis + 2) % 3})
+      across[w] += std::clamp(static_cast<int>(std::floor(exit[w])) - cell.corner[w], 0, cell.size - 1);
   const Cell other = lattice_.cell(across);
   if (other.size < cell.size) {
     size = other.size;
@@ -290,7 +309,9 @@ TetMesh SurfaceNet::tets() const {
     if (node < 0) node = static_cast<std::int32_t>(places.size()), places.push_back(place);
     return node;
   };
-  const auto of_cell = [&](const Cell& cell) { return number(cell_node[lattice_.index(cell.corner)], glm::dvec3(cell.corner) + 0.5 * cell.size); };
+  const auto of_cell = [&](const Cell& cell) {
+    return number(cell_node[lattice_.index(cell.corner)], glm::dvec3(cell.corner) + 0.5 * cell.size);
+  };
   const auto of_face = [&](std::int64_t face, int size) {
     glm::dvec3 middle = glm::dvec3(sample_at(face / 3)) + 0.5 * size;
     middle[int(face % 3)] -= 0.5 * size;
@@ -305,30 +326,32 @@ TetMesh SurfaceNet::tets() const {
     tets.push_back({from, to, a, b});
     mesh.region.push_back(region);
   };
-  for_each_edge([&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
-    glm::ivec3 to = from;
-    to[axis] += length;
-    const int point = edge_node_[axis][at];
-    const int begin = first == kAir ? -1 : number(sample_node[at], from), end = second == kAir ? -1 : number(sample_node[lattice_.index(to)], to);
-    const auto stand = [&](int a, int b) {
-      if (point < 0) return add(begin, end, a, b, first);
-      if (first != kAir) add(begin, point, a, b, first);
-      if (second != kAir) add(point, end, a, b, second);
-    };
-    const auto around = lattice_.cells_around_edge(from, axis);
-    for (int slot = 0; slot < 4; ++slot) {
-      const Cell &one = around[slot], &other = around[(slot + 1) % 4];
-      if (one == other) continue;
-      const int a = of_cell(one), b = of_cell(other);
-      if (one.size == other.size) {
-        stand(a, b);
-      } else {
-        const int middle = of_face(face_between(from, axis, slot, length), length);
-        stand(a, middle);
-        stand(middle, b);
-      }
-    }
-  });
+  for_each_edge(
+      [&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
+        glm::ivec3 to = from;
+        to[axis] += length;
+        const int point = edge_node_[axis][at];
+        const int begin = first == kAir ? -1 : number(sample_node[at], from),
+                  end = second == kAir ? -1 : number(sample_node[lattice_.index(to)], to);
+        const auto stand = [&](int a, int b) {
+          if (point < 0) return add(begin, end, a, b, first);
+          if (first != kAir) add(begin, point, a, b, first);
+          if (second != kAir) add(point, end, a, b, second);
+        };
+        const auto around = lattice_.cells_around_edge(from, axis);
+        for (int slot = 0; slot < 4; ++slot) {
+          const Cell &one = around[slot], &other = around[(slot + 1) % 4];
+          if (one == other) continue;
+          const int a = of_cell(one), b = of_cell(other);
+          if (one.size == other.size) {
+            stand(a, b);
+          } else {
+            const int middle = of_face(face_between(from, axis, slot, length), length);
+            stand(a, middle);
+            stand(middle, b);
+          }
+        }
+      });
 
   mesh.V.resize(places.size(), 3);
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <numbers>
+#include <tuple>
 
 #include <Eigen/Geometry>
 
@@ -42,9 +42,10 @@ FaceTable table_of(const Eigen::MatrixX4i& T) {
       table.faces[next[c[0]]++] = {c[1], c[2], tet, face};
     }
   for (int c = 0; c < corners; ++c)
-    std::sort(table.faces.begin() + table.first[c], table.faces.begin() + table.first[c + 1], [](const Face& a, const Face& b) {
-      return std::tie(a.middle, a.high, a.tet, a.face) < std::tie(b.middle, b.high, b.tet, b.face);
-    });
+    std::sort(table.faces.begin() + table.first[c], table.faces.begin() + table.first[c + 1],
+              [](const Face& a, const Face& b) {
+                return std::tie(a.middle, a.high, a.tet, a.face) < std::tie(b.middle, b.high, b.tet, b.face);
+              });
   return table;
 }
 
@@ -57,7 +58,9 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T) {
   for (std::size_t corner = 0; corner + 1 < table.first.size(); ++corner)
     for (int i = table.first[corner], end = i; i < table.first[corner + 1]; i = end) {
       const Face& one = table.faces[i];
-      while (end < table.first[corner + 1] && table.faces[end].middle == one.middle && table.faces[end].high == one.high) ++end;
+      while (end < table.first[corner + 1] && table.faces[end].middle == one.middle &&
+             table.faces[end].high == one.high)
+        ++end;
       if (end - i == 2) {
         const Face& other = table.faces[i + 1];
         neighbours[one.tet][one.face] = other.tet;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tissue as tetrahedra. Places are world coordinates in mm; every tet is positively oriented: (b - a, c - a, d - a) of its
-// corners a, b, c, d has a positive determinant, at rest.
+// Tissue as tetrahedra. Places are world coordinates in mm; every tet is positively oriented: (b - a, c - a, d - a) of
+// its corners a, b, c, d has a positive determinant, at rest.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours);
 
-double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);  // mm3
+double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);      // mm3
 double smallest_dihedral(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);  // radians
 
 }  // namespace limber

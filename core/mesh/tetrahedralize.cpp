@@ -81,7 +81,8 @@ struct Answer {
   std::string failure;
 };
 
-Answer run_tetgen(const Polyhedra& input, const char* switches, const TetrahedralizeLimits& limits, const Progress& progress) {
+Answer run_tetgen(const Polyhedra& input, const char* switches, const TetrahedralizeLimits& limits,
+                  const Progress& progress) {
   const double seconds = limits.seconds + limits.seconds_per_triangle * double(input.triangles.size());
   const ChildLimits child{seconds, 4 * seconds, limits.memory_bytes};
   const ChildAnswer answer = run_in_child(
@@ -96,7 +97,8 @@ Answer run_tetgen(const Polyhedra& input, const char* switches, const Tetrahedra
   std::memcpy(&head, answer.sent->data(), sizeof head);
   if (head.problem != 0) return {{}, {}, name_of_problem(head.problem)};
   const std::size_t point_bytes = sizeof(double) * 3 * head.points, tet_bytes = sizeof(int) * 4 * head.tets;
-  if (head.points < 0 || head.tets <= 0 || answer.sent->size() != sizeof head + point_bytes + tet_bytes) return {{}, {}, "it ended without an answer"};
+  if (head.points < 0 || head.tets <= 0 || answer.sent->size() != sizeof head + point_bytes + tet_bytes)
+    return {{}, {}, "it ended without an answer"};
 
   Answer result;
   result.points.resize(3 * static_cast<std::size_t>(head.points));
@@ -116,7 +118,8 @@ Answer run_tetgen(const Polyhedra& input, const char* switches, const Tetrahedra
 struct RowHash {
   std::size_t operator()(const Row& row) const {
     std::uint64_t mixed = 0;
-    for (const int corner : row) mixed = (mixed ^ static_cast<std::uint32_t>(corner)) * 0x9e3779b97f4a7c15u, mixed ^= mixed >> 29;
+    for (const int corner : row)
+      mixed = (mixed ^ static_cast<std::uint32_t>(corner)) * 0x9e3779b97f4a7c15u, mixed ^= mixed >> 29;
     return mixed;
   }
 };
@@ -133,12 +136,13 @@ bool same_way(const Row& a, const Row& b) {
 }
 
 // The region of every tet, by the triangles around it. Fails where a triangle is missing or two disagree.
-std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& triangles, const std::vector<std::array<std::uint16_t, 2>>& sides,
-                         std::vector<std::uint16_t>& region) {
+std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& triangles,
+                         const std::vector<std::array<std::uint16_t, 2>>& sides, std::vector<std::uint16_t>& region) {
   std::unordered_map<Row, int, RowHash> triangle_of;
   triangle_of.reserve(2 * triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)
-    if (!triangle_of.emplace(sorted(triangles[i]), static_cast<int>(i)).second) return "the surface has a triangle twice";
+    if (!triangle_of.emplace(sorted(triangles[i]), static_cast<int>(i)).second)
+      return "the surface has a triangle twice";
 
   const auto neighbours = neighbours_of(T);
   std::vector<int> found(triangles.size(), 0);
@@ -164,7 +168,8 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
     }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const bool open_front = sides[i][0] == RegionSurface::kAir, open_back = sides[i][1] == RegionSurface::kAir;
-    if ((!(found[i] & 2) && !open_front) || (!(found[i] & 1) && !open_back)) return "a triangle of the surface is missing";
+    if ((!(found[i] & 2) && !open_front) || (!(found[i] & 1) && !open_back))
+      return "a triangle of the surface is missing";
   }
   for (std::size_t next = 0; next < front.size(); ++next) {
     const int tet = front[next];
@@ -194,19 +199,21 @@ bool starts_with(const std::vector<double>& points, const std::vector<double>& b
 
 }  // namespace
 
-Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits, const Progress& progress) {
+Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits,
+                                      const Progress& progress) {
   if (surface.F.rows() == 0) return {std::nullopt, "the surface is empty"};
   if (!finite(surface.V)) return {std::nullopt, "the surface has places that are no numbers"};
   Polyhedra input{xyz_of(surface.V), {}};
   for (const auto& f : surface.F.rowwise()) input.triangles.push_back({f[0], f[1], f[2]});
-  // p a surface's inside, q 2/0 a circumsphere of at most two shortest edges and no bound on angles, Y nothing new on the
-  // surface, M coplanar triangles stay apart, J nodes keep their numbers, Q no words.
+  // p a surface's inside, q 2/0 a circumsphere of at most two shortest edges and no bound on angles, Y nothing new on
+  // the surface, M coplanar triangles stay apart, J nodes keep their numbers, Q no words.
   Answer answer = run_tetgen(input, "pq2/0YMJQ", limits, progress);
   if (!answer.failure.empty()) return {std::nullopt, std::move(answer.failure)};
   if (!starts_with(answer.points, input.points)) return {std::nullopt, "it moved nodes of the surface"};
 
   std::vector<std::uint16_t> region;
-  if (std::string failure = find_regions(answer.T, input.triangles, surface.sides, region); !failure.empty()) return {std::nullopt, std::move(failure)};
+  if (std::string failure = find_regions(answer.T, input.triangles, surface.sides, region); !failure.empty())
+    return {std::nullopt, std::move(failure)};
 
   // Pockets of air go, and nodes that only they have; the surface's stay all, at the front.
   std::vector<int> new_number(answer.points.size() / 3, -1);
@@ -225,7 +232,8 @@ Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const Tetrah
   }
   mesh.V.resize(nodes, 3);
   for (std::size_t i = 0; i < new_number.size(); ++i)
-    if (new_number[i] >= 0) mesh.V.row(new_number[i]) << answer.points[3 * i], answer.points[3 * i + 1], answer.points[3 * i + 2];
+    if (new_number[i] >= 0)
+      mesh.V.row(new_number[i]) << answer.points[3 * i], answer.points[3 * i + 1], answer.points[3 * i + 2];
   for (const auto& tet : mesh.T.rowwise())
     if (signed_volume(mesh.V, tet) <= 0) return {std::nullopt, "a tetrahedron is flat"};
   return {std::move(mesh), {}};

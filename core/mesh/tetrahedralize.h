@@ -20,22 +20,22 @@
 
 namespace limber {
 
-// Triangles between regions. Each region is closed: whichever way one walks, crossing a triangle changes the region from
-// one of its sides to the other. Triangles meet only in common edges and corners.
+// Triangles between regions. Each region is closed: whichever way one walks, crossing a triangle changes the region
+// from one of its sides to the other. Triangles meet only in common edges and corners.
 struct RegionSurface {
   static constexpr std::uint16_t kAir = 0xffff;
 
-  Eigen::MatrixX3d V;                              // #V places, world, mm
-  Eigen::MatrixX3i F;                              // #F corners
+  Eigen::MatrixX3d V;                               // #V places, world, mm
+  Eigen::MatrixX3i F;                               // #F corners
   std::vector<std::array<std::uint16_t, 2>> sides;  // #F regions (of TetMesh, or kAir): in front, where the normal of
-                                                   // counter-clockwise corners points, and behind
+                                                    // counter-clockwise corners points, and behind
 };
 
 struct TetrahedralizeLimits {
-  double seconds = 30;                           // of processor time, and by the clock four times as much
-  double seconds_per_triangle = 0.0005;          // added to them; what it takes is a tenth of this
+  double seconds = 30;                   // of processor time, and by the clock four times as much
+  double seconds_per_triangle = 0.0005;  // added to them; what it takes is a tenth of this
   std::size_t memory_bytes = std::size_t{4} << 30;
-  std::function<void()> at_start = {};           // called in the child before TetGen: where tests crash and hang it
+  std::function<void()> at_start = {};  // called in the child before TetGen: where tests crash and hang it
 };
 
 struct Tetrahedralized {
@@ -43,9 +43,10 @@ struct Tetrahedralized {
   std::string failure;  // why there is none, for a user to read; empty when there is one
 };
 
-// The regions inside the surface, with nodes of their own so that no tet's circumsphere is larger than twice its shortest
-// edge (as far as the surface allows). The first #V nodes are the surface's.
+// The regions inside the surface, with nodes of their own so that no tet's circumsphere is larger than twice its
+// shortest edge (as far as the surface allows). The first #V nodes are the surface's.
 //   throws Cancelled
-Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits = {}, const Progress& progress = no_progress());
+Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits = {},
+                                      const Progress& progress = no_progress());
 
 }  // namespace limber

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The voxels whose centres lie in a tet, row by row. A centre on a face counts, also when rounding puts it a hair outside.
+// The voxels whose centres lie in a tet, row by row. A centre on a face counts, also when rounding puts it a hair
+// outside.
 #pragma once
 
 #include <algorithm>
@@ -15,19 +16,23 @@ inline constexpr double kHair = 1e-7;  // voxels
 // body(first, last): voxels of one row along x, both ends inside the tet and the grid.
 //   corner  of a positively oriented tet, voxel coordinates
 template <class Body>
-void for_each_row_in_tet(const glm::dvec3 (&corner)[4], const Grid& grid, int first_slice, int last_slice, const Body& body) {
+void for_each_row_in_tet(const glm::dvec3 (&corner)[4], const Grid& grid, int first_slice, int last_slice,
+                         const Body& body) {
   glm::dvec3 low = corner[0], high = corner[0], outwards[4];
   for (const auto& c : corner) low = glm::min(low, c), high = glm::max(high, c);
   for (int i = 0; i < 4; ++i) {
     const glm::dvec3& a = corner[kTetFaces[i][0]];
     outwards[i] = glm::cross(corner[kTetFaces[i][1]] - a, corner[kTetFaces[i][2]] - a);
   }
-  for (int z = std::max(first_slice, int(std::ceil(low.z - kHair))); z <= std::min(last_slice, int(std::floor(high.z + kHair))); ++z)
-    for (int y = std::max(0, int(std::ceil(low.y - kHair))); y <= std::min(grid.size.y - 1, int(std::floor(high.y + kHair))); ++y) {
+  for (int z = std::max(first_slice, int(std::ceil(low.z - kHair)));
+       z <= std::min(last_slice, int(std::floor(high.z + kHair))); ++z)
+    for (int y = std::max(0, int(std::ceil(low.y - kHair)));
+         y <= std::min(grid.size.y - 1, int(std::floor(high.y + kHair))); ++y) {
       double from = 0, to = grid.size.x - 1.0;
       for (int i = 0; i < 4; ++i) {  // outwards . (p - a) <= a hair
         const glm::dvec3& a = corner[kTetFaces[i][0]];
-        const double rest = outwards[i].y * (y - a.y) + outwards[i].z * (z - a.z) - outwards[i].x * a.x - kHair * glm::length(outwards[i]);
+        const double rest = outwards[i].y * (y - a.y) + outwards[i].z * (z - a.z) - outwards[i].x * a.x -
+                            kHair * glm::length(outwards[i]);
         if (outwards[i].x > 0) to = std::min(to, -rest / outwards[i].x);
         else if (outwards[i].x < 0) from = std::max(from, -rest / outwards[i].x);
         else if (rest > 0) to = -1;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/body_frame.h"
 #include "core/pose/finger_frames.h"
-#include "core/rig/body_skeleton.h"
 #include "core/rig/joint_limits.h"
 
 namespace limber {
@@ -91,7 +91,9 @@ double turn_about_itself(const glm::dvec3& below, double bend_heading, double as
 class Measuring {
  public:
   Measuring(const Armature& armature, BodyFrames& result)
-      : armature_(armature), skeleton_(skeleton_of(armature)), result_(result) {
+      : armature_(armature),
+        skeleton_(skeleton_of(armature)),
+        result_(result) {
     result_.bone = skeleton_.joint;
     result_.frames.resize(armature.bones.size());
     done_.assign(armature.bones.size(), false);

@@ -17,8 +17,8 @@ using enum BodyJoint;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
-// Square to the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane: turned about it, the
-// blade glides over them [Kapandji, The Physiology of the Joints].
+// Square to the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane: turned about
+// it, the blade glides over them [Kapandji, The Physiology of the Joints].
 const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
@@ -57,15 +57,17 @@ double raise_of(const JointMotions& shoulder) {
   return glm::degrees(std::acos(std::clamp(-arm.z, -1.0, 1.0)));
 }
 
-// Of an arm's raise beyond the first 30 degrees a third is the shoulder blade's, and half of that is the collarbone's at its inner
-// end, the other half the joint's between both [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint].
-// Collarbones whose own joint is not named take their share; a blade that moves as one with them would leave the ribs with more.
+// Of an arm's raise beyond the first 30 degrees a third is the shoulder blade's, and half of that is the collarbone's
+// at its inner end, the other half the joint's between both [Inman, Saunders & Abbott 1944, Observations on the
+// function of the shoulder joint]. Collarbones whose own joint is not named take their share; a blade that moves as one
+// with them would leave the ribs with more.
 JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
   constexpr double kSetting = 30, kShare = 1.0 / 6;
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
     const auto shoulder = angles.find({Shoulder, side});
     const double raise = shoulder == angles.end() ? 0 : raise_of(shoulder->second) - kSetting;
-    if (raise > 0 && frames.find(BodyPart::Clavicle, side)) angles.try_emplace({Girdle, side}, JointMotions{0.0, 0.0, kShare * raise});
+    if (raise > 0 && frames.find(BodyPart::Clavicle, side))
+      angles.try_emplace({Girdle, side}, JointMotions{0.0, 0.0, kShare * raise});
   }
   return angles;
 }

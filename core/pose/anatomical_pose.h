@@ -5,8 +5,9 @@
 //
 // Hips and shoulders turn by flexion about the body's left-right axis, then abduction about the axis that this has
 // carried along, then rotation about the limb [Grood & Suntay 1983]; shoulders count from the trunk, not from the
-// collarbone. A raised arm takes the collarbone and the shoulder blade along, unless the shoulder girdle is named too. Spine and neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and
-// hand. The body as a whole neither turns nor moves.
+// collarbone. A raised arm takes the collarbone and the shoulder blade along, unless the shoulder girdle is named too.
+// Spine and neck share their turn evenly among their bones. A forearm's pronation is shared by forearm and hand. The
+// body as a whole neither turns nor moves.
 #pragma once
 
 #include <string>
@@ -14,7 +15,7 @@
 
 #include "core/pose/anatomical_frames.h"
 #include "core/pose/joint_angles.h"
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 

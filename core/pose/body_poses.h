@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/pose/joint_angles.h"
-#include "core/pose/pose.h"
 #include "core/pose/pose_library.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 

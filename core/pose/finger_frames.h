@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/motion/body_frame.h"
 #include "core/pose/anatomical_frames.h"
-#include "core/rig/body_skeleton.h"
 
 namespace limber {
 

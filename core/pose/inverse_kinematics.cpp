@@ -16,14 +16,14 @@ namespace limber {
 
 namespace {
 
-constexpr int kSteps = 80;             // of one search
-constexpr double kLongestStep = 0.6;   // radians of any one parameter
-constexpr double kAtLimit = 1e-10;     // radians
-constexpr double kNoProgress = 1e-6;   // share of the squared error below which a step gains nothing
-constexpr double kRoughly = 1e-3;      // the same while a search only prepares the next
-constexpr double kPoleWeight = 0.1;    // mm beside the plane count as so many mm from the target
+constexpr int kSteps = 80;            // of one search
+constexpr double kLongestStep = 0.6;  // radians of any one parameter
+constexpr double kAtLimit = 1e-10;    // radians
+constexpr double kNoProgress = 1e-6;  // share of the squared error below which a step gains nothing
+constexpr double kRoughly = 1e-3;     // the same while a search only prepares the next
+constexpr double kPoleWeight = 0.1;   // mm beside the plane count as so many mm from the target
 constexpr int kRestartsBeyondReach = 6;
-constexpr double kWorthAJump = 1e-4;   // share of the chain's length by which another pose must come nearer to be taken
+constexpr double kWorthAJump = 1e-4;  // share of the chain's length by which another pose must come nearer to be taken
 
 double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
 
@@ -31,11 +31,11 @@ double between(std::mt19937& random, double low, double high) { return low + (hi
 struct Joint {
   int bone;
   JointLimits::Type type;
-  glm::dvec3 axis{0};                // of hinge and twist
-  double minimum = 0, maximum = 0;   // of the hinge or the twist
+  glm::dvec3 axis{0};               // of hinge and twist
+  double minimum = 0, maximum = 0;  // of the hinge or the twist
   double cone = 0;
 
-  double angle = 0;                  // of the hinge or the twist
+  double angle = 0;  // of the hinge or the twist
   glm::dvec3 swing{0};
   glm::dquat free{1, 0, 0, 0};
 
@@ -133,7 +133,8 @@ Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool kee
   joint.angle = parts.twist;
   for (double turn : {2 * std::numbers::pi, -2 * std::numbers::pi})
     if (joint.angle < joint.minimum - 1e-6 || joint.angle > joint.maximum + 1e-6)
-      if (parts.twist + turn >= joint.minimum - 1e-6 && parts.twist + turn <= joint.maximum + 1e-6) joint.angle = parts.twist + turn;
+      if (parts.twist + turn >= joint.minimum - 1e-6 && parts.twist + turn <= joint.maximum + 1e-6)
+        joint.angle = parts.twist + turn;
   joint.angle = std::clamp(joint.angle, joint.minimum, joint.maximum);
   if (const double length = glm::length(joint.swing); length > joint.cone) joint.swing *= joint.cone / length;
   return joint;
@@ -146,8 +147,11 @@ struct State {
 
 class Search {
  public:
-  Search(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals, const ReachSettings& settings)
-      : armature_(armature), start_(start), settings_(settings) {
+  Search(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals,
+         const ReachSettings& settings)
+      : armature_(armature),
+        start_(start),
+        settings_(settings) {
     const auto n = armature.bones.size();
     std::vector<bool> needed(n, false), moves(n, false);
     for (const ReachGoal& goal : goals) {
@@ -168,7 +172,8 @@ class Search {
       if (!needed[b]) continue;
       needed_.push_back(static_cast<int>(b));
       joint_of_.push_back(moves[b] ? static_cast<int>(initial_.joints.size()) : -1);
-      if (moves[b]) initial_.joints.push_back(joint_of(armature.bones[b], int(b), start.rotation[b], settings.keep_limits));
+      if (moves[b])
+        initial_.joints.push_back(joint_of(armature.bones[b], int(b), start.rotation[b], settings.keep_limits));
     }
     initial_.root = start.root_translation;
     posed_.resize(n);
@@ -187,10 +192,8 @@ class Search {
       for (Joint& joint : next.joints) {
         Joint other = joint;
         other.scatter(random);
-        if (i < 2)
-          nudge(joint, other);
-        else
-          joint = other;
+        if (i < 2) nudge(joint, other);
+        else joint = other;
       }
       const State found = from(next);
       const double distance = furthest_off(found);
@@ -241,7 +244,8 @@ class Search {
       const Bone& bone = armature_.bones[b];
       const glm::dquat rotation = joint_of_[i] < 0 ? start_.rotation[b] : state.joints[joint_of_[i]].rotation();
       const RigidTransform own = rotation_about(bone.head, rotation);
-      posed_[b] = bone.parent < 0 ? RigidTransform{own.rotation, own.translation + state.root} : posed_[bone.parent] * own;
+      posed_[b] =
+          bone.parent < 0 ? RigidTransform{own.rotation, own.translation + state.root} : posed_[bone.parent] * own;
     }
   }
 
@@ -255,7 +259,8 @@ class Search {
     return furthest;
   }
 
-  // A far target is first drawn to within the chain's reach: the search then has little left to gain that it cannot have.
+  // A far target is first drawn to within the chain's reach: the search then has little left to gain that it cannot
+  // have.
   State from(State state) {
     place(state);
     std::vector<glm::dvec3> targets;
@@ -275,7 +280,8 @@ class Search {
 
   int rows(bool pole) const { return static_cast<int>(3 * goals_.size()) + (pole ? 1 : 0); }
 
-  // How far the first chain's last joint lies beside the half plane through its base, its tip and the pole, mm; its gradient.
+  // How far the first chain's last joint lies beside the half plane through its base, its tip and the pole, mm; its
+  // gradient.
   double beside_pole(glm::dvec3& normal) const {
     const Goal& goal = goals_[0];
     const glm::dvec3 base = pivot(goal.first), along = tip(goal) - base, joint = pivot(goal.bone) - base;
@@ -326,7 +332,8 @@ class Search {
   }
 
   // Leaves out the parameters that a step would push beyond their limits, until none is.
-  Eigen::VectorXd damped_step(const State& state, const Eigen::VectorXd& e, const Eigen::MatrixXd& J, double damping) const {
+  Eigen::VectorXd damped_step(const State& state, const Eigen::VectorXd& e, const Eigen::MatrixXd& J,
+                              double damping) const {
     Eigen::MatrixXd free = J;
     Eigen::VectorXd step;
     for (int round = 0; round < 4; ++round) {
@@ -344,7 +351,8 @@ class Search {
           }
       if (!again) break;
     }
-    const double largest = step.size() ? step.head(step.size() - (settings_.move_root ? 3 : 0)).cwiseAbs().maxCoeff() : 0;
+    const double largest =
+        step.size() ? step.head(step.size() - (settings_.move_root ? 3 : 0)).cwiseAbs().maxCoeff() : 0;
     if (largest > kLongestStep) step *= kLongestStep / largest;
     return step;
   }
@@ -360,7 +368,8 @@ class Search {
 
   bool has_arrived(const std::vector<glm::dvec3>& targets) const {
     bool arrived = true;
-    for (size_t g = 0; g < goals_.size(); ++g) arrived &= glm::distance(tip(goals_[g]), targets[g]) <= 0.5 * settings_.tolerance;
+    for (size_t g = 0; g < goals_.size(); ++g)
+      arrived &= glm::distance(tip(goals_[g]), targets[g]) <= 0.5 * settings_.tolerance;
     return arrived;
   }
 
@@ -408,7 +417,8 @@ class Search {
   const Pose& start_;
   const ReachSettings& settings_;
   std::vector<Goal> goals_;
-  std::vector<int> needed_, joint_of_;  // bones above the goals; their place among the joints, -1 where they do not move
+  std::vector<int> needed_,
+      joint_of_;  // bones above the goals; their place among the joints, -1 where they do not move
   State initial_;
   int parameters_ = 0;
   std::vector<RigidTransform> posed_;
@@ -416,13 +426,15 @@ class Search {
 
 }  // namespace
 
-Reach reach(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals, const ReachSettings& settings) {
+Reach reach(const Armature& armature, const Pose& start, const std::vector<ReachGoal>& goals,
+            const ReachSettings& settings) {
   if (goals.empty()) return {start, 0, true};
   for (const ReachGoal& goal : goals) {
     if (goal.bone < 0 || goal.bone >= std::ssize(armature.bones))
       throw Error("there is no such bone", "goal for bone " + std::to_string(goal.bone), "name one of the rig's bones");
     if (!std::isfinite(goal.target.x + goal.target.y + goal.target.z))
-      throw Error("the target is not a place", "goal for bone " + armature.bones[goal.bone].name, "give three finite numbers");
+      throw Error("the target is not a place", "goal for bone " + armature.bones[goal.bone].name,
+                  "give three finite numbers");
   }
   return Search(armature, start, goals, settings).run();
 }

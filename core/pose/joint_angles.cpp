@@ -143,12 +143,12 @@ struct UsualRange {
 };
 
 constexpr UsualRange kUsual[] = {
-    {Spine, 0, -35, 90},     {Spine, 1, -40, 40},     {Spine, 2, -50, 50},    {Neck, 0, -60, 60},
-    {Neck, 1, -45, 45},      {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},   {Girdle, 1, -20, 30},     {Girdle, 2, -10, 60},
-    {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90}, {Elbow, 0, -10, 150},
-    {Forearm, 0, -10, 175},  {Wrist, 0, -75, 80},     {Wrist, 1, -20, 35},    {Hip, 0, -30, 125},
-    {Hip, 1, -30, 50},       {Hip, 2, -45, 45},       {Knee, 0, -10, 150},    {Ankle, 0, -50, 30},
-    {Ankle, 1, -20, 35},     {Toes, 0, -45, 70},
+    {Spine, 0, -35, 90},  {Spine, 1, -40, 40},     {Spine, 2, -50, 50},     {Neck, 0, -60, 60},
+    {Neck, 1, -45, 45},   {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},    {Girdle, 1, -20, 30},
+    {Girdle, 2, -10, 60}, {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90},
+    {Elbow, 0, -10, 150}, {Forearm, 0, -10, 175},  {Wrist, 0, -75, 80},     {Wrist, 1, -20, 35},
+    {Hip, 0, -30, 125},   {Hip, 1, -30, 50},       {Hip, 2, -45, 45},       {Knee, 0, -10, 150},
+    {Ankle, 0, -50, 30},  {Ankle, 1, -20, 35},     {Toes, 0, -45, 70},
 };
 constexpr UsualRange kUsualThumb[] = {{Thumb, 0, -10, 60}, {Thumb, 1, -15, 80}, {Thumb, 2, -15, 80}};
 constexpr UsualRange kUsualFinger[] = {{Index, 0, -45, 95}, {Index, 1, -10, 110}, {Index, 2, -10, 90}};

@@ -4,14 +4,14 @@
 
 #include <string>
 
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 
 struct LimitCheck {
-  int limited = 0;    // bones that have limits
-  int unlimited = 0;  // bones with a parent that have none
-  int beyond = 0;     // of `limited`: turned further than `tolerance` beyond
+  int limited = 0;             // bones that have limits
+  int unlimited = 0;           // bones with a parent that have none
+  int beyond = 0;              // of `limited`: turned further than `tolerance` beyond
   int first = -1, worst = -1;  // of those beyond, the first one and the one that is furthest; -1 where none is
   double excess = 0;           // of the worst, radians
 };

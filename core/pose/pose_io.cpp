@@ -20,12 +20,14 @@ constexpr std::uint64_t kMostBytes = 64 << 20;
 constexpr double kLargest = 1e9;
 
 std::vector<double> numbers(const Json& value, size_t count, const char* key, const std::string& where) {
-  const std::string what = "\"" + std::string(key) + "\" is not " + std::to_string(count) + " finite number" + (count > 1 ? "s" : "");
+  const std::string what =
+      "\"" + std::string(key) + "\" is not " + std::to_string(count) + " finite number" + (count > 1 ? "s" : "");
   const Json list = count == 1 ? Json::array({value}) : value;
   if (!list.is_array() || list.size() != count) throw Error(what, where, "write them as a list");
   std::vector<double> read;
   for (const Json& one : list) {
-    if (!one.is_number() || !(std::abs(one.get<double>()) <= kLargest)) throw Error(what, where, "write numbers up to 1e9");
+    if (!one.is_number() || !(std::abs(one.get<double>()) <= kLargest))
+      throw Error(what, where, "write numbers up to 1e9");
     read.push_back(one.get<double>());
   }
   return read;
@@ -33,7 +35,8 @@ std::vector<double> numbers(const Json& value, size_t count, const char* key, co
 
 glm::dquat unit(const glm::dquat& q, const std::string& where) {
   const double length = glm::length(q);
-  if (!(length > 1e-9) || !std::isfinite(length)) throw Error("the rotation is not a quaternion that can be made unit", where, "give w, x, y, z, not all zero");
+  if (!(length > 1e-9) || !std::isfinite(length))
+    throw Error("the rotation is not a quaternion that can be made unit", where, "give w, x, y, z, not all zero");
   // What was written as unit is kept to the bit.
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }
@@ -48,7 +51,8 @@ glm::dquat rotation_of(const Json& value, const std::string& where) {
     const double degrees = numbers(value["degrees"], 1, "degrees", where)[0];
     const glm::dvec3 direction(axis[0], axis[1], axis[2]);
     const double length = glm::length(direction);
-    if (!(length > 1e-9) || !std::isfinite(length)) throw Error("the axis has no direction", where, "give three numbers, not all zero");
+    if (!(length > 1e-9) || !std::isfinite(length))
+      throw Error("the axis has no direction", where, "give three numbers, not all zero");
     return glm::angleAxis(degrees * std::numbers::pi / 180, direction / length);
   }
   throw Error("the bone has no rotation", where, "write {\"rotation_wxyz\": [4]} or {\"axis\": [3], \"degrees\": d}");

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/base/file.h"
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 

@@ -6,13 +6,16 @@
 namespace limber {
 
 std::string unique_pose_name(const PoseLibrary& library, const std::string& wanted) {
-  const auto taken = [&](const std::string& name) { return std::any_of(library.begin(), library.end(), [&](const auto& pose) { return pose->name == name; }); };
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(library.begin(), library.end(), [&](const auto& pose) { return pose->name == name; });
+  };
   std::string name = wanted;
   for (int number = 2; taken(name); ++number) name = wanted + " " + std::to_string(number);
   return name;
 }
 
-NamedPose named_pose(const PoseLibrary& library, const std::string& wanted, const Armature& armature, const Pose& pose, const std::vector<int>& bones) {
+NamedPose named_pose(const PoseLibrary& library, const std::string& wanted, const Armature& armature, const Pose& pose,
+                     const std::vector<int>& bones) {
   NamedPose named{.name = unique_pose_name(library, wanted)};
   for (const int bone : bones) {
     named.rotation[armature.bones[bone].name] = pose.rotation[bone];

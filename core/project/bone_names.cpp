@@ -112,7 +112,8 @@ void follow_names(Document& document, const Armature& before, const Armature& af
     return next;
   };
   if (document.locks) take(document.locks, WeightLocks{follow(document.locks->bones)});
-  if (document.anchors) take(document.anchors, Anchors{follow(document.anchors->pins), names.follow(document.anchors->poles)});
+  if (document.anchors)
+    take(document.anchors, Anchors{follow(document.anchors->pins), names.follow(document.anchors->poles)});
   if (!document.bone_map) return;
   BoneMap map;
   for (const auto& [label, bone] : *document.bone_map)

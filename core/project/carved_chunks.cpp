@@ -23,8 +23,8 @@ namespace {
 constexpr unsigned char kTableLeaf = 0x0d, kIndexLeaf = 0x0a, kIndexInterior = 0x02;
 constexpr std::int64_t kHashType = 12 + 2 * 32;  // the serial type of a blob of 32 bytes
 constexpr std::uint32_t kMostPayload = (16u << 20) + (1u << 20);
-constexpr std::int64_t kBatch = 32;  // chunks unpacked together
-constexpr std::size_t kLeastCell = 38;  // bytes of a row of the table of chunks
+constexpr std::int64_t kBatch = 32;       // chunks unpacked together
+constexpr std::size_t kLeastCell = 38;    // bytes of a row of the table of chunks
 constexpr std::int64_t kMostReading = 4;  // times the file: honest rows, of now and from before, share nothing
 constexpr std::array<std::string_view, 5> kStates = {"root", "mark", "editor", "thumbnail", "program"};
 
@@ -71,7 +71,8 @@ std::optional<TwoColumns> two_columns(std::string_view record) {
 }  // namespace
 
 CarvedChunks::CarvedChunks(const Path& path, Progress& progress)
-    : where_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    : where_(path.string()),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (descriptor_ < 0) throw Error("the project cannot be opened", where_, std::strerror(errno));
   try {
     size_ = ::lseek(descriptor_, 0, SEEK_END);
@@ -144,21 +145,24 @@ void CarvedChunks::scan_index_page(const std::string& page) {
     if (!columns) continue;
     const std::int64_t name = TwoColumns::blob_bytes(columns->first_type),
                        value = TwoColumns::blob_bytes(columns->second_type);
-    if (name < 1 || name > 32 || value < 0 || static_cast<std::int64_t>(columns->header) + name + value != *size) continue;
+    if (name < 1 || name > 32 || value < 0 || static_cast<std::int64_t>(columns->header) + name + value != *size)
+      continue;
     if (!may_read(static_cast<std::uint32_t>(*size))) return;
     const auto record = payload(page.substr(at, local), static_cast<std::uint32_t>(*size),
                                 overflows ? big_endian(page.data() + at + local, 4) : 0);
     if (!record) continue;
     const auto behind_name = columns->header + static_cast<std::size_t>(name);
     const std::string key = record->substr(columns->header, static_cast<std::size_t>(name));
-    if (std::find(kStates.begin(), kStates.end(), key) != kStates.end()) states_.emplace(key, record->substr(behind_name));
+    if (std::find(kStates.begin(), kStates.end(), key) != kStates.end())
+      states_.emplace(key, record->substr(behind_name));
   }
 }
 
 bool CarvedChunks::may_read(std::uint32_t bytes) { return (bytes_left_ -= bytes) >= 0; }
 
 // The local bytes and those of the overflow pages; nothing where the chain ends early.
-std::optional<std::string> CarvedChunks::payload(const std::string& local, std::uint32_t size, std::uint32_t next) const {
+std::optional<std::string> CarvedChunks::payload(const std::string& local, std::uint32_t size,
+                                                 std::uint32_t next) const {
   std::string bytes = local;
   std::string page(static_cast<std::size_t>(page_bytes_), '\0');
   while (bytes.size() < size) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Chunks of a damaged project file, found without its database's structure: every page is looked at by itself, what looks
-// like a row of the table of chunks is followed through its overflow pages, and only bytes that have their name's hash are
-// believed. So lost pages cost the chunks that lay in them, and no others. The file is only read.
+// Chunks of a damaged project file, found without its database's structure: every page is looked at by itself, what
+// looks like a row of the table of chunks is followed through its overflow pages, and only bytes that have their name's
+// hash are believed. So lost pages cost the chunks that lay in them, and no others. The file is only read.
 //
 // The format is SQLite's, "Database File Format", sections 1.5 and 1.6 (sqlite.org/fileformat2.html).
 #pragma once
@@ -40,8 +40,8 @@ class CarvedChunks final : public ChunkSource {
   std::optional<std::string> state(const std::string& name) const;
 
  private:
-  struct Cell {  // a row of the table of chunks
-    std::int64_t rowid, offset;  // of its payload in the file
+  struct Cell {                    // a row of the table of chunks
+    std::int64_t rowid, offset;    // of its payload in the file
     std::uint32_t payload, local;  // bytes in all, and in the page itself
   };
   void scan(Progress& progress);

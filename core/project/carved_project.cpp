@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/base/bytes.h"
+#include "core/base/error.h"
 #include "core/project/document_layout.h"
 
 namespace limber {
@@ -88,7 +88,10 @@ struct Root {
 class WithRoot final : public ChunkSource {
  public:
   WithRoot(ChunkSource& chunks, const Root& root)
-      : chunks_(chunks), chunk_(root.chunk()), hash_(hash_of(chunk_)), packed_(pack(chunk_, Packing::Quick)) {}
+      : chunks_(chunks),
+        chunk_(root.chunk()),
+        hash_(hash_of(chunk_)),
+        packed_(pack(chunk_, Packing::Quick)) {}
   const ChunkHash& root() const { return hash_; }
   std::optional<std::string> find(const ChunkHash& hash) override {
     return hash == hash_ ? std::optional(packed_) : chunks_.find(hash);
@@ -104,45 +107,31 @@ class WithRoot final : public ChunkSource {
 // Whether the document has the part that the root names.
 bool has(const Document& document, PartKind kind) {
   switch (kind) {
-    case PartKind::Volume:
-      return document.volume != nullptr;
-    case PartKind::Tissues:
-      return document.tissues != nullptr;
-    case PartKind::VolumeType:
-      return document.volume_type != nullptr;
-    case PartKind::Armature:
-      return document.armature != nullptr;
-    case PartKind::Weights:
-      return document.weights != nullptr;
-    case PartKind::Pose:
-      return document.pose != nullptr;
-    case PartKind::Visibility:
-      return document.visibility != nullptr;
-    case PartKind::Result:
-      return !document.results.empty();
-    case PartKind::Clip:
-      return !document.clips.empty();
-    case PartKind::NamedPose:
-      return !document.poses.empty();
-    case PartKind::Anchors:
-      return document.anchors != nullptr;
-    case PartKind::WeightLocks:
-      return document.locks != nullptr;
-    case PartKind::WeightLayers:
-      return document.layers != nullptr;
-    case PartKind::Seams:
-      return document.seams != nullptr;
-    case PartKind::BoneMap:
-      return document.bone_map != nullptr;
-    default:
-      return false;
+    case PartKind::Volume: return document.volume != nullptr;
+    case PartKind::Tissues: return document.tissues != nullptr;
+    case PartKind::VolumeType: return document.volume_type != nullptr;
+    case PartKind::Armature: return document.armature != nullptr;
+    case PartKind::Weights: return document.weights != nullptr;
+    case PartKind::Pose: return document.pose != nullptr;
+    case PartKind::Visibility: return document.visibility != nullptr;
+    case PartKind::Result: return !document.results.empty();
+    case PartKind::Clip: return !document.clips.empty();
+    case PartKind::NamedPose: return !document.poses.empty();
+    case PartKind::Anchors: return document.anchors != nullptr;
+    case PartKind::WeightLocks: return document.locks != nullptr;
+    case PartKind::WeightLayers: return document.layers != nullptr;
+    case PartKind::Seams: return document.seams != nullptr;
+    case PartKind::BoneMap: return document.bone_map != nullptr;
+    default: return false;
   }
 }
 
 class Assembly {
  public:
   Assembly(CarvedChunks& chunks, const std::string& where, Progress& progress)
-      : chunks_(chunks), where_(where), progress_(progress) {
+      : chunks_(chunks),
+        where_(where),
+        progress_(progress) {
     find_nodes();
   }
 

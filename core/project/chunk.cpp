@@ -7,8 +7,8 @@
 
 #include <zstd.h>
 
-#include "core/base/file.h"
 #include "core/base/bytes.h"
+#include "core/base/file.h"
 
 namespace limber {
 

@@ -2,8 +2,8 @@
 // What projects and journals are made of: chunks of bytes, named by their SHA-256 and kept packed (zstd). What did not
 // change has the name it had, and is not written again; what is read must have its name's hash, or it is damaged.
 //
-// A chunk is a leaf (plain bytes) or a node: it names other chunks and carries bytes of its own. A chunk is put only after
-// all that it names, so whoever has a node has everything below it.
+// A chunk is a leaf (plain bytes) or a node: it names other chunks and carries bytes of its own. A chunk is put only
+// after all that it names, so whoever has a node has everything below it.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ using ChunkSet = std::unordered_set<ChunkHash, ChunkHash::Hasher>;
 
 ChunkHash hash_of(std::string_view chunk);
 
-constexpr std::size_t kLargestChunk = std::size_t{16} << 20;  // bytes, unpacked: what a reader may have to allocate at once
+constexpr std::size_t kLargestChunk = std::size_t{16}
+                                      << 20;  // bytes, unpacked: what a reader may have to allocate at once
 
 class ChunkSink {
  public:

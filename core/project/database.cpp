@@ -70,8 +70,7 @@ void Database::fail(int code) const {
   if (const auto& refusal = vfs_.refusal(); !refusal.what.empty())
     throw Error(refusal.what, refusal.where, refusal.what_to_do);
   switch (code & 0xff) {
-    case SQLITE_NOMEM:
-      throw std::bad_alloc();
+    case SQLITE_NOMEM: throw std::bad_alloc();
     case SQLITE_FULL:
       throw Error("the project cannot be written: the disk is full", where_, "free some space, or save elsewhere");
     case SQLITE_BUSY:
@@ -82,11 +81,11 @@ void Database::fail(int code) const {
       throw Error("the project cannot be written: it or its folder is read-only", where_, "save elsewhere");
     case SQLITE_CANTOPEN:
       throw Error("the project cannot be opened", where_, "check that it and its folder may be read and written");
-    case SQLITE_NOTADB:
-      throw Error("this is not a Limber project", where_, "name a .limber file");
+    case SQLITE_NOTADB: throw Error("this is not a Limber project", where_, "name a .limber file");
     case SQLITE_CORRUPT:
     case SQLITE_TOOBIG:
-      throw Error("the project is damaged", where_, "open an earlier copy, or keep what is whole: limber project " + where_ + " recover -o OUT.limber");
+      throw Error("the project is damaged", where_,
+                  "open an earlier copy, or keep what is whole: limber project " + where_ + " recover -o OUT.limber");
     case SQLITE_IOERR: {
       const bool reading = code == SQLITE_IOERR_READ || code == SQLITE_IOERR_SHORT_READ || code == SQLITE_IOERR_FSTAT;
       throw Error(reading ? "the project cannot be read" : "the project cannot be written", where_,
@@ -101,7 +100,8 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
   if (mode != Mode::Create) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) throw Error("the project does not exist", where_, "check the name");
-    if (!std::filesystem::is_regular_file(path, error)) throw Error("this is not a file", where_, "name a .limber file");
+    if (!std::filesystem::is_regular_file(path, error))
+      throw Error("this is not a file", where_, "name a .limber file");
   }
   // A reader may have to undo a transaction that was cut off, so it too asks to write; SQLite falls back by itself.
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | (mode == Mode::Create ? SQLITE_OPEN_CREATE : 0);

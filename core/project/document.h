@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the user works on, as a value: shared immutable parts. An operator copies the document (a few pointers), replaces
-// the parts it changes, and commits the copy to the History; nobody writes an undo. Equal pointers mean unchanged parts:
-// that tells what to upload, to save and what has become stale.
+// What the user works on, as a value: shared immutable parts. An operator copies the document (a few pointers),
+// replaces the parts it changes, and commits the copy to the History; nobody writes an undo. Equal pointers mean
+// unchanged parts: that tells what to upload, to save and what has become stale.
 #pragma once
 
 #include <map>
@@ -12,17 +12,17 @@
 #include <glm/glm.hpp>
 
 #include "core/bones/bone_identity.h"
-#include "core/pose/anchors.h"
-#include "core/pose/clip.h"
-#include "core/pose/pose.h"
+#include "core/motion/clip.h"
+#include "core/pose/ik_constraints.h"
 #include "core/pose/pose_library.h"
 #include "core/rig/armature.h"
+#include "core/rig/pose.h"
 #include "core/skin/skin_weights.h"
 #include "core/skin/weight_locks.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/seams.h"
-#include "core/volume/tissue_table.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
@@ -80,8 +80,8 @@ struct Result {
   std::shared_ptr<const Armature> from_armature;
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
-  std::shared_ptr<const SolvedMesh> solved;  // by finite elements, where anything bends; else null
-  std::shared_ptr<const Overlap> overlap;    // null where it was not kept
+  std::shared_ptr<const SolvedMesh> solved;      // by finite elements, where anything bends; else null
+  std::shared_ptr<const Overlap> overlap;        // null where it was not kept
   std::shared_ptr<const Seams> from_seams;       // as the document's
   std::shared_ptr<const BoneMap> from_bone_map;  // as the document's
 };
@@ -103,8 +103,9 @@ struct Document {
   std::shared_ptr<const Anchors> anchors;
   std::shared_ptr<const WeightLocks> locks;
   std::shared_ptr<const WeightLayers> layers;  // `weights` are what comes out of them; null: the weights have no layers
-  std::shared_ptr<const Seams> seams;          // as the user left them, none where they are empty; null: those that are found by themselves
-  std::shared_ptr<const BoneMap> bone_map;     // which rig bones labels follow where the user says so; null: nowhere
+  std::shared_ptr<const Seams>
+      seams;  // as the user left them, none where they are empty; null: those that are found by themselves
+  std::shared_ptr<const BoneMap> bone_map;  // which rig bones labels follow where the user says so; null: nowhere
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -10,44 +10,140 @@
 
 namespace limber {
 
-// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's reference,
-// 5 no locks of weights, 6 no layers of weights, 7 no overlap with a result, 8 neither seams nor a bone map.
+// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's
+// reference, 5 no locks of weights, 6 no layers of weights, 7 no overlap with a result, 8 neither seams nor a bone map.
 constexpr std::uint32_t kDocumentLayout = 9;
 
 // A part's first byte.
-enum class PartKind : std::uint8_t { Volume = 1, Tissues, VolumeType, Armature, Weights, Pose, Motion, Visibility, Result, Clip, NamedPose, Anchors, WeightLocks, WeightLayer, WeightLayers, SolvedMesh, Overlap, Seams, BoneMap };
+enum class PartKind : std::uint8_t {
+  Volume = 1,
+  Tissues,
+  VolumeType,
+  Armature,
+  Weights,
+  Pose,
+  Motion,
+  Visibility,
+  Result,
+  Clip,
+  NamedPose,
+  Anchors,
+  WeightLocks,
+  WeightLayer,
+  WeightLayers,
+  SolvedMesh,
+  Overlap,
+  Seams,
+  BoneMap
+};
 
 template <class T>
 struct PartKindOf;
-// clang-format off
-template <> struct PartKindOf<LabelVolume> { static constexpr PartKind kKind = PartKind::Volume;     static constexpr const char* kName = "volume"; };
-template <> struct PartKindOf<TissueTable> { static constexpr PartKind kKind = PartKind::Tissues;    static constexpr const char* kName = "tissues"; };
-template <> struct PartKindOf<FileType>    { static constexpr PartKind kKind = PartKind::VolumeType; static constexpr const char* kName = "volume's file type"; };
-template <> struct PartKindOf<Armature>    { static constexpr PartKind kKind = PartKind::Armature;   static constexpr const char* kName = "rig"; };
-template <> struct PartKindOf<SkinWeights> { static constexpr PartKind kKind = PartKind::Weights;    static constexpr const char* kName = "weights"; };
-template <> struct PartKindOf<Pose>        { static constexpr PartKind kKind = PartKind::Pose;       static constexpr const char* kName = "pose"; };
-template <> struct PartKindOf<Motion>      { static constexpr PartKind kKind = PartKind::Motion;     static constexpr const char* kName = "motion"; };
-template <> struct PartKindOf<Visibility>  { static constexpr PartKind kKind = PartKind::Visibility; static constexpr const char* kName = "visibility"; };
-template <> struct PartKindOf<Result>      { static constexpr PartKind kKind = PartKind::Result;     static constexpr const char* kName = "result"; };
-template <> struct PartKindOf<Clip>        { static constexpr PartKind kKind = PartKind::Clip;       static constexpr const char* kName = "clip"; };
-template <> struct PartKindOf<NamedPose>   { static constexpr PartKind kKind = PartKind::NamedPose;  static constexpr const char* kName = "pose of the library"; };
-template <> struct PartKindOf<Anchors>     { static constexpr PartKind kKind = PartKind::Anchors;    static constexpr const char* kName = "pins and poles"; };
-template <> struct PartKindOf<WeightLocks> { static constexpr PartKind kKind = PartKind::WeightLocks; static constexpr const char* kName = "locks of weights"; };
-template <> struct PartKindOf<WeightLayer> { static constexpr PartKind kKind = PartKind::WeightLayer; static constexpr const char* kName = "layer of weights"; };
-template <> struct PartKindOf<WeightLayers> { static constexpr PartKind kKind = PartKind::WeightLayers; static constexpr const char* kName = "layers of weights"; };
-template <> struct PartKindOf<SolvedMesh>  { static constexpr PartKind kKind = PartKind::SolvedMesh; static constexpr const char* kName = "mesh of a result"; };
-template <> struct PartKindOf<Overlap>     { static constexpr PartKind kKind = PartKind::Overlap;    static constexpr const char* kName = "overlap of a result"; };
-template <> struct PartKindOf<Seams>       { static constexpr PartKind kKind = PartKind::Seams;      static constexpr const char* kName = "seams"; };
-template <> struct PartKindOf<BoneMap>     { static constexpr PartKind kKind = PartKind::BoneMap;    static constexpr const char* kName = "bone map"; };
-// clang-format on
+template <>
+struct PartKindOf<LabelVolume> {
+  static constexpr PartKind kKind = PartKind::Volume;
+  static constexpr const char* kName = "volume";
+};
+template <>
+struct PartKindOf<TissueTable> {
+  static constexpr PartKind kKind = PartKind::Tissues;
+  static constexpr const char* kName = "tissues";
+};
+template <>
+struct PartKindOf<FileType> {
+  static constexpr PartKind kKind = PartKind::VolumeType;
+  static constexpr const char* kName = "volume's file type";
+};
+template <>
+struct PartKindOf<Armature> {
+  static constexpr PartKind kKind = PartKind::Armature;
+  static constexpr const char* kName = "rig";
+};
+template <>
+struct PartKindOf<SkinWeights> {
+  static constexpr PartKind kKind = PartKind::Weights;
+  static constexpr const char* kName = "weights";
+};
+template <>
+struct PartKindOf<Pose> {
+  static constexpr PartKind kKind = PartKind::Pose;
+  static constexpr const char* kName = "pose";
+};
+template <>
+struct PartKindOf<Motion> {
+  static constexpr PartKind kKind = PartKind::Motion;
+  static constexpr const char* kName = "motion";
+};
+template <>
+struct PartKindOf<Visibility> {
+  static constexpr PartKind kKind = PartKind::Visibility;
+  static constexpr const char* kName = "visibility";
+};
+template <>
+struct PartKindOf<Result> {
+  static constexpr PartKind kKind = PartKind::Result;
+  static constexpr const char* kName = "result";
+};
+template <>
+struct PartKindOf<Clip> {
+  static constexpr PartKind kKind = PartKind::Clip;
+  static constexpr const char* kName = "clip";
+};
+template <>
+struct PartKindOf<NamedPose> {
+  static constexpr PartKind kKind = PartKind::NamedPose;
+  static constexpr const char* kName = "pose of the library";
+};
+template <>
+struct PartKindOf<Anchors> {
+  static constexpr PartKind kKind = PartKind::Anchors;
+  static constexpr const char* kName = "pins and poles";
+};
+template <>
+struct PartKindOf<WeightLocks> {
+  static constexpr PartKind kKind = PartKind::WeightLocks;
+  static constexpr const char* kName = "locks of weights";
+};
+template <>
+struct PartKindOf<WeightLayer> {
+  static constexpr PartKind kKind = PartKind::WeightLayer;
+  static constexpr const char* kName = "layer of weights";
+};
+template <>
+struct PartKindOf<WeightLayers> {
+  static constexpr PartKind kKind = PartKind::WeightLayers;
+  static constexpr const char* kName = "layers of weights";
+};
+template <>
+struct PartKindOf<SolvedMesh> {
+  static constexpr PartKind kKind = PartKind::SolvedMesh;
+  static constexpr const char* kName = "mesh of a result";
+};
+template <>
+struct PartKindOf<Overlap> {
+  static constexpr PartKind kKind = PartKind::Overlap;
+  static constexpr const char* kName = "overlap of a result";
+};
+template <>
+struct PartKindOf<Seams> {
+  static constexpr PartKind kKind = PartKind::Seams;
+  static constexpr const char* kName = "seams";
+};
+template <>
+struct PartKindOf<BoneMap> {
+  static constexpr PartKind kKind = PartKind::BoneMap;
+  static constexpr const char* kName = "bone map";
+};
 
 // The reference, and above it what source and rig rest in.
 inline std::uint8_t packed_reference(const Clip& clip) {
-  return static_cast<std::uint8_t>(static_cast<int>(clip.retarget.reference) | static_cast<int>(clip.map.stances.source) << 2 | static_cast<int>(clip.map.stances.rig) << 4);
+  return static_cast<std::uint8_t>(static_cast<int>(clip.retarget.reference) |
+                                   static_cast<int>(clip.map.stances.source) << 2 |
+                                   static_cast<int>(clip.map.stances.rig) << 4);
 }
 
-constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // voxels and long texts
-constexpr std::int64_t kGroupBricks = 32;                   // of weights in one leaf: 256 KB at most
+constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;   // voxels and long texts
+constexpr std::int64_t kGroupBricks = 32;                    // of weights in one leaf: 256 KB at most
 constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // a part's bytes that its node holds itself
 
 }  // namespace limber

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/base/bytes.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -75,9 +75,11 @@ void get(ByteReader& in, Armature& armature) {
     bone.tail = get_vector(in);
     bone.roll = in.get<double>();
     JointLimits& limits = bone.limits;
-    limits.type = static_cast<JointLimits::Type>(in.get_below<std::uint8_t>(static_cast<int>(JointLimits::Type::Ball) + 1));
+    limits.type =
+        static_cast<JointLimits::Type>(in.get_below<std::uint8_t>(static_cast<int>(JointLimits::Type::Ball) + 1));
     limits.axis = get_vector(in);
-    for (double* value : {&limits.minimum, &limits.maximum, &limits.cone, &limits.twist_minimum, &limits.twist_maximum}) *value = in.get<double>();
+    for (double* value : {&limits.minimum, &limits.maximum, &limits.cone, &limits.twist_minimum, &limits.twist_maximum})
+      *value = in.get<double>();
   }
 }
 
@@ -201,8 +203,10 @@ void get(ByteReader& in, Clip& clip) {
   clip.name = in.text();
   clip.rate = in.get<double>();
   in.require(std::isfinite(clip.rate) && clip.rate > 0);
-  for (int* number : {&clip.start, &clip.first, &clip.last, &clip.range_start, &clip.range_end}) *number = get_frame(in);
-  in.require(clip.first >= 0 && clip.first <= clip.last && (!clip.motion || clip.last < std::max(1, clip.motion->frame_count)));
+  for (int* number : {&clip.start, &clip.first, &clip.last, &clip.range_start, &clip.range_end})
+    *number = get_frame(in);
+  in.require(clip.first >= 0 && clip.first <= clip.last &&
+             (!clip.motion || clip.last < std::max(1, clip.motion->frame_count)));
   get(in, clip.map);
   clip.retarget.travel = static_cast<Travel>(in.get_below<std::uint8_t>(static_cast<int>(Travel::Free) + 1));
   clip.retarget.mirror = in.flag();
@@ -247,18 +251,25 @@ bool fits(const SkinWeights& weights, const LabelVolume& volume) {
 
 bool are_of_one_body(const SkinWeights& a, const SkinWeights& b) {
   bool same = a.bones() == b.bones() && a.chunk_count() == b.chunk_count();
-  for (std::int64_t brick = 0; same && brick < a.chunk_count(); ++brick) same = a.chunk(brick).size() == b.chunk(brick).size();
+  for (std::int64_t brick = 0; same && brick < a.chunk_count(); ++brick)
+    same = a.chunk(brick).size() == b.chunk(brick).size();
   return same;
 }
 bool are_of_one_body(const WeightLayers& layers, const SkinWeights& weights) {
   return are_of_one_body(*layers.base, weights) &&
-         std::all_of(layers.layers.begin(), layers.layers.end(), [&](const auto& layer) { return are_of_one_body(layer->weights, weights); });
+         std::all_of(layers.layers.begin(), layers.layers.end(),
+                     [&](const auto& layer) { return are_of_one_body(layer->weights, weights); });
 }
 
 class Reading {
  public:
-  Reading(ChunkSource& source, const std::string& where, std::vector<std::string>& warnings, const ReadLimits& limits, Progress& progress)
-      : source_(source), where_(where), warnings_(warnings), limits_(limits), progress_(progress),
+  Reading(ChunkSource& source, const std::string& where, std::vector<std::string>& warnings, const ReadLimits& limits,
+          Progress& progress)
+      : source_(source),
+        where_(where),
+        warnings_(warnings),
+        limits_(limits),
+        progress_(progress),
         bytes_left_(limits.most_bytes > 0 ? limits.most_bytes : available_memory() / 10 * 9) {}
 
   Document document(const ChunkHash& root) {
@@ -361,10 +372,8 @@ class Reading {
         }
       });
       for (std::int64_t i = 0; i < batch; ++i) {
-        if (whole[i])
-          take(begin + i, bytes[i]);
-        else
-          lost(begin + i);
+        if (whole[i]) take(begin + i, bytes[i]);
+        else lost(begin + i);
       }
     }
   }
@@ -436,7 +445,8 @@ class Reading {
     grid.origin = get_vector(in);
     for (int i = 0; i < 3; ++i) grid.direction[i] = get_vector(in);
     in.end();
-    in.require(is_finite(grid.spacing) && is_finite(grid.origin) && glm::all(glm::greaterThan(grid.spacing, glm::dvec3(0))));
+    in.require(is_finite(grid.spacing) && is_finite(grid.origin) &&
+               glm::all(glm::greaterThan(grid.spacing, glm::dvec3(0))));
     for (int i = 0; i < 3; ++i) in.require(is_finite(grid.direction[i]));
 
     const std::int64_t bytes = checked_voxel_bytes(grid, in);
@@ -535,7 +545,8 @@ class Reading {
     }
   }
 
-  std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_group(const std::string& leaf, const std::vector<std::uint16_t>& counts,
+  std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_group(const std::string& leaf,
+                                                                    const std::vector<std::uint16_t>& counts,
                                                                     const ByteReader& in) {
     std::size_t count = 0;
     for (std::uint16_t one : counts) count += one;
@@ -573,7 +584,8 @@ class Reading {
     layer.weights = *read<SkinWeights>(node.nodes[0]);
     const std::int64_t bricks = layer.weights.chunk_count();
     const std::string covers = chunk(node.leaves[0], "layer of weights");
-    in.require(std::ssize(covers) == bricks && std::ssize(node.leaves) - 1 == (bricks + kGroupBricks - 1) / kGroupBricks);
+    in.require(std::ssize(covers) == bricks &&
+               std::ssize(node.leaves) - 1 == (bricks + kGroupBricks - 1) / kGroupBricks);
     layer.mask.resize(bricks);
     for_leaves(node.leaves, 1, "layer of weights", [&](std::int64_t group, const std::string& leaf) {
       take_memory(std::ssize(leaf), "layers of weights");
@@ -626,7 +638,8 @@ class Reading {
     in.require(next == node.nodes.size());
     in.end();
     if (result.overlap)
-      for (const auto* voxels : {&result.overlap->tissue, &result.overlap->bones}) in.require(voxels->empty() || (result.volume && voxels->back() < std::ssize(result.volume->voxels)));
+      for (const auto* voxels : {&result.overlap->tissue, &result.overlap->bones})
+        in.require(voxels->empty() || (result.volume && voxels->back() < std::ssize(result.volume->voxels)));
     return result;
   }
 
@@ -707,8 +720,8 @@ class Reading {
 
 }  // namespace
 
-Document read_document(const ChunkHash& root, ChunkSource& source, const std::string& where, std::vector<std::string>& warnings,
-                       const ReadLimits& limits, Progress& progress) {
+Document read_document(const ChunkHash& root, ChunkSource& source, const std::string& where,
+                       std::vector<std::string>& warnings, const ReadLimits& limits, Progress& progress) {
   return Reading(source, where, warnings, limits, progress).document(root);
 }
 

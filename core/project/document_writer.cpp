@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 
-#include "core/base/parallel.h"
 #include "core/base/bytes.h"
+#include "core/base/parallel.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -53,7 +53,8 @@ void put(ByteWriter& out, const Armature& armature) {
     const JointLimits& limits = bone.limits;
     out.put(static_cast<std::uint8_t>(limits.type));
     put(out, limits.axis);
-    for (double value : {limits.minimum, limits.maximum, limits.cone, limits.twist_minimum, limits.twist_maximum}) out.put(value);
+    for (double value : {limits.minimum, limits.maximum, limits.cone, limits.twist_minimum, limits.twist_maximum})
+      out.put(value);
   }
 }
 
@@ -185,7 +186,10 @@ std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
 class DocumentWriter::Writing {
  public:
   Writing(DocumentWriter& memory, ChunkSink& sink, Packing packing, Progress& progress)
-      : memory_(memory), sink_(sink), packing_(packing), progress_(progress) {}
+      : memory_(memory),
+        sink_(sink),
+        packing_(packing),
+        progress_(progress) {}
 
   ChunkHash document(const Document& document) {
     Node root;
@@ -229,7 +233,8 @@ class DocumentWriter::Writing {
   template <class T>
   ChunkHash write(const std::shared_ptr<const T>& part) {
     const auto known = memory_.parts_.find(part.get());
-    if (known != memory_.parts_.end() && !known->second.part.expired() && sink_.has(known->second.hash)) return known->second.hash;
+    if (known != memory_.parts_.end() && !known->second.part.expired() && sink_.has(known->second.hash))
+      return known->second.hash;
     Node node;
     ByteWriter out;
     out.put(static_cast<std::uint8_t>(PartKindOf<T>::kKind));
@@ -268,15 +273,19 @@ class DocumentWriter::Writing {
     put(out, weights.bones());
     const std::int64_t bricks = weights.chunk_count(), groups = (bricks + kGroupBricks - 1) / kGroupBricks;
     std::vector<std::uint16_t> lengths(bricks);
-    for (std::int64_t brick = 0; brick < bricks; ++brick) lengths[brick] = static_cast<std::uint16_t>(weights.chunk(brick).size());
+    for (std::int64_t brick = 0; brick < bricks; ++brick)
+      lengths[brick] = static_cast<std::uint16_t>(weights.chunk(brick).size());
     // As a leaf: they stay while weights change.
-    node.leaves.push_back(put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
+    node.leaves.push_back(
+        put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
 
     std::vector<ChunkHash> hashes(groups);
     std::vector<std::int64_t> changed;
     for (std::int64_t group = 0; group < groups; ++group) {
-      const auto known = std::find_if(memory_.last_weights_.begin(), memory_.last_weights_.end(),
-                                      [&](const auto& last) { return same_bricks(last.second, weights, group) && sink_.has(last.second.groups[group]); });
+      const auto known =
+          std::find_if(memory_.last_weights_.begin(), memory_.last_weights_.end(), [&](const auto& last) {
+            return same_bricks(last.second, weights, group) && sink_.has(last.second.groups[group]);
+          });
       if (known == memory_.last_weights_.end()) changed.push_back(group);
       else hashes[group] = known->second.groups[group];
     }
@@ -311,7 +320,8 @@ class DocumentWriter::Writing {
     const auto leaves = put_all((bricks + kGroupBricks - 1) / kGroupBricks, [&](std::int64_t group) {
       std::string bytes;
       for (std::int64_t brick = group * kGroupBricks; brick < std::min(bricks, (group + 1) * kGroupBricks); ++brick)
-        if (const auto& mask = layer.mask[brick]) bytes.append(reinterpret_cast<const char*>(mask->data()), mask->size() * sizeof(std::uint16_t));
+        if (const auto& mask = layer.mask[brick])
+          bytes.append(reinterpret_cast<const char*>(mask->data()), mask->size() * sizeof(std::uint16_t));
       return bytes;
     });
     node.leaves.insert(node.leaves.end(), leaves.begin(), leaves.end());
@@ -378,7 +388,8 @@ class DocumentWriter::Writing {
     if (clip.motion) node.nodes.push_back(write(clip.motion));
     out.text(clip.name);
     out.put(clip.rate);
-    for (int number : {clip.start, clip.first, clip.last, clip.range_start, clip.range_end}) out.put(static_cast<std::int32_t>(number));
+    for (int number : {clip.start, clip.first, clip.last, clip.range_start, clip.range_end})
+      out.put(static_cast<std::int32_t>(number));
     put(out, clip.map);
     out.put(static_cast<std::uint8_t>(clip.retarget.travel));
     out.flag(clip.retarget.mirror);
@@ -422,7 +433,8 @@ class DocumentWriter::Writing {
           if (missing[i]) bytes[i] = pack(bytes[i], packing_);
       });
       for (std::int64_t i = 0; i < batch; ++i)
-        if (missing[i] && !sink_.has(hashes[first + i])) sink_.put(hashes[first + i], bytes[i]);  // equal ones came once
+        if (missing[i] && !sink_.has(hashes[first + i]))
+          sink_.put(hashes[first + i], bytes[i]);  // equal ones came once
     }
     return hashes;
   }

@@ -16,7 +16,10 @@ namespace {
 constexpr std::int64_t kBlock = 32;
 
 template <class Vector>
-  requires requires(const Vector& values) { values.capacity(); values.data(); }
+requires requires(const Vector& values) {
+  values.capacity();
+  values.data();
+}
 std::int64_t heap_bytes(const Vector& values) {
   return values.capacity() == 0 ? 0 : static_cast<std::int64_t>(values.capacity() * sizeof(*values.data())) + kBlock;
 }
@@ -49,14 +52,17 @@ std::int64_t own_bytes(const Motion& motion) {
 }
 std::int64_t own_bytes(const NamedPose& pose) {
   std::int64_t bytes = heap_bytes(pose.name) + heap_bytes(pose.picture);
-  for (const auto& [bone, rotation] : pose.rotation) bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
+  for (const auto& [bone, rotation] : pose.rotation)
+    bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
   return bytes;
 }
-std::int64_t own_bytes(const Clip& clip) {  // without its motion, which is shared
+std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is shared
   constexpr std::int64_t kNode = kBlock + 48;  // of a map
   std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
-  for (const auto& [bone, source] : clip.map.sources) bytes += kNode + std::int64_t{sizeof source} + heap_bytes(bone) + heap_bytes(source.joint);
-  for (const auto& [bone, track] : clip.keys.bones) bytes += kNode + heap_bytes(bone) + (kNode + 16) * std::ssize(track);
+  for (const auto& [bone, source] : clip.map.sources)
+    bytes += kNode + std::int64_t{sizeof source} + heap_bytes(bone) + heap_bytes(source.joint);
+  for (const auto& [bone, track] : clip.keys.bones)
+    bytes += kNode + heap_bytes(bone) + (kNode + 16) * std::ssize(track);
   for (const Marker& marker : clip.markers) bytes += heap_bytes(marker.name);
   return bytes;
 }
@@ -64,7 +70,8 @@ std::int64_t own_bytes(const Anchors& anchors) {
   constexpr std::int64_t kNode = kBlock + 32;  // of a set or map
   std::int64_t bytes = 0;
   for (const std::string& bone : anchors.pins) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
-  for (const auto& [bone, place] : anchors.poles) bytes += kNode + std::int64_t{sizeof bone + sizeof place} + heap_bytes(bone);
+  for (const auto& [bone, place] : anchors.poles)
+    bytes += kNode + std::int64_t{sizeof bone + sizeof place} + heap_bytes(bone);
   return bytes;
 }
 std::int64_t own_bytes(const WeightLocks& locks) {
@@ -77,20 +84,26 @@ std::int64_t own_bytes(const Seams& seams) { return seams.heap_bytes() + 2 * kBl
 std::int64_t own_bytes(const BoneMap& map) {
   constexpr std::int64_t kNode = kBlock + 32;  // of a map
   std::int64_t bytes = 0;
-  for (const auto& [label, bone] : map) bytes += kNode + std::int64_t{sizeof label + sizeof bone} + heap_bytes(label) + heap_bytes(bone);
+  for (const auto& [label, bone] : map)
+    bytes += kNode + std::int64_t{sizeof label + sizeof bone} + heap_bytes(label) + heap_bytes(bone);
   return bytes;
 }
 std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
 // Without chunks and masks, which are shared.
-std::int64_t own_bytes(const WeightLayer& layer) { return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask); }
+std::int64_t own_bytes(const WeightLayer& layer) {
+  return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask);
+}
 std::int64_t own_bytes(const WeightLayers& layers) { return heap_bytes(layers.layers); }
 std::int64_t own_bytes(const Visibility& visibility) {
-  return static_cast<std::int64_t>(visibility.looks.size()) * (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
+  return static_cast<std::int64_t>(visibility.looks.size()) *
+         (kBlock + std::int64_t{sizeof(std::pair<Label, TissueLook>)} + 32);
 }
 std::int64_t own_bytes(const SolvedMesh& solved) {
   const FemMesh& mesh = solved.mesh;
   return heap_bytes(mesh.material) + heap_bytes(mesh.joint) + heap_bytes(mesh.tets.region) +
-         static_cast<std::int64_t>((mesh.tets.V.size() + solved.V.size()) * sizeof(double) + mesh.tets.T.size() * sizeof(int)) + 3 * kBlock;
+         static_cast<std::int64_t>((mesh.tets.V.size() + solved.V.size()) * sizeof(double) +
+                                   mesh.tets.T.size() * sizeof(int)) +
+         3 * kBlock;
 }
 std::int64_t own_bytes(const Overlap& overlap) { return heap_bytes(overlap.tissue) + heap_bytes(overlap.bones); }
 std::int64_t own_bytes(const Result& result) {
@@ -99,8 +112,8 @@ std::int64_t own_bytes(const Result& result) {
 
 }  // namespace
 
-// How often each part stands in the line. A part is entered by its address; what is inside of it (a weights' chunks, what
-// a result was made from) is visited when it comes for the first time and when it goes for good.
+// How often each part stands in the line. A part is entered by its address; what is inside of it (a weights' chunks,
+// what a result was made from) is visited when it comes for the first time and when it goes for good.
 class History::Ledger {
  public:
   void add(const Document& document) { visit(document, +1); }
@@ -167,7 +180,8 @@ class History::Ledger {
     visit(document.layers, step);
     count(document.seams, step);
     count(document.bone_map, step);
-    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) + heap_bytes(document.clips) + heap_bytes(document.poses));
+    bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) +
+                      heap_bytes(document.clips) + heap_bytes(document.poses));
   }
 
   std::unordered_map<const void*, std::int64_t> uses_;
@@ -252,7 +266,8 @@ void History::keep_within_limit() {
 
 std::string History::note() const {
   if (dropped_ == 0) return "";
-  const std::string steps = dropped_ == 1 ? "The oldest step was" : "The " + std::to_string(dropped_) + " oldest steps were";
+  const std::string steps =
+      dropped_ == 1 ? "The oldest step was" : "The " + std::to_string(dropped_) + " oldest steps were";
   return steps + " dropped to keep undo within " + std::to_string(limit_ >> 20) + " MB.";
 }
 

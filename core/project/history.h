@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Undo and redo: a line of documents, each with the label of the edit that made it. Documents share their parts, so a step
-// costs what it changed. Memory is bounded: when the distinct parts of the line (weights by brick, a volume once) take
-// more than the limit, the oldest states go, and note() says so. The limit counts the current document too, but leaves
-// at least half of itself to the others, so that a large volume does not take undo away.
+// Undo and redo: a line of documents, each with the label of the edit that made it. Documents share their parts, so a
+// step costs what it changed. Memory is bounded: when the distinct parts of the line (weights by brick, a volume once)
+// take more than the limit, the oldest states go, and note() says so. The limit counts the current document too, but
+// leaves at least half of itself to the others, so that a large volume does not take undo away.
 //
 // One thread owns a History.
 #pragma once
@@ -34,11 +34,11 @@ class History {
   const Document& current() const { return steps_[position_].document; }
   std::int64_t revision() const { return steps_[position_].revision; }
 
-  // Makes `next` current and forgets what could be redone. False, and nothing happens, when it equals the current document
-  // (the same parts).
+  // Makes `next` current and forgets what could be redone. False, and nothing happens, when it equals the current
+  // document (the same parts).
   bool commit(std::string label, Document next);
-  // In place of the current step, which becomes what it would have been at once: for many small steps of one deed. It is
-  // then the last step.
+  // In place of the current step, which becomes what it would have been at once: for many small steps of one deed. It
+  // is then the last step.
   void amend(std::string label, Document next);
   // Another project: one step that counts as saved.
   void reset(Document first, std::string label);

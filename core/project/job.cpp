@@ -30,7 +30,9 @@ constexpr double kFarewell = 1;          // seconds that ~Jobs waits
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 std::string out_of_memory(const std::string& label) {
-  return Error("there is not enough memory", label, "use a coarser spacing or a smaller volume, or close other programs").what();
+  return Error("there is not enough memory", label,
+               "use a coarser spacing or a smaller volume, or close other programs")
+      .what();
 }
 }  // namespace
 
@@ -49,7 +51,10 @@ struct Jobs::Board {
 };
 
 struct Jobs::Job final : Progress {
-  Job(std::shared_ptr<Board> the_board, int id, std::string label, Work the_work, Lane the_lane) : board(std::move(the_board)), lane(the_lane), work(std::move(the_work)) {
+  Job(std::shared_ptr<Board> the_board, int id, std::string label, Work the_work, Lane the_lane)
+      : board(std::move(the_board)),
+        lane(the_lane),
+        work(std::move(the_work)) {
     status.id = id;
     status.label = std::move(label);
   }
@@ -155,7 +160,9 @@ void Jobs::start_waiting() {
     running_beside(job) += job->status.state == JobState::Running ||
                            (job->status.state == JobState::Stopping && seconds_since(job->cancelled_at) < kPatience);
   for (const auto& job : jobs_) {
-    if (job->status.state != JobState::Queued || running_beside(job) >= (job->lane == Lane::Long ? kLongAtOnce : at_once_)) continue;
+    if (job->status.state != JobState::Queued ||
+        running_beside(job) >= (job->lane == Lane::Long ? kLongAtOnce : at_once_))
+      continue;
     job->started = job->stage_started = Clock::now();
     try {
       job->thread = std::jthread([job, board = board_] { work_on(job, board); });
@@ -163,7 +170,8 @@ void Jobs::start_waiting() {
       ++running_beside(job);
     } catch (const std::system_error&) {
       job->status.state = JobState::Failed;
-      job->status.message = Error("no thread can be started", job->status.label, "close other programs and try again").what();
+      job->status.message =
+          Error("no thread can be started", job->status.label, "close other programs and try again").what();
     }
     board_->changed = true;
   }
@@ -245,7 +253,8 @@ JobStatus Jobs::status(int id) const {
 
 bool Jobs::busy() const {
   const std::lock_guard lock(board_->mutex);
-  return board_->changed || std::any_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return job->status.active(); });
+  return board_->changed ||
+         std::any_of(jobs_.begin(), jobs_.end(), [](const auto& job) { return job->status.active(); });
 }
 
 void Jobs::dismiss(int id) {

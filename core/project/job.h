@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Long work beside a live editor. A job works on copies of its inputs in a thread of its own and returns an *edit*: what
-// it changes in the document of the moment when it is done, so that what the user did meanwhile is kept. Whatever goes
-// wrong in a job becomes its message: an Error, a lack of memory, any exception; a cancel is shown as such.
+// Long work beside a live editor. A job works on copies of its inputs in a thread of its own and returns an *edit*:
+// what it changes in the document of the moment when it is done, so that what the user did meanwhile is kept. Whatever
+// goes wrong in a job becomes its message: an Error, a lack of memory, any exception; a cancel is shown as such.
 //
-// A job that is cancelled ends at its next Progress::update. One that does not is shown as Stopping and no longer holds up
-// the queue; if it still hangs when Jobs goes, it is left to itself (it owns all that it uses).
+// A job that is cancelled ends at its next Progress::update. One that does not is shown as Stopping and no longer holds
+// up the queue; if it still hangs when Jobs goes, it is left to itself (it owns all that it uses).
 //
 // One thread owns Jobs: it alone calls the functions and applies the edits.
 #pragma once
@@ -46,7 +46,8 @@ struct JobStatus {
 class Jobs {
  public:
   // at_once   that many common ones run together, the others wait in order
-  // on_change called from any thread when a poll() is worth it, at most 20 times a second per job (as glfwPostEmptyEvent);
+  // on_change called from any thread when a poll() is worth it, at most 20 times a second per job (as
+  // glfwPostEmptyEvent);
   //           it must not call Jobs itself, and is never called after Jobs has gone
   explicit Jobs(int at_once = 2, std::function<void()> on_change = {});
   // Cancels all and waits for them, at most a second.
@@ -54,13 +55,13 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  void set_at_once(int count) { at_once_ = count; }  // for those that start from now on
+  void set_at_once(int count) { at_once_ = count; }                   // for those that start from now on
   int start(std::string label, Work work, Lane lane = Lane::Common);  // returns its id
   void cancel(int id);
   void cancel_all();
 
-  // Commits the edits of the jobs that are done, in the order they ended, and starts what waits. True when any job's state
-  // changed since the last call.
+  // Commits the edits of the jobs that are done, in the order they ended, and starts what waits. True when any job's
+  // state changed since the last call.
   bool poll(History& history);
 
   // Oldest first. Jobs that ended stay until dismissed.
@@ -70,8 +71,8 @@ class Jobs {
   void dismiss(int id);
   void dismiss_ended();
 
-  // Cancels all and waits that long; false when a job still hangs. A program then ends by std::_Exit, since what it hangs
-  // on must not be torn down under it.
+  // Cancels all and waits that long; false when a job still hangs. A program then ends by std::_Exit, since what it
+  // hangs on must not be torn down under it.
   bool shut_down(double seconds);
 
  private:

@@ -9,9 +9,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
-#include "core/base/bytes.h"
 #include "core/project/carved_chunks.h"
 #include "core/project/read_at.h"
 
@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "LimberEd";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeadBytes = 8, kSumBytes = 8;
-constexpr std::size_t kMostPayload = kLargestChunk + (std::size_t{1} << 20);  // an incompressible chunk is a little larger
+constexpr std::size_t kMostPayload =
+    kLargestChunk + (std::size_t{1} << 20);  // an incompressible chunk is a little larger
 
 enum RecordType : std::uint32_t { kHeader = 1, kChunk = 2, kEdit = 3 };
 
@@ -72,15 +73,14 @@ struct Malformed {};
 
 // ---- writing
 
-JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open) : chunks_(std::move(start.base_chunks)) {
+JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open)
+    : chunks_(std::move(start.base_chunks)) {
   const Path fresh = start.path.string() + ".new";
   const Unfinished unfinished(fresh);
   file_ = open(fresh);
   append(kHeader, header_payload(start));
-  if (start.document)
-    write(*start.document, start.label, writer);
-  else
-    file_->sync();
+  if (start.document) write(*start.document, start.label, writer);
+  else file_->sync();
   std::error_code error;
   if (!start.replace) fs::create_hard_link(fresh, start.path, error);
   if (start.replace || (error && error != std::errc::file_exists)) fs::rename(fresh, start.path, error);
@@ -126,7 +126,9 @@ void JournalWriter::write(const Document& document, const std::string& label, Do
 
 // ---- reading
 
-JournalReader::JournalReader(const Path& path) : where_(path.string()), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+JournalReader::JournalReader(const Path& path)
+    : where_(path.string()),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
   if (descriptor_ < 0) throw Error("the journal of edits cannot be opened", where_, std::strerror(errno));
   try {
     scan();
@@ -167,7 +169,8 @@ void JournalReader::scan() {
       if (type == kHeader) {
         in.require(first && in.raw(kMagic.size()) == kMagic);
         if (in.get<std::uint32_t>() != kVersion)
-          throw Error("the journal of edits was written by another version of Limber", where_, "open it with that version");
+          throw Error("the journal of edits was written by another version of Limber", where_,
+                      "open it with that version");
         project_ = in.text();
         const bool has_base = in.flag();
         SaveMark base;
@@ -176,7 +179,8 @@ void JournalReader::scan() {
         if (has_base) base_ = base;
       } else if (type == kChunk) {
         const ChunkHash hash = get_hash(in);
-        chunks_[hash.bytes] = {offset + static_cast<std::int64_t>(kHeadBytes + sizeof(ChunkHash)), static_cast<std::uint32_t>(size - sizeof(ChunkHash))};
+        chunks_[hash.bytes] = {offset + static_cast<std::int64_t>(kHeadBytes + sizeof(ChunkHash)),
+                               static_cast<std::uint32_t>(size - sizeof(ChunkHash))};
       } else if (type == kEdit) {
         Edit edit;
         edit.root = get_hash(in);
@@ -204,7 +208,9 @@ std::optional<std::string> JournalReader::find(const ChunkHash& hash) {
 Path edits_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   const char* home = std::getenv("HOME");
-  const Path base = state && *state ? Path(state) : home && *home ? Path(home) / ".local/state" : fs::temp_directory_path();
+  const Path base = state && *state ? Path(state)
+                    : home && *home ? Path(home) / ".local/state"
+                                    : fs::temp_directory_path();
   const Path folder = base / "limber" / "edits";
   std::error_code ignored;
   fs::create_directories(folder, ignored);
@@ -332,7 +338,8 @@ void discard(const Path& journal, const Path& folder) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     std::error_code ignored;
-    if (entry.is_symlink(ignored) && fs::read_symlink(entry.path(), ignored) == journal) fs::remove(entry.path(), ignored);
+    if (entry.is_symlink(ignored) && fs::read_symlink(entry.path(), ignored) == journal)
+      fs::remove(entry.path(), ignored);
   }
   fs::remove(journal, error);
 }

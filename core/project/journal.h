@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What was edited since the last save, on disk: NAME.limber-edits beside the project, or a file of its own in the user's
-// state folder for a project that was never saved. (NAME.limber-journal is SQLite's own.)
+// What was edited since the last save, on disk: NAME.limber-edits beside the project, or a file of its own in the
+// user's state folder for a project that was never saved. (NAME.limber-journal is SQLite's own.)
 //
-// A journal is appended to, record by record, each with a checksum: first a header, then chunks that neither the project nor
-// the journal has, then the edit that they make whole, then a sync. Whatever a crash or a power cut leaves of the
-// last write is no whole record and is not read. It starts anew, under another name that is then given to it, after each
-// save: from then on it relies on the chunks of that save.
+// A journal is appended to, record by record, each with a checksum: first a header, then chunks that neither the
+// project nor the journal has, then the edit that they make whole, then a sync. Whatever a crash or a power cut leaves
+// of the last write is no whole record and is not read. It starts anew, under another name that is then given to it,
+// after each save: from then on it relies on the chunks of that save.
 #pragma once
 
 #include <cstdint>

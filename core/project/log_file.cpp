@@ -44,16 +44,18 @@ class PosixLogFile final : public LogFile {
  private:
   [[noreturn]] void fail() const {
     const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
-    throw Error("your edits cannot be kept between saves", where_, full ? "the disk is full: free some space, or save elsewhere" : std::strerror(errno));
+    throw Error("your edits cannot be kept between saves", where_,
+                full ? "the disk is full: free some space, or save elsewhere" : std::strerror(errno));
   }
   std::string where_;
   int descriptor_ = -1;
 };
 
 bool same_file(int descriptor, const Path& path) {
-  struct stat by_descriptor {}, by_name {};
-  return ::fstat(descriptor, &by_descriptor) == 0 && ::stat(path.c_str(), &by_name) == 0 && by_descriptor.st_dev == by_name.st_dev &&
-         by_descriptor.st_ino == by_name.st_ino;
+  struct stat by_descriptor {
+  }, by_name{};
+  return ::fstat(descriptor, &by_descriptor) == 0 && ::stat(path.c_str(), &by_name) == 0 &&
+         by_descriptor.st_dev == by_name.st_dev && by_descriptor.st_ino == by_name.st_ino;
 }
 
 }  // namespace

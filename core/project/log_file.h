@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A file that is only ever appended to, locked by whoever has it open. Behind an interface, so that tests can lose what a
-// power cut would lose.
+// A file that is only ever appended to, locked by whoever has it open. Behind an interface, so that tests can lose what
+// a power cut would lose.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ class LogFile {
 using OpenLog = std::function<std::unique_ptr<LogFile>(const Path&)>;
 std::unique_ptr<LogFile> open_log(const Path& path);
 
-// Another's file, held while this lives. The lock is the system's (flock): it goes when the process ends, however it ends.
+// Another's file, held while this lives. The lock is the system's (flock): it goes when the process ends, however it
+// ends.
 class FileLock {
  public:
   FileLock() = default;

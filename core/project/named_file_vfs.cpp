@@ -85,8 +85,7 @@ bool refuse_journal(State& state, sqlite3_file* file) {
                  move_away);
   else if (is_no_journal(file))
     state.refuse("the file beside the project is no journal of one", state.journal, move_away);
-  else
-    return false;
+  else return false;
   return true;
 }
 

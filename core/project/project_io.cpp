@@ -26,7 +26,9 @@ constexpr const char* kStateTable = "CREATE TABLE state(name BLOB PRIMARY KEY, v
 constexpr std::size_t kMostEditorBytes = std::size_t{16} << 20;
 constexpr std::int64_t kMostFreeBytes = std::int64_t{16} << 20;  // of removed chunks that a file may keep for later
 
-std::string_view view(const ChunkHash& hash) { return {reinterpret_cast<const char*>(hash.bytes.data()), hash.bytes.size()}; }
+std::string_view view(const ChunkHash& hash) {
+  return {reinterpret_cast<const char*>(hash.bytes.data()), hash.bytes.size()};
+}
 
 std::string new_id() {
   std::random_device random;
@@ -74,7 +76,8 @@ Error damaged(const Path& path) {
 
 // Ours, of a version we know, with the tables we made and nothing else.
 void check_schema(Database& database, const Path& path) {
-  if (database.number("PRAGMA application_id") != kApplication) throw Error("this is not a Limber project", path.string(), "name a .limber file");
+  if (database.number("PRAGMA application_id") != kApplication)
+    throw Error("this is not a Limber project", path.string(), "name a .limber file");
   const std::int64_t version = database.number("PRAGMA user_version");
   if (version > kSchemaVersion)
     throw Error("the project was written by a newer version of Limber", path.string(), "open it with that version");
@@ -83,7 +86,8 @@ void check_schema(Database& database, const Path& path) {
                                .append("', '")
                                .append(kStateTable)
                                .append("')");
-  if (version != kSchemaVersion || database.number(ours) != 2 || database.number("SELECT count(*) FROM sqlite_schema WHERE sql IS NOT NULL") != 2)
+  if (version != kSchemaVersion || database.number(ours) != 2 ||
+      database.number("SELECT count(*) FROM sqlite_schema WHERE sql IS NOT NULL") != 2)
     throw damaged(path);
 }
 
@@ -228,8 +232,12 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   SaveMark mark;
   try {
     Database database(temporary, Database::Mode::Create);
-    database.run("PRAGMA page_size = 8192; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = OFF; PRAGMA synchronous = FULL");
-    database.run(("PRAGMA application_id = " + std::to_string(kApplication) + "; PRAGMA user_version = " + std::to_string(kSchemaVersion)).c_str());
+    database.run(
+        "PRAGMA page_size = 8192; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = OFF; PRAGMA synchronous = "
+        "FULL");
+    database.run(("PRAGMA application_id = " + std::to_string(kApplication) +
+                  "; PRAGMA user_version = " + std::to_string(kSchemaVersion))
+                     .c_str());
     Transaction transaction(database);
     database.run(kChunkTable);
     database.run(kStateTable);
@@ -248,8 +256,8 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   return mark;
 }
 
-SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused, DocumentWriter& writer,
-                        Progress& progress) {
+SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused,
+                        DocumentWriter& writer, Progress& progress) {
   check_editor_bytes(project, path);
   Database database(path, Database::Mode::Write);
   check_schema(database, path);
@@ -259,7 +267,8 @@ SaveMark update_project(const Project& project, const Path& path, const SaveMark
     Transaction transaction(database);
     Store store(database);
     if (mark_in(store, path) != expected)
-      throw Error("another program has changed the project since it was opened", path.string(), "save under another name, then compare the two");
+      throw Error("another program has changed the project since it was opened", path.string(),
+                  "save under another name, then compare the two");
     mark = fill(store, project, writer, Packing::Dense, progress);
     if (unused == Unused::Remove) remove_unused(database, store, mark.root, path);
     transaction.commit();
@@ -319,7 +328,8 @@ std::vector<std::string> verify_project(const Path& path, Progress& progress) {
     if (name.size() == hash.bytes.size()) std::memcpy(hash.bytes.data(), name.data(), name.size());
     damaged_chunks += name.size() != hash.bytes.size() || !unpack(all.bytes(1), hash);
   }
-  if (damaged_chunks > 0) wrong.push_back(std::to_string(damaged_chunks) + " of " + std::to_string(count) + " chunks are damaged");
+  if (damaged_chunks > 0)
+    wrong.push_back(std::to_string(damaged_chunks) + " of " + std::to_string(count) + " chunks are damaged");
   Store store(database);
   ReadLimits limits;
   limits.leave_out_damaged = true;
@@ -343,7 +353,9 @@ ProjectSummary summarize_project(const Path& path) {
 struct ProjectChunks::Open {
   Database database;
   Store store;
-  explicit Open(const Path& path) : database(path, Database::Mode::Read), store((check_schema(database, path), database)) {}
+  explicit Open(const Path& path)
+      : database(path, Database::Mode::Read),
+        store((check_schema(database, path), database)) {}
 };
 ProjectChunks::ProjectChunks(const Path& path) : open_(std::make_unique<Open>(path)) {}
 ProjectChunks::~ProjectChunks() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The project file NAME.limber: one SQLite database with the document's chunks (core/project/chunk.h), the name of their
-// root, and beside it what the editor wants to find again (views, layout, a picture), which is opaque here.
+// The project file NAME.limber: one SQLite database with the document's chunks (core/project/chunk.h), the name of
+// their root, and beside it what the editor wants to find again (views, layout, a picture), which is opaque here.
 //   chunk(hash, packed)      state(name, value): root, mark, editor, thumbnail, program
 // Saving writes the chunks that are not there yet and the new root in one transaction, so whoever opens the file, after
 // whatever happened, finds the state before or after. A new file is made under another name and renamed.
@@ -58,8 +58,8 @@ enum class Unused { Remove, Keep };
 
 // Writes what changed since the save that left `expected`. Throws Error, and the file is as before, when it has changed
 // since, is gone, or cannot be written.
-SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused, DocumentWriter& writer,
-                        Progress& progress = no_progress());
+SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused,
+                        DocumentWriter& writer, Progress& progress = no_progress());
 // Removes chunks that the last save does not need.
 void prune_project(const Path& path);
 
@@ -72,7 +72,7 @@ ChunkSet reachable_chunks(const Path& path);
 std::vector<std::string> verify_project(const Path& path, Progress& progress = no_progress());
 
 struct ProjectSummary {
-  std::string program;  // the version that saved it
+  std::string program;                                       // the version that saved it
   std::int64_t file_bytes = 0, chunks = 0, chunk_bytes = 0;  // packed
   bool has_thumbnail = false;
 };

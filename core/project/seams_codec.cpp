@@ -11,7 +11,9 @@ namespace {
 
 constexpr std::int32_t kLongestAxis = 1 << 20;
 
-std::int64_t index_in(const glm::ivec3& size, const glm::ivec3& v) { return v.x + std::int64_t{size.x} * (v.y + std::int64_t{size.y} * v.z); }
+std::int64_t index_in(const glm::ivec3& size, const glm::ivec3& v) {
+  return v.x + std::int64_t{size.x} * (v.y + std::int64_t{size.y} * v.z);
+}
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams as bytes and back: the grid's size, then for each axis the voxels whose face towards higher x, y or z is cut, by their
-// index in the grid, rising.
+// Seams as bytes and back: the grid's size, then for each axis the voxels whose face towards higher x, y or z is cut,
+// by their index in the grid, rising.
 #pragma once
 
 #include <functional>

@@ -22,7 +22,8 @@ using std::chrono::duration;
 
 constexpr std::int64_t kMostGrowth = 4;  // of a large journal
 
-constexpr const char* kGone = "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
+constexpr const char* kGone =
+    "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
 
 std::string random_name() {
   std::random_device random;
@@ -46,7 +47,8 @@ bool may_write(const Path& folder) { return ::faccessat(AT_FDCWD, folder.c_str()
 }  // namespace
 
 Session::Session(SessionSettings settings)
-    : settings_(std::move(settings)), folder_(settings_.edits_folder.empty() ? limber::edits_folder() : settings_.edits_folder) {
+    : settings_(std::move(settings)),
+      folder_(settings_.edits_folder.empty() ? limber::edits_folder() : settings_.edits_folder) {
   std::error_code ignored;
   fs::create_directories(folder_, ignored);
 }
@@ -58,7 +60,8 @@ std::unique_ptr<Session> Session::start(SessionSettings settings) {
   return session;
 }
 
-std::unique_ptr<Session> Session::open(const Path& path, Project& project, Progress& progress, SessionSettings settings) {
+std::unique_ptr<Session> Session::open(const Path& path, Project& project, Progress& progress,
+                                       SessionSettings settings) {
   std::unique_ptr<Session> session(new Session(std::move(settings)));
   const Path file = absolute_of(path);
   session->choose_journal_path(file);
@@ -104,7 +107,8 @@ void Session::choose_journal_path(const Path& project) {
 // So that all_recoverable() finds a journal wherever it is.
 void Session::note_journal() const {
   if (journal_path_.parent_path() == folder_) return;
-  const Path link = folder_ / (sha256_of_bytes(journal_path_.c_str(), journal_path_.string().size()).substr(0, 16) + ".edits");
+  const Path link =
+      folder_ / (sha256_of_bytes(journal_path_.c_str(), journal_path_.string().size()).substr(0, 16) + ".edits");
   std::error_code ignored;
   if (fs::is_symlink(link, ignored)) return;
   fs::create_symlink(journal_path_, link, ignored);
@@ -148,7 +152,8 @@ bool Session::journal_in_use() const {
 
 void Session::begin_journal(const Document* document, const std::string& label) {
   if (journal_in_use()) throw in_use(path());
-  JournalWriter::Start start{.path = journal_path_, .project = path(), .base = base_, .document = document, .label = label};
+  JournalWriter::Start start{
+      .path = journal_path_, .project = path(), .base = base_, .document = document, .label = label};
   if (base_) start.base_chunks = reachable_chunks(start.project);
   std::error_code ignored;
   start.replace = fs::exists(journal_path_, ignored);
@@ -158,11 +163,13 @@ void Session::begin_journal(const Document* document, const std::string& label) 
   note_journal();
 }
 
-// What an earlier session left: edits to offer, nothing new, or what another version wrote, which is not ours to remove.
+// What an earlier session left: edits to offer, nothing new, or what another version wrote, which is not ours to
+// remove.
 void Session::look_at_leftover() {
   try {
     const JournalReader reader(journal_path_);
-    if (!reader.edits().empty() && reader.edits().back().root != mark_->root) leftover_ = recoverable(reader, journal_path_);
+    if (!reader.edits().empty() && reader.edits().back().root != mark_->root)
+      leftover_ = recoverable(reader, journal_path_);
   } catch (const Error& error) {
     status_.message = error.what();
     move_leftover_aside();
@@ -189,11 +196,10 @@ void Session::move_leftover_aside() {
 
 void Session::write_journal(const Document& document, const std::string& label) {
   if (leftover_) set_leftover_aside();
-  const bool large = journal_ && journal_->bytes() > settings_.large_journal && journal_->bytes() > kMostGrowth * fresh_bytes_;
-  if (!journal_ || journal_->broken() || large)
-    begin_journal(&document, label);
-  else
-    journal_->write(document, label, journal_writer_);
+  const bool large =
+      journal_ && journal_->bytes() > settings_.large_journal && journal_->bytes() > kMostGrowth * fresh_bytes_;
+  if (!journal_ || journal_->broken() || large) begin_journal(&document, label);
+  else journal_->write(document, label, journal_writer_);
 }
 
 // A project that is gone can give no chunks back: the journal must have them all.
@@ -245,7 +251,9 @@ void Session::work(const std::stop_token& stop) {
         failed = false;
         if (!identity_ && mark_) message = kGone;
       } catch (const std::bad_alloc&) {
-        message = Error("there is not enough memory to keep your edits between saves", path().string(), "save, and close other programs").what();
+        message = Error("there is not enough memory to keep your edits between saves", path().string(),
+                        "save, and close other programs")
+                      .what();
       } catch (const std::exception& error) {
         message = error.what();
       }

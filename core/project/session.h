@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A project that is open in an editor: its file, its lock, and the journal that keeps what was edited since the last save.
+// A project that is open in an editor: its file, its lock, and the journal that keeps what was edited since the last
+// save.
 //
 //   auto session = Session::open(path, project);        // or Session::start() for a new project
 //   if (session->leftover()) ...                        // a crash left edits: offer them; recover() gives the document
@@ -8,9 +9,9 @@
 //   session->discard();                                 // the user does not want the unsaved edits
 //
 // keep() hands the document to a thread that writes it into the journal at once, so all edits but those of the last
-// moment survive a crash of the program or of the machine. When the journal cannot be written (a full disk), status() says
-// so and it is tried again every second. A project file that is removed or replaced underneath makes the journal start
-// anew with the whole document. Two sessions never have one project: the second is refused.
+// moment survive a crash of the program or of the machine. When the journal cannot be written (a full disk), status()
+// says so and it is tried again every second. A project file that is removed or replaced underneath makes the journal
+// start anew with the whole document. Two sessions never have one project: the second is refused.
 //
 // Every function may be called from any thread; keep(), status() and path() never wait for a disk.
 #pragma once
@@ -29,7 +30,7 @@
 namespace limber {
 
 struct SessionSettings {
-  Path edits_folder;               // empty: limber::edits_folder()
+  Path edits_folder;  // empty: limber::edits_folder()
   OpenLog open_log = limber::open_log;
   std::function<void()> on_change;  // called from any thread when status() has changed
   double retry_seconds = 1;         // after a failure
@@ -48,7 +49,8 @@ class Session {
   // A project without a file.
   static std::unique_ptr<Session> start(SessionSettings settings = {});
   // throws Error when it cannot be read, or another session has it
-  static std::unique_ptr<Session> open(const Path& path, Project& project, Progress& progress = no_progress(), SessionSettings settings = {});
+  static std::unique_ptr<Session> open(const Path& path, Project& project, Progress& progress = no_progress(),
+                                       SessionSettings settings = {});
   // Ends without a trace when what was kept last is saved or discarded; else the journal stays and is offered again.
   ~Session();
   Session(const Session&) = delete;
@@ -117,7 +119,7 @@ class Session {
   std::int64_t handed_ = 0, written_ = 0;
   SessionStatus status_;
 
-  std::mutex saving_;         // one save at a time; taken before disk_
+  std::mutex saving_;        // one save at a time; taken before disk_
   mutable std::mutex disk_;  // guards what follows; taken before state_
   bool save_runs_ = false;
   Path journal_path_;

@@ -9,21 +9,21 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <cstring>
+#include <ctime>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <poll.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
@@ -70,12 +70,9 @@ struct Pipe {
     std::array<char, 1 << 14> block;
     for (;;) {
       const ssize_t got = ::read(read_end, block.data(), block.size());
-      if (got > 0)
-        take(block.data(), static_cast<std::size_t>(got));
-      else if (got == 0)
-        return false;
-      else if (errno != EINTR)
-        return errno == EAGAIN;
+      if (got > 0) take(block.data(), static_cast<std::size_t>(got));
+      else if (got == 0) return false;
+      else if (errno != EINTR) return errno == EAGAIN;
     }
   }
 };
@@ -85,8 +82,9 @@ void bury(pid_t process) {
   }
 }
 
-// The worker in a process group of its own, so that its own children end with it. Killed when this goes. One that yields gives its
-// memory back only when the machine has time for it, so nobody waits for that: killed, it does nothing any more.
+// The worker in a process group of its own, so that its own children end with it. Killed when this goes. One that
+// yields gives its memory back only when the machine has time for it, so nobody waits for that: killed, it does nothing
+// any more.
 class Process {
  public:
   Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
@@ -111,7 +109,9 @@ class Process {
   // Ends what it may have left behind, before its name can be given to another.
   bool has_ended() {
     siginfo_t info{};
-    if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != id_) return ended_;
+    if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        info.si_pid != id_)
+      return ended_;
     send(SIGKILL);
     while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
     }
@@ -128,7 +128,9 @@ class Process {
 // What the worker says on its error stream, line by line.
 class Listener {
  public:
-  Listener(Progress& progress, const std::function<void(const WorkerProgress&)>& on_progress) : progress_(progress), on_progress_(on_progress) {}
+  Listener(Progress& progress, const std::function<void(const WorkerProgress&)>& on_progress)
+      : progress_(progress),
+        on_progress_(on_progress) {}
   void take(const char* bytes, std::size_t size) {
     for (const char* end = bytes + size; bytes < end;) {
       const char* line_end = std::find(bytes, end, '\n');
@@ -160,7 +162,9 @@ class Listener {
         return on_beat(number(json, "processor_seconds").value_or(0));
       if (!json.is_object() || !json.contains("stage") || !json["stage"].is_string()) return;
       if (!json.contains("fraction") || !json["fraction"].is_number()) return;
-      WorkerProgress now{json["stage"].get<std::string>(), json["fraction"].get<double>(), number(json, "angle_degrees"), number(json, "residual_mm"), number(json, "seconds_left"), {}};
+      WorkerProgress now{json["stage"].get<std::string>(), json["fraction"].get<double>(),
+                         number(json, "angle_degrees"),    number(json, "residual_mm"),
+                         number(json, "seconds_left"),     {}};
       if (const auto iteration = number(json, "iteration")) now.iteration = static_cast<int>(*iteration);
       sign_ = Clock::now();
       last_ = std::move(now);
@@ -197,13 +201,15 @@ class Listener {
 // A message of the worker's own, "what: where: what to do", as an Error of ours.
 Error relay(const std::string& line, const Path& job) {
   const std::size_t first = line.find(": "), last = line.rfind(": ");
-  if (first == std::string::npos || first == last) return {"the worker failed", job.string(), line.empty() ? "it gave no reason" : line};
+  if (first == std::string::npos || first == last)
+    return {"the worker failed", job.string(), line.empty() ? "it gave no reason" : line};
   return {line.substr(0, first), line.substr(first + 2, last - first - 2), line.substr(last + 2)};
 }
 
 Error death(int signal, const Path& job) {
   if (signal == SIGKILL)
-    return {"the worker was ended by the system, most likely for lack of memory", job.string(), "use a coarser spacing, or close other programs"};
+    return {"the worker was ended by the system, most likely for lack of memory", job.string(),
+            "use a coarser spacing, or close other programs"};
   return {"the worker crashed", job.string() + ", " + ::strsignal(signal),
           "try other settings, and please report what you asked for"};
 }
@@ -212,8 +218,10 @@ Error death(int signal, const Path& job) {
 
 WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings) {
   if (progress.cancelled()) throw Cancelled();
-  std::vector<std::string> arguments{"job", job_file.string(), "--progress", "json", "--parent", std::to_string(::getpid())};
-  if (settings.memory_limit_mb > 0) arguments.insert(arguments.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
+  std::vector<std::string> arguments{"job",  job_file.string(), "--progress",
+                                     "json", "--parent",        std::to_string(::getpid())};
+  if (settings.memory_limit_mb > 0)
+    arguments.insert(arguments.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
 
   if (settings.yields) arguments.push_back("--yield");
 
@@ -259,8 +267,8 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
 
   if (stop == Stop::Cancel || progress.cancelled()) throw Cancelled();
   if (stop == Stop::Time)
-    throw Error("the worker took longer than " + std::to_string(static_cast<long>(settings.time_limit)) + " s", job_file.string(),
-                "raise the time limit, or use a coarser spacing");
+    throw Error("the worker took longer than " + std::to_string(static_cast<long>(settings.time_limit)) + " s",
+                job_file.string(), "raise the time limit, or use a coarser spacing");
   if (stop == Stop::Silence)
     throw Error("the worker stopped answering and was ended after " +
                     std::to_string(static_cast<long>(settings.silence_limit)) + " s",
@@ -311,7 +319,8 @@ void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {
   if (memory_limit_mb > 0) {
     const rlim_t bytes = static_cast<rlim_t>(memory_limit_mb) << 20;
     const rlimit limit{bytes, bytes};
-    if (::setrlimit(RLIMIT_AS, &limit) != 0) throw Error("the memory limit cannot be set", std::to_string(memory_limit_mb) + " MB", std::strerror(errno));
+    if (::setrlimit(RLIMIT_AS, &limit) != 0)
+      throw Error("the memory limit cannot be set", std::to_string(memory_limit_mb) + " MB", std::strerror(errno));
   }
 }
 

@@ -43,14 +43,15 @@ struct WorkerSettings {
 struct WorkerOutput {
   std::string text;                   // what it printed, at most 16 MB of it
   std::vector<std::string> warnings;  // one line each
-  bool pose_reached = true;           // false: what it wrote is the last place on the way to the pose; a warning says more
+  bool pose_reached = true;  // false: what it wrote is the last place on the way to the pose; a warning says more
 };
 
-// Runs the job to its end; blocks, so it belongs into a Job. throws Error with what went wrong, Cancelled after a cancel.
+// Runs the job to its end; blocks, so it belongs into a Job. throws Error with what went wrong, Cancelled after a
+// cancel.
 WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings = {});
 
-// In the worker, before it starts any thread: limits its memory, lets it yield to all others, and lets it die with `parent`,
-// the process that started it (0: none).
+// In the worker, before it starts any thread: limits its memory, lets it yield to all others, and lets it die with
+// `parent`, the process that started it (0: none).
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent);
 
 // What a worker that does not answer is shown as.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far two volumes on one grid agree, label by label [Dice 1945]: 2 |A and B| / (|A| + |B|), 1 where they are the same.
+// How far two volumes on one grid agree, label by label [Dice 1945]: 2 |A and B| / (|A| + |B|), 1 where they are the
+// same.
 #pragma once
 
 #include <vector>

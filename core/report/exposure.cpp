@@ -18,7 +18,9 @@ constexpr std::array<glm::ivec3, 6> kFaces = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}
 class AirFlood {
  public:
   AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside)
-      : volume_(volume), box_(box), outside_(outside) {}
+      : volume_(volume),
+        box_(box),
+        outside_(outside) {}
 
   void start(const glm::ivec3& v) {
     if (!is_new(v)) return;
@@ -93,7 +95,8 @@ struct SurfaceOfSlice {
 }  // namespace
 
 OutsideAir::OutsideAir(const LabelVolume& volume)
-    : box_(tissue_box(volume, 1)), outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
+    : box_(tissue_box(volume, 1)),
+      outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
   AirFlood flood(volume, box_, outside_);
   const glm::ivec3 low = box_.lowest, high = box_.lowest + box_.size - 1;
   for (int z = low.z; z <= high.z; ++z)

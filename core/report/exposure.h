@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "core/report/judged_pose.h"
-#include "core/volume/distance.h"
+#include "core/volume/distance_transform.h"
 
 namespace limber {
 

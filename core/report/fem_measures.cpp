@@ -60,16 +60,20 @@ std::vector<float> fem_measure(FemMeasure measure, const FemMesh& mesh, const Ei
         values[t] = kNone;
       } else if (measure != FemMeasure::Gap) {
         const Eigen::Matrix3d F = edges(V, tets.T, t) * edges(tets.V, tets.T, t).inverse();
-        values[t] = static_cast<float>(measure == FemMeasure::VolumeRatio ? F.determinant() : energy_of(mesh.material[t], F));
+        values[t] =
+            static_cast<float>(measure == FemMeasure::VolumeRatio ? F.determinant() : energy_of(mesh.material[t], F));
       }
     }
   });
   return values;
 }
 
-float measure_at_rest(FemMeasure measure) { return measure == FemMeasure::VolumeRatio ? 1.0f : measure == FemMeasure::EnergyDensity ? 0.0f : kInfinite; }
+float measure_at_rest(FemMeasure measure) {
+  return measure == FemMeasure::VolumeRatio ? 1.0f : measure == FemMeasure::EnergyDensity ? 0.0f : kInfinite;
+}
 
-std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen::MatrixX3d& V, const Grid& grid, const TissueVoxels& tissue) {
+std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen::MatrixX3d& V, const Grid& grid,
+                                         const TissueVoxels& tissue) {
   const AffineTransform to_voxel = voxel_from_world(grid);
   std::vector<glm::dvec3> nodes(V.rows());
   for (std::size_t v = 0; v < nodes.size(); ++v) nodes[v] = to_voxel * glm::dvec3(V(v, 0), V(v, 1), V(v, 2));
@@ -80,7 +84,8 @@ std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen:
   std::vector<std::vector<std::int32_t>> of_layer(layers);
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
     const auto [low, high] = std::minmax({nodes[T(t, 0)].z, nodes[T(t, 1)].z, nodes[T(t, 2)].z, nodes[T(t, 3)].z});
-    const int first = std::max(0, static_cast<int>(std::floor(low)) / TissueVoxels::kBrick), last = std::min(layers - 1, static_cast<int>(std::ceil(high)) / TissueVoxels::kBrick);
+    const int first = std::max(0, static_cast<int>(std::floor(low)) / TissueVoxels::kBrick),
+              last = std::min(layers - 1, static_cast<int>(std::ceil(high)) / TissueVoxels::kBrick);
     if (high >= -1)
       for (int layer = first; layer <= last; ++layer) of_layer[layer].push_back(static_cast<std::int32_t>(t));
   }
@@ -92,10 +97,12 @@ std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen:
         for (int i = 0; i < 4; ++i) corner[i] = nodes[T(t, i)];
         if (mirrored) std::swap(corner[0], corner[1]);
         const int first = static_cast<int>(layer) * TissueVoxels::kBrick;
-        for_each_row_in_tet(corner, grid, first, std::min(first + TissueVoxels::kBrick, grid.size.z) - 1, [&](const glm::ivec3& from, const glm::ivec3& to) {
-          for (glm::ivec3 v = from; v.x <= to.x; ++v.x)
-            if (const std::int64_t place = tissue.index_of(v); place >= 0 && tets[place] < 0) tets[place] = t;
-        });
+        for_each_row_in_tet(corner, grid, first, std::min(first + TissueVoxels::kBrick, grid.size.z) - 1,
+                            [&](const glm::ivec3& from, const glm::ivec3& to) {
+                              for (glm::ivec3 v = from; v.x <= to.x; ++v.x)
+                                if (const std::int64_t place = tissue.index_of(v); place >= 0 && tets[place] < 0)
+                                  tets[place] = t;
+                            });
       }
   });
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/report/quality_gates.h"
+#include "core/report/quality_gate.h"
 
 namespace limber {
 

@@ -9,7 +9,7 @@
 
 #include "core/base/rigid_transform.h"
 #include "core/rig/armature.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber {
 

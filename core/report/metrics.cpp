@@ -82,7 +82,9 @@ int end_of_run(const Label* row, int begin, int size, Label label) {
 class Neighbour {
  public:
   Neighbour(const Slice& slice, int row, bool diagonal)
-      : next_(slice.runs.data() + slice.first[row]), end_(slice.runs.data() + slice.first[row + 1]), diagonal_(diagonal) {}
+      : next_(slice.runs.data() + slice.first[row]),
+        end_(slice.runs.data() + slice.first[row + 1]),
+        diagonal_(diagonal) {}
 
   // Joins `run` to the runs of its label that it touches: tissue also across edges and corners, air only across faces.
   void join(Run& run, Components& components) {
@@ -139,15 +141,12 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
       const Run& run = slice.runs[r];
       if (!run.label) continue;
       std::int64_t open = 0;
-      for (int x = run.begin; x < run.end; ++x)
-        open += !beside[0][x] | !beside[1][x] | !beside[2][x] | !beside[3][x];
+      for (int x = run.begin; x < run.end; ++x) open += !beside[0][x] | !beside[1][x] | !beside[2][x] | !beside[3][x];
       auto closed_across = [&](int x) { return beside[0][x] && beside[1][x] && beside[2][x] && beside[3][x]; };
       const bool open_before = r == first || !slice.runs[r - 1].label;
       const bool open_after = r + 1 == last || !slice.runs[r + 1].label;
-      if (run.end - run.begin == 1)
-        open += (open_before || open_after) && closed_across(run.begin);
-      else
-        open += (open_before && closed_across(run.begin)) + (open_after && closed_across(run.end - 1));
+      if (run.end - run.begin == 1) open += (open_before || open_after) && closed_across(run.begin);
+      else open += (open_before && closed_across(run.begin)) + (open_after && closed_across(run.end - 1));
       surface[run.label] += open;
     }
   }
@@ -155,8 +154,9 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
-// Pieces of a label of kSmallest voxels or more beyond `before`. A body that lies at another angle in its grid is parted by a voxel
-// where it is thin, and where thick slices bridged a gap at rest by as much as a slice; neither is a tear.
+// Pieces of a label of kSmallest voxels or more beyond `before`. A body that lies at another angle in its grid is
+// parted by a voxel where it is thin, and where thick slices bridged a gap at rest by as much as a slice; neither is a
+// tear.
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;
@@ -165,7 +165,8 @@ int torn_parts(const LabelVolume& after, Label label, int touching, int before) 
   const glm::dvec3& spacing = after.grid.spacing;
   const glm::ivec3 reach = glm::ivec3(std::max({spacing.x, spacing.y, spacing.z}) / spacing + 0.5) + 1;
   const auto pieces = pieces_of(after.grid, voxels, reach);
-  const auto large = std::count_if(pieces.begin(), pieces.end(), [](const auto& piece) { return std::ssize(piece) >= kSmallest; });
+  const auto large =
+      std::count_if(pieces.begin(), pieces.end(), [](const auto& piece) { return std::ssize(piece) >= kSmallest; });
   return std::max(0, static_cast<int>(large) - before);
 }
 
@@ -179,7 +180,8 @@ double skin_share(const LabelCensus& census, const TissueTable& tissues) {
 }  // namespace
 
 LabelCensus take_census(const LabelVolume& volume, std::int64_t smallest) {
-  LabelCensus census{std::vector<std::int64_t>(kLabels), std::vector<int>(kLabels), std::vector<int>(kLabels), std::vector<std::int64_t>(kLabels)};
+  LabelCensus census{std::vector<std::int64_t>(kLabels), std::vector<int>(kLabels), std::vector<int>(kLabels),
+                     std::vector<std::int64_t>(kLabels)};
   const glm::ivec3 size = volume.grid.size;
   Components components;
   components.add(0);
@@ -234,7 +236,9 @@ VolumeMetrics compare(const LabelVolume& before, const LabelVolume& after, const
     change.mass_change_percent = percent_change(change.mass_before, change.mass_after);
     change.components_before = census[0].components[label];
     change.components_after = census[1].components[label];
-    if (std::abs(mm3[1] / mm3[0] - 1) < kSameVoxel) change.torn_parts = torn_parts(after, static_cast<Label>(label), census[1].components[label], census[0].half_components[label]);
+    if (std::abs(mm3[1] / mm3[0] - 1) < kSameVoxel)
+      change.torn_parts =
+          torn_parts(after, static_cast<Label>(label), census[1].components[label], census[0].half_components[label]);
     metrics.has_skin |= tissue && tissue->kind == TissueKind::Skin;
     metrics.voxels_before += change.voxels_before;
     metrics.voxels_after += change.voxels_after;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
-#include "core/volume/tissue_table.h"
 
 namespace limber {
 
@@ -36,8 +36,8 @@ struct TissueChange {
   double mass_before = 0, mass_after = 0;  // g
   double volume_change_percent = 0, mass_change_percent = 0;
   int components_before = 0, components_after = 0;  // 26-connected, of 50 voxels or more
-  // Pieces of 50 voxels or more beyond those that had half as many before: a piece that grew by a voxel is no tear. None where the
-  // two volumes have voxels of different size.
+  // Pieces of 50 voxels or more beyond those that had half as many before: a piece that grew by a voxel is no tear.
+  // None where the two volumes have voxels of different size.
   std::optional<int> torn_parts;
 };
 
@@ -48,8 +48,8 @@ struct VolumeMetrics {
   double mass_before = 0, mass_after = 0;  // g
   double volume_change_percent = 0, mass_change_percent = 0;
   std::int64_t enclosed_air_before = 0, enclosed_air_after = 0;  // voxels
-  std::int64_t trapped_air_voxels = 0;                 // enclosed air that was not enclosed before
-  double skin_share_before = 0, skin_share_after = 0;  // of surface voxels; only if there is skin
+  std::int64_t trapped_air_voxels = 0;                           // enclosed air that was not enclosed before
+  double skin_share_before = 0, skin_share_after = 0;            // of surface voxels; only if there is skin
   bool has_skin = false;
 };
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kFewest = 30;                     // voxels that tell how a limb turned
 constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;  // of a rig bone's axis: away from the joints, where bones meet
 constexpr double kShaftRadius = 0.15;                   // of the rig bone's length
-constexpr double kManyAtShaft = 0.2;  // of the voxels there
+constexpr double kManyAtShaft = 0.2;                    // of the voxels there
 
 struct Moved {
   glm::dvec3 rest, posed;  // world, mm
@@ -37,7 +37,9 @@ struct RestBone {
   std::vector<std::int32_t> in_graph;  // #tissue, -1 where it is no bone
 
   RestBone(const LabelVolume& rest, const std::vector<TissueKind>& kinds)
-      : tissue(rest), graph(gather_bone(rest, tissue, kinds)), in_graph(static_cast<std::size_t>(tissue.size()), -1) {
+      : tissue(rest),
+        graph(gather_bone(rest, tissue, kinds)),
+        in_graph(static_cast<std::size_t>(tissue.size()), -1) {
     for (std::int32_t i = 0; i < graph.size(); ++i) in_graph[graph.place[i]] = i;
   }
 };
@@ -164,8 +166,8 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
                      [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
 
-// Of the voxels at a shaft those of the limb itself: other bones may pass there, as ribs do below a collarbone. They are those
-// that go with its rig bone where these are many, else those that go where most of them go.
+// Of the voxels at a shaft those of the limb itself: other bones may pass there, as ribs do below a collarbone. They
+// are those that go with its rig bone where these are many, else those that go where most of them go.
 void keep_limb(int bone, const std::vector<RigidTransform>& motions, MovedVoxels& shaft) {
   const auto follows = [&](std::size_t b) {
     return [&motions, b](const Moved& one) { return followed_bone(one, motions) == b; };

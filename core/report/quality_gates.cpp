@@ -100,10 +100,10 @@ QualityGate gate_of_limits() {
 
 // What a gate is told of joints, by a report or a rig at hand.
 struct LimitFigures {
-  bool turned = true;               // false: the report names no turned joint
-  int limited = 0, unlimited = 0;   // joints with limits and without
-  double excess_degrees = 0;        // of the joint that is furthest beyond its limits
-  std::string bone;                 // that joint
+  bool turned = true;              // false: the report names no turned joint
+  int limited = 0, unlimited = 0;  // joints with limits and without
+  double excess_degrees = 0;       // of the joint that is furthest beyond its limits
+  std::string bone;                // that joint
 };
 
 void decide_limits(QualityGate& gate, const LimitFigures& figures, const QualityLimits& limits) {
@@ -112,9 +112,9 @@ void decide_limits(QualityGate& gate, const LimitFigures& figures, const Quality
   const bool within = figures.excess_degrees <= limits.joint_excess_degrees;
   gate.worst = within ? "" : figures.bone;
   if (!within)
-    return decide(gate, false, formatted("%+.1f\u00b0", figures.excess_degrees),
-                  figures.bone + " is turned " + formatted("%.1f", figures.excess_degrees) +
-                      " degrees beyond its limits.");
+    return decide(
+        gate, false, formatted("%+.1f\u00b0", figures.excess_degrees),
+        figures.bone + " is turned " + formatted("%.1f", figures.excess_degrees) + " degrees beyond its limits.");
   const std::string others = counted(figures.unlimited, "joint") + (figures.unlimited == 1 ? " has" : " have");
   decide(gate, true, "within",
          figures.unlimited == 0 ? "Every joint is within its limits."

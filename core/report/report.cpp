@@ -6,10 +6,11 @@
 #include <cstdio>
 #include <ostream>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/report/quality_gates.h"
 #include "core/rig/joint_limits.h"
 #include "core/rig/joint_names.h"
 
@@ -99,8 +100,9 @@ std::string key_of(const Report& report, Label label) {
 }
 
 Json mesh_of(const Report& report, const MeshReport& mesh) {
-  Json row{{"tets", mesh.tets}, {"nodes", mesh.nodes}, {"inverted", mesh.inverted}, {"min_det_f", mesh.min_det_f},
-           {"joint_tets", mesh.joint_tets}, {"share_below_fifth", mesh.share_below_fifth}};
+  Json row{
+      {"tets", mesh.tets},           {"nodes", mesh.nodes},           {"inverted", mesh.inverted},
+      {"min_det_f", mesh.min_det_f}, {"joint_tets", mesh.joint_tets}, {"share_below_fifth", mesh.share_below_fifth}};
   if (mesh.self_intersections) row["self_intersections"] = *mesh.self_intersections;
   if (mesh.contact_nodes > 0) row["contact_nodes"] = mesh.contact_nodes;
   if (mesh.min_gap_mm) row["min_gap_mm"] = *mesh.min_gap_mm;
@@ -108,7 +110,8 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
   Json change = Json::object();
   for (const auto& [label, percent] : mesh.volume_change_percent) change[key_of(report, label)] = percent;
   row["volume_change_percent_by_label"] = change;
-  for (const auto& [label, stretch] : mesh.stretch) row["stretch_by_label"][key_of(report, label)] = {{"least", stretch.least}, {"most", stretch.most}};
+  for (const auto& [label, stretch] : mesh.stretch)
+    row["stretch_by_label"][key_of(report, label)] = {{"least", stretch.least}, {"most", stretch.most}};
   if (!mesh.fallback.empty()) row["fallback"] = mesh.fallback;
   return row;
 }
@@ -116,7 +119,12 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
 Json solve_of(const SolveReport& solve) {
   Json row{{"converged", solve.converged}, {"reached", solve.reached}};
   if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
-  row.update({{"steps", solve.steps}, {"iterations", solve.iterations}, {"factorizations", solve.factorizations}, {"analyses", solve.analyses}, {"residual", solve.residual_mm}, {"bone_drift_mm", solve.bone_drift_mm}});
+  row.update({{"steps", solve.steps},
+              {"iterations", solve.iterations},
+              {"factorizations", solve.factorizations},
+              {"analyses", solve.analyses},
+              {"residual", solve.residual_mm},
+              {"bone_drift_mm", solve.bone_drift_mm}});
   return row;
 }
 
@@ -124,14 +132,21 @@ Json solve_of(const SolveReport& solve) {
 Json mass_exact_of(const Report& report, const MassExactReport& exact) {
   Json row{{"changed_voxels", exact.changed_voxels}};
   for (const auto& [label, tissue] : exact.tissues)
-    row["tissues"].push_back({{"label", Json::parse(key_of(report, label))}, {"voxels_wanted", tissue.wanted}, {"voxels_before", tissue.before}, {"voxels_after", tissue.after}});
+    row["tissues"].push_back({{"label", Json::parse(key_of(report, label))},
+                              {"voxels_wanted", tissue.wanted},
+                              {"voxels_before", tissue.before},
+                              {"voxels_after", tissue.after}});
   return row;
 }
 
 Json vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json joint_of(const TurnedJoint& joint) {
-  Json row{{"bone", joint.bone}, {"degrees", joint.degrees}, {"axis", vector_of(joint.axis)}, {"head", vector_of(joint.head)}, {"tail", vector_of(joint.tail)},
+  Json row{{"bone", joint.bone},
+           {"degrees", joint.degrees},
+           {"axis", vector_of(joint.axis)},
+           {"head", vector_of(joint.head)},
+           {"tail", vector_of(joint.tail)},
            {"parent_head", vector_of(joint.parent_head)}};
   if (joint.excess_degrees) row["excess_degrees"] = *joint.excess_degrees;
   return row;
@@ -140,8 +155,14 @@ Json joint_of(const TurnedJoint& joint) {
 Json glide_of(const std::vector<GlidedJoint>& joints) {
   Json rows = Json::array();
   for (const GlidedJoint& joint : joints)
-    rows.push_back({{"bone", joint.bone}, {"against", joint.against}, {"shift_mm", vector_of(joint.shift)}, {"length_mm", glm::length(joint.shift)},
-                    {"most_mm", joint.most_mm}, {"free", joint.free}, {"depth_before_mm", joint.depth_before}, {"depth_after_mm", joint.depth_after}});
+    rows.push_back({{"bone", joint.bone},
+                    {"against", joint.against},
+                    {"shift_mm", vector_of(joint.shift)},
+                    {"length_mm", glm::length(joint.shift)},
+                    {"most_mm", joint.most_mm},
+                    {"free", joint.free},
+                    {"depth_before_mm", joint.depth_before},
+                    {"depth_after_mm", joint.depth_after}});
   return rows;
 }
 
@@ -164,7 +185,10 @@ Json worst_of(const WorstPlace& worst) {
 }
 
 Json exposure_of(const Report& report, const Exposure& exposure) {
-  Json row{{"voxels", exposure.voxels}, {"surface_voxels", exposure.surface_voxels}, {"percent", exposure.percent()}, {"deeper_than_mm", exposure.deeper_than_mm}};
+  Json row{{"voxels", exposure.voxels},
+           {"surface_voxels", exposure.surface_voxels},
+           {"percent", exposure.percent()},
+           {"deeper_than_mm", exposure.deeper_than_mm}};
   for (const auto& [label, voxels] : exposure.by_label) {
     std::string name = "label " + key_of(report, label);
     if (report.metrics)
@@ -177,7 +201,9 @@ Json exposure_of(const Report& report, const Exposure& exposure) {
 }
 
 Json whole_bone_of(const WholeBone& bone) {
-  Json row{{"label", bone.file_value}, {"name", bone.name}, {"belongs_to", bone.belongs_to}, {"voxels", bone.voxels}, {"wrong_voxels", bone.wrong_voxels}, {"residual_mm", bone.residual_mm}};
+  Json row{{"label", bone.file_value},          {"name", bone.name},
+           {"belongs_to", bone.belongs_to},     {"voxels", bone.voxels},
+           {"wrong_voxels", bone.wrong_voxels}, {"residual_mm", bone.residual_mm}};
   if (!bone.went_with.empty()) row["went_with"] = bone.went_with;
   return row;
 }
@@ -189,7 +215,8 @@ Json band_of(const Band& band) {
 }
 
 Json gate_of(const QualityGate& gate) {
-  Json row{{"id", gate.id}, {"name", gate.name}, {"state", std::string(to_string(gate.state))}, {"limit", gate.limit}, {"sentence", gate.sentence}, {"strict", gate.strict}};
+  Json row{{"id", gate.id},       {"name", gate.name},         {"state", std::string(to_string(gate.state))},
+           {"limit", gate.limit}, {"sentence", gate.sentence}, {"strict", gate.strict}};
   if (!gate.figure.empty()) row["figure"] = gate.figure;
   if (!gate.worst.empty()) row["worst"] = gate.worst;
   return row;
@@ -201,8 +228,12 @@ void add_body(const Report& report, Json& json) {
   if (report.whole_body) json["whole_body"] = *report.whole_body;
   for (const WholeBone& bone : report.posed_bones.whole) json["whole_bones"].push_back(whole_bone_of(bone));
   for (const LimbDirection& limb : report.posed_bones.limbs)
-    json["limbs"].push_back({{"bone", limb.bone}, {"direction_off_degrees", limb.direction_degrees}, {"orientation_off_degrees", limb.orientation_degrees}, {"voxels", limb.voxels},
-                             {"measured_from", limb.by_name ? "named bones" : "bone tissue around the middle of its axis"}});
+    json["limbs"].push_back(
+        {{"bone", limb.bone},
+         {"direction_off_degrees", limb.direction_degrees},
+         {"orientation_off_degrees", limb.orientation_degrees},
+         {"voxels", limb.voxels},
+         {"measured_from", limb.by_name ? "named bones" : "bone tissue around the middle of its axis"}});
   if (report.exposure) json["exposure"] = exposure_of(report, *report.exposure);
   if (report.air_pocket) json["air_pocket"] = worst_of(*report.air_pocket);
   if (!report.bands) return;
@@ -252,8 +283,8 @@ void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshRe
   for (const TissueChange& tissue : metrics.tissues)
     if (const auto found = mesh.stretch.find(tissue.label); found != mesh.stretch.end()) {
       const auto& [least, most] = found->second;
-      out << line("%8.0f  %-28.28s   %5.2f (%.2f to %.2f), %5.2f (%.2f to %.2f)", tissue.file_value, tissue.name.c_str(), least[1], least[0], least[2],
-                  most[1], most[0], most[2]);
+      out << line("%8.0f  %-28.28s   %5.2f (%.2f to %.2f), %5.2f (%.2f to %.2f)", tissue.file_value,
+                  tissue.name.c_str(), least[1], least[0], least[2], most[1], most[0], most[2]);
     }
 }
 
@@ -261,8 +292,9 @@ void print_glide(std::ostream& out, const std::vector<GlidedJoint>& joints) {
   if (joints.empty()) return;
   out << line("%-24s %-24s %9s %9s %9s %9s", "joint that glides", "against", "shift mm", "of most", "deep mm", "after");
   for (const GlidedJoint& joint : joints)
-    out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(), glm::length(joint.shift), joint.most_mm,
-                joint.depth_before, joint.depth_after, joint.free ? "free" : "NOT FREE");
+    out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(),
+                glm::length(joint.shift), joint.most_mm, joint.depth_before, joint.depth_after,
+                joint.free ? "free" : "NOT FREE");
 }
 
 void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
@@ -285,12 +317,15 @@ std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose) {
     if (turn.w < 0) turn = -turn;
     const glm::dvec3 about(turn.x, turn.y, turn.z);
     if (glm::length(about) == 0) continue;
-    TurnedJoint joint{.bone = bone.name, .degrees = glm::degrees(2 * std::atan2(glm::length(about), turn.w)), .axis = glm::normalize(about)};
+    TurnedJoint joint{.bone = bone.name,
+                      .degrees = glm::degrees(2 * std::atan2(glm::length(about), turn.w)),
+                      .axis = glm::normalize(about)};
     if (bone.parent >= 0) joint.axis = motions[bone.parent].rotation * joint.axis;
     joint.head = motions[b] * bone.head;
     joint.tail = motions[b] * bone.tail;
     joint.parent_head = bone.parent >= 0 ? motions[bone.parent] * rig.bones[bone.parent].head : joint.head;
-    if (bone.limits.type != JointLimits::Type::Free) joint.excess_degrees = glm::degrees(limit_excess(bone, pose.rotation[b]));
+    if (bone.limits.type != JointLimits::Type::Free)
+      joint.excess_degrees = glm::degrees(limit_excess(bone, pose.rotation[b]));
     joints.push_back(joint);
   }
   return joints;
@@ -331,7 +366,8 @@ std::string to_json(const Report& report) {
     for (const auto& [name, value] : report.settings)
       std::visit([&, &key = name](const auto& v) { json["settings"][key] = v; }, value);
   if (!report.inputs.empty())
-    for (const InputFile& input : report.inputs) json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
+    for (const InputFile& input : report.inputs)
+      json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
   for (const TurnedJoint& joint : report.joints) json["joints"].push_back(joint_of(joint));
   if (report.glide) json["glide"] = glide_of(*report.glide);
   if (Json seconds = seconds_of(report.seconds); !seconds.empty()) json["seconds"] = seconds;
@@ -348,7 +384,8 @@ std::string to_json(const Report& report) {
   if (report.deform && report.deform->settled) json["settled_flesh"] = settled_of(*report.deform->settled);
   if (report.deform)
     for (const auto& [label, voxels] : report.deform->kept_organs) json["kept_organs"][key_of(report, label)] = voxels;
-  if (report.deform && report.deform->mass_exact) json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
+  if (report.deform && report.deform->mass_exact)
+    json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
@@ -362,7 +399,8 @@ double method_seconds(const std::string& report) {
   double sum = 0;
   if (const auto seconds = json.find("seconds"); seconds != json.end() && seconds->is_object())
     for (const char* stage : {"deform", "mesh", "solve", "rasterize"})
-      if (const auto took = seconds->find(stage); took != seconds->end() && took->is_number()) sum += took->get<double>();
+      if (const auto took = seconds->find(stage); took != seconds->end() && took->is_number())
+        sum += took->get<double>();
   return sum;
 }
 
@@ -385,14 +423,18 @@ void print_report(std::ostream& out, const Report& report) {
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));
     if (deform.settled && deform.settled->cells > 0)
-      out << line("flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f mm",
-                  100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after, deform.settled->largest_shift_mm);
+      out << line(
+          "flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f "
+          "mm",
+          100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
+          deform.settled->largest_shift_mm);
     std::int64_t moved = 0;
     for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
     if (moved > 0)
       out << line("organs kept: %lld that were off by more than 5 %% were given or gave %lld voxels at their surface",
                   static_cast<long long>(deform.kept_organs.size()), static_cast<long long>(moved));
-    if (deform.mass_exact) out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
+    if (deform.mass_exact)
+      out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())
@@ -400,14 +442,16 @@ void print_report(std::ostream& out, const Report& report) {
   }
   if (report.deform && report.deform->mesh) {
     const MeshReport& mesh = *report.deform->mesh;
-    out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2", static_cast<long long>(mesh.tets),
-                static_cast<long long>(mesh.inverted), mesh.min_det_f, 100 * mesh.share_below_fifth);
+    out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2",
+                static_cast<long long>(mesh.tets), static_cast<long long>(mesh.inverted), mesh.min_det_f,
+                100 * mesh.share_below_fifth);
     if (report.metrics && !mesh.stretch.empty()) print_stretch(out, *report.metrics, mesh);
   }
   if (report.deform && report.deform->solve) {
     const SolveReport& solve = *report.deform->solve;
-    out << line("%s %.1f %% of the pose in %d steps, %d iterations, residual %.3f mm", solve.converged ? "solved:" : "NOT SOLVED, ended at",
-                100 * solve.reached, solve.steps, solve.iterations, solve.residual_mm);
+    out << line("%s %.1f %% of the pose in %d steps, %d iterations, residual %.3f mm",
+                solve.converged ? "solved:" : "NOT SOLVED, ended at", 100 * solve.reached, solve.steps,
+                solve.iterations, solve.residual_mm);
   }
   const Json seconds = seconds_of(report.seconds);
   if (!seconds.empty()) {
@@ -421,7 +465,8 @@ void print_report(std::ostream& out, const Report& report) {
   out << line("peak memory %.0f MB", peak_memory_mb());
   if (!report.gates.empty()) out << "\n";
   for (const QualityGate& gate : report.gates)
-    out << line("%-11s %s", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(), gate.sentence.c_str());
+    out << line("%-11s %s", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(),
+                gate.sentence.c_str());
 }
 
 }  // namespace limber

@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "core/base/file.h"
-#include "core/pose/pose.h"
 #include "core/report/bands.h"
 #include "core/report/exposure.h"
 #include "core/report/metrics.h"
 #include "core/report/posed_bones.h"
-#include "core/report/quality_gates.h"
+#include "core/report/quality_gate.h"
 #include "core/resample/glide_joints.h"
 #include "core/resample/resample.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 
@@ -40,10 +40,10 @@ struct StageSeconds {
 // A joint that a pose turns.
 struct TurnedJoint {
   std::string bone;
-  double degrees = 0;                // relative to rest and to the parent
-  glm::dvec3 axis{0};                // unit, world, as the parent stands
+  double degrees = 0;                           // relative to rest and to the parent
+  glm::dvec3 axis{0};                           // unit, world, as the parent stands
   glm::dvec3 head{0}, tail{0}, parent_head{0};  // of the posed bones, world, mm
-  std::optional<double> excess_degrees;  // beyond the bone's limits; none where it has none
+  std::optional<double> excess_degrees;         // beyond the bone's limits; none where it has none
 };
 // By bone.
 std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose);
@@ -56,7 +56,8 @@ struct Report {
   std::optional<std::vector<GlidedJoint>> glide;  // those whose bones would overlap; none where joints do not glide
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::optional<std::vector<std::string>> doubts;  // of inputs that do not belong together [input_doubts.h]; none where nobody asked
+  std::optional<std::vector<std::string>>
+      doubts;                      // of inputs that do not belong together [input_doubts.h]; none where nobody asked
   std::optional<bool> whole_body;  // whether the rig has legs, and arms or a head; none without a rig
   PosedBones posed_bones;
   std::optional<Exposure> exposure;
@@ -68,9 +69,9 @@ struct Report {
   std::vector<QualityGate> gates;
 };
 
-// Everything that is measured of the pose itself: exposure, bones, limbs and bands where it knows the displacement (and the rig),
-// and the largest pocket of air where `report.metrics` say that air was closed in.
-// Says of the rig whether it is that of a whole body.
+// Everything that is measured of the pose itself: exposure, bones, limbs and bands where it knows the displacement (and
+// the rig), and the largest pocket of air where `report.metrics` say that air was closed in. Says of the rig whether it
+// is that of a whole body.
 void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report);
 // Judges the report by itself, into report.gates [quality_gates.h].
 void judge(Report& report);
@@ -79,7 +80,8 @@ std::vector<std::string> failed_gates(const Report& report);
 
 std::string to_json(const Report& report);
 void write_report(const Report& report, const Path& path);
-// What the method itself took, by such text: not weights that had to be computed first, files, nor the report. 0 where it says nothing.
+// What the method itself took, by such text: not weights that had to be computed first, files, nor the report. 0 where
+// it says nothing.
 double method_seconds(const std::string& report);
 // The same as a table that reads well in a terminal of 100 columns.
 void print_report(std::ostream& out, const Report& report);

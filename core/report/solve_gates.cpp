@@ -14,7 +14,9 @@ namespace {
 using Json = nlohmann::json;
 
 // Of a report; an object without anything where there is none.
-Json part(const Json& report, const char* key) { return report.is_object() && report.contains(key) && report[key].is_object() ? report[key] : Json::object(); }
+Json part(const Json& report, const char* key) {
+  return report.is_object() && report.contains(key) && report[key].is_object() ? report[key] : Json::object();
+}
 
 std::string formatted(const char* format, double value) {
   char buffer[48];
@@ -31,9 +33,13 @@ QualityGate unmeasured(const char* id, const char* name, const char* meaning, co
 }
 
 QualityGate judge_reached(const Json& report) {
-  QualityGate gate = unmeasured("reached", "Pose reached", "How much of the pose a solve by finite elements came to, and whether it settled there.", "all of it");
+  QualityGate gate =
+      unmeasured("reached", "Pose reached",
+                 "How much of the pose a solve by finite elements came to, and whether it settled there.", "all of it");
   const Json solve = part(report, "solve");
-  if (!solve.contains("reached") || !solve["reached"].is_number() || !solve.contains("converged") || !solve["converged"].is_boolean()) return gate;
+  if (!solve.contains("reached") || !solve["reached"].is_number() || !solve.contains("converged") ||
+      !solve["converged"].is_boolean())
+    return gate;
   const double reached = solve["reached"];
   const bool converged = solve["converged"];
   gate.state = converged ? GateState::Passed : GateState::Failed;
@@ -43,7 +49,9 @@ QualityGate judge_reached(const Json& report) {
 }
 
 QualityGate judge_gap(const Json& report) {
-  QualityGate gate = unmeasured("gap", "Gap", "The least air between skins that came near each other in a solve; not measured where none did.", "more than 0 mm");
+  QualityGate gate = unmeasured(
+      "gap", "Gap", "The least air between skins that came near each other in a solve; not measured where none did.",
+      "more than 0 mm");
   const Json mesh = part(report, "mesh");
   if (!mesh.contains("min_gap_mm") || !mesh["min_gap_mm"].is_number()) return gate;
   const double gap_mm = mesh["min_gap_mm"];

@@ -4,7 +4,7 @@
 //   gap      there is air between skins that came near each other
 #pragma once
 
-#include "core/report/quality_gates.h"
+#include "core/report/quality_gate.h"
 
 namespace limber {
 

@@ -16,7 +16,9 @@ DifferingSide differing(const LabelVolume& volume, const TissueVoxels& tissue, c
     tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& voxel) {
       const glm::dvec3 there = to_voxel * (to_world * glm::dvec3(voxel));
       const Label label = from.at_or_air(glm::ivec3(glm::floor(there + 0.5)));
-      side.voxels[static_cast<std::size_t>(place)] = label == volume.at(voxel) ? Differs::Not : label == 0 ? Differs::Air : Differs::Tissue;
+      side.voxels[static_cast<std::size_t>(place)] = label == volume.at(voxel) ? Differs::Not
+                                                     : label == 0              ? Differs::Air
+                                                                               : Differs::Tissue;
     });
   });
   tissue.for_each([&](std::int64_t place, const glm::ivec3& voxel) {

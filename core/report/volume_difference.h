@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where two volumes of one body differ: each tissue voxel of either is looked up in the other, at its middle. Volumes may lie on
-// different grids; where those are aligned the middles are voxels of both, and the lookup is exact.
+// Where two volumes of one body differ: each tissue voxel of either is looked up in the other, at its middle. Volumes
+// may lie on different grids; where those are aligned the middles are voxels of both, and the lookup is exact.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct DifferingSide {
     std::int64_t both() const { return other_tissue + air; }
     bool operator==(const Count&) const = default;
   };
-  std::vector<Differs> voxels;   // #tissue voxels, in their order
+  std::vector<Differs> voxels;    // #tissue voxels, in their order
   std::map<Label, Count> counts;  // of this volume's labels that differ anywhere
   Count total;
 

@@ -29,10 +29,11 @@ std::vector<int> followed_bones(const BoneGraph& graph, const TissueVoxels& tiss
   return bone;
 }
 
-double residual_of(const std::vector<std::int32_t>& voxels, const BoneGraph& graph, const AffineTransform& to_world, const std::vector<int>& followed,
-                   const std::vector<RigidTransform>& posed_from_rest) {
+double residual_of(const std::vector<std::int32_t>& voxels, const BoneGraph& graph, const AffineTransform& to_world,
+                   const std::vector<int>& followed, const std::vector<RigidTransform>& posed_from_rest) {
   // One motion carries all: nothing to fit.
-  const bool is_one = std::all_of(voxels.begin(), voxels.end(), [&](std::int32_t i) { return followed[i] == followed[voxels[0]]; });
+  const bool is_one =
+      std::all_of(voxels.begin(), voxels.end(), [&](std::int32_t i) { return followed[i] == followed[voxels[0]]; });
   if (is_one) return 0;
   std::vector<glm::dvec3> rest, posed;
   for (const std::int32_t i : voxels) {
@@ -68,8 +69,9 @@ RigidTransform best_rigid_motion(const std::vector<glm::dvec3>& rest, const std:
   return motion;
 }
 
-std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature,
-                                   const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest, const BoneMap& map) {
+std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                                   const Armature& armature, const SkinWeights& weights,
+                                   const std::vector<RigidTransform>& posed_from_rest, const BoneMap& map) {
   const std::vector<TissueKind> kinds = tissues.kinds();
   const std::map<Label, LabelBones> labels = bones_of_labels(tissues, armature, map);
   if (labels.empty()) return {};
@@ -78,13 +80,15 @@ std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels
   const std::vector<int> followed = followed_bones(graph, tissue, weights);
   std::vector<int> in_rig;  // by bone of the weights
   for (const std::string& name : weights.bones()) {
-    const auto found = std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });
+    const auto found =
+        std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });
     in_rig.push_back(found == armature.bones.end() ? -1 : static_cast<int>(found - armature.bones.begin()));
   }
 
   std::map<std::pair<Label, std::int32_t>, std::vector<std::int32_t>> members;
   for (std::int32_t i = 0; i < graph.size(); ++i)
-    if (const Label label = volume.at(graph.voxel[i]); labels.contains(label)) members[{label, named.group[i]}].push_back(i);
+    if (const Label label = volume.at(graph.voxel[i]); labels.contains(label))
+      members[{label, named.group[i]}].push_back(i);
 
   const AffineTransform to_world = world_from_voxel(volume.grid);
   std::vector<WholeBone> all;
@@ -97,7 +101,9 @@ std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels
       ++(std::find(allowed.begin(), allowed.end(), bone) != allowed.end() ? right : wrong)[bone];
     }
     const auto most = [](const std::map<int, std::int64_t>& counts) {
-      return std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+      return std::max_element(counts.begin(), counts.end(),
+                              [](const auto& a, const auto& b) { return a.second < b.second; })
+          ->first;
     };
     WholeBone& bone = all.emplace_back();
     bone.label = label;
@@ -106,7 +112,8 @@ std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels
     bone.belongs_to = armature.bones[right.empty() ? allowed.front() : most(right)].name;
     bone.voxels = std::ssize(voxels);
     for (const auto& [_, count] : wrong) bone.wrong_voxels += count;
-    if (!wrong.empty()) bone.went_with = most(wrong) < 0 ? "a bone that the rig lacks" : armature.bones[most(wrong)].name;
+    if (!wrong.empty())
+      bone.went_with = most(wrong) < 0 ? "a bone that the rig lacks" : armature.bones[most(wrong)].name;
     if (labels.at(label).single) bone.residual_mm = residual_of(voxels, graph, to_world, followed, posed_from_rest);
   }
   return all;
@@ -116,12 +123,17 @@ std::vector<std::string> astray_bones(const std::vector<WholeBone>& bones, std::
   std::vector<const WholeBone*> astray;
   for (const WholeBone& bone : bones)
     if (double(bone.wrong_voxels) > kAstray * double(bone.voxels)) astray.push_back(&bone);
-  std::stable_sort(astray.begin(), astray.end(), [](const WholeBone* a, const WholeBone* b) { return a->wrong_voxels > b->wrong_voxels; });
+  std::stable_sort(astray.begin(), astray.end(),
+                   [](const WholeBone* a, const WholeBone* b) { return a->wrong_voxels > b->wrong_voxels; });
   std::vector<std::string> lines;
   for (std::size_t k = 0; k < std::min(most, astray.size()); ++k)
-    lines.push_back(std::to_string(astray[k]->wrong_voxels) + " of " + std::to_string(astray[k]->voxels) + " voxels of \"" + astray[k]->name.substr(0, 80) +
-                    "\" follow " + astray[k]->went_with + ", but belong to " + astray[k]->belongs_to + ": compute the weights anew, or say so with --bone-map");
-  if (astray.size() > most) lines.push_back(std::to_string(astray.size() - most) + " more bones follow a wrong rig bone; the report lists them");
+    lines.push_back(std::to_string(astray[k]->wrong_voxels) + " of " + std::to_string(astray[k]->voxels) +
+                    " voxels of \"" + astray[k]->name.substr(0, 80) + "\" follow " + astray[k]->went_with +
+                    ", but belong to " + astray[k]->belongs_to +
+                    ": compute the weights anew, or say so with --bone-map");
+  if (astray.size() > most)
+    lines.push_back(std::to_string(astray.size() - most) +
+                    " more bones follow a wrong rig bone; the report lists them");
   return lines;
 }
 

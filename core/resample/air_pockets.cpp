@@ -20,8 +20,8 @@ struct AirRun {
   int begin, end;  // x
 };
 
-// Runs of air that have tissue of their row on both sides, joined where they touch through faces. All other air of a row
-// reaches the border of the grid.
+// Runs of air that have tissue of their row on both sides, joined where they touch through faces. All other air of a
+// row reaches the border of the grid.
 class AirRuns {
  public:
   explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
@@ -113,8 +113,10 @@ class AirRuns {
   std::vector<bool> is_open_;
 };
 
-// Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each counted once.
-std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest, const std::vector<AirPocket>& rest_pockets,
+// Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each
+// counted once.
+std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest,
+                          const std::vector<AirPocket>& rest_pockets,
                           const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
   std::set<int> found;
   for (const glm::ivec3& v : pocket)
@@ -124,7 +126,8 @@ std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, con
       const glm::ivec3 from = glm::ivec3(glm::floor(rest_point(wall) + 0.5));
       for (const glm::ivec3& step : neighbours())
         if (rest.grid.contains(from + step))
-          if (const auto at = pocket_at_rest.find(rest.grid.index(from + step)); at != pocket_at_rest.end()) found.insert(at->second);
+          if (const auto at = pocket_at_rest.find(rest.grid.index(from + step)); at != pocket_at_rest.end())
+            found.insert(at->second);
     }
   std::int64_t size = 0;
   for (int p : found) size += std::ssize(rest_pockets[p]);
@@ -132,7 +135,8 @@ std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, con
 }
 
 bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
-  return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
+  return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
+                     [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
 }
 
 // The flesh at a voxel of a pocket's border, looked for at most two voxels behind its wall; else the skin there.
@@ -158,17 +162,16 @@ Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSe
 }
 
 // From the walls inwards, layer by layer, until `kept` voxels are left.
-void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft, std::vector<glm::ivec3>& filled) {
+void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft,
+          std::vector<glm::ivec3>& filled) {
   while (std::ssize(pocket) > kept) {
     AirPocket inner;
     std::vector<std::pair<glm::ivec3, Label>> layer;
     for (const glm::ivec3& v : pocket) {
       const bool is_next = std::ssize(pocket) - std::ssize(layer) > kept && touches_tissue(posed, v);
       const Label found = is_next ? flesh_behind(posed, v, flesh, soft) : Label{0};
-      if (found)
-        layer.push_back({v, found});
-      else
-        inner.push_back(v);
+      if (found) layer.push_back({v, found});
+      else inner.push_back(v);
     }
     if (layer.empty()) break;
     for (const auto& [v, label] : layer) {
@@ -183,7 +186,8 @@ void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSe
 
 std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
 
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
+std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh,
+                                           const LabelSet& soft, const RestPoint& rest_point) {
   const std::vector<AirPocket> pockets = air_pockets(posed);
   if (pockets.empty()) return {};
   const std::vector<AirPocket> rest_pockets = air_pockets(rest);

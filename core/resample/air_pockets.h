@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Air that a body encloses. A fold that closes over a hollow would leave a bubble where in a body flesh is pressed together, and a
-// hollow that was there would grow with the flesh that is stretched around it: a body holds as much air as before.
+// Air that a body encloses. A fold that closes over a hollow would leave a bubble where in a body flesh is pressed
+// together, and a hollow that was there would grow with the flesh that is stretched around it: a body holds as much air
+// as before.
 #pragma once
 
 #include <map>
@@ -15,12 +16,13 @@ namespace limber {
 using AirPocket = std::vector<glm::ivec3>;
 std::vector<AirPocket> air_pockets(const LabelVolume& volume);
 
-// Pockets of `posed` get the size that the hollows behind their walls had at rest, none where there was none: what is more is filled,
-// from the walls on, with the soft tissue nearest to it. Where skin lines the walls that is what lies under it, and what is left of
-// the pocket is lined with skin again.
+// Pockets of `posed` get the size that the hollows behind their walls had at rest, none where there was none: what is
+// more is filled, from the walls on, with the soft tissue nearest to it. Where skin lines the walls that is what lies
+// under it, and what is left of the pocket is lined with skin again.
 //   flesh  soft tissues but skin, by label      soft  with skin
 //   returns  the voxels filled, each after those that it was filled from
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point);
+std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh,
+                                           const LabelSet& soft, const RestPoint& rest_point);
 
 // Where tissue comes from that fills what was air: from where the tissue beside it comes from.
 struct Origin {

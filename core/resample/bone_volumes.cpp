@@ -17,7 +17,8 @@ namespace {
 constexpr int kSweeps = 16;         // over the tissues of a bone, until no price changes
 constexpr float kMostPrice = 0.2f;  // what would need more is left a little short: it has hardly any voxel near
 constexpr int kAsked = 3;           // tissues that may get a voxel
-constexpr float kDither = 1e-3f;    // of memberships: a border that runs along the turned grid would go to one side as a whole
+constexpr float kDither =
+    1e-3f;  // of memberships: a border that runs along the turned grid would go to one side as a whole
 
 using Counts = std::map<Label, std::int64_t>;
 
@@ -79,14 +80,15 @@ Contested contested(const LabelSampler::Memberships& found, Label own) {
     voxel.membership[place] = share;
   }
   const bool is_near = voxel.count > 1 && voxel.membership[0] - voxel.membership[1] < 2 * kMostPrice;
-  const bool has_own = std::find(voxel.label.begin(), voxel.label.begin() + voxel.count, own) != voxel.label.begin() + voxel.count;
+  const bool has_own =
+      std::find(voxel.label.begin(), voxel.label.begin() + voxel.count, own) != voxel.label.begin() + voxel.count;
   if (!is_near || !has_own) voxel.count = 0;
   return voxel;
 }
 
 // One slice's part of each bone.
-void read_slice(const LabelVolume& posed, const LabelVolume& posed_bones, int z, const RowSet* rows, const LabelSampler& sampler,
-                const LabelSet& is_bone, const RestPoint& rest_point, Bones& bones) {
+void read_slice(const LabelVolume& posed, const LabelVolume& posed_bones, int z, const RowSet* rows,
+                const LabelSampler& sampler, const LabelSet& is_bone, const RestPoint& rest_point, Bones& bones) {
   for_each_in_slice(posed_bones, z, rows, [&](const glm::ivec3& v, Label number) {
     const Label own = posed.at(v);
     Contested voxel = contested(sampler.memberships(rest_point(v), is_bone), own);
@@ -140,7 +142,8 @@ float price_of(Label label, std::int64_t wanted, const Bone& bone) {
 }
 
 std::int64_t total(const Counts& counts) {
-  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0}, [](std::int64_t sum, const auto& count) { return sum + count.second; });
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0},
+                         [](std::int64_t sum, const auto& count) { return sum + count.second; });
 }
 
 // Of a bone's posed voxels, what each of its tissues should have.
@@ -172,15 +175,17 @@ void set_prices(Bone& bone, const Counts& wanted) {
 
 }  // namespace
 
-std::int64_t keep_bone_volumes(LabelVolume& posed, const LabelVolume& posed_bones, const LabelVolume& rest, const LabelVolume& rest_bones,
-                               const LabelSet& soft, const RestPoint& rest_point, const MendRows& rows) {
+std::int64_t keep_bone_volumes(LabelVolume& posed, const LabelVolume& posed_bones, const LabelVolume& rest,
+                               const LabelVolume& rest_bones, const LabelSet& soft, const RestPoint& rest_point,
+                               const MendRows& rows) {
   LabelSet is_bone(soft.size());
   for (size_t label = 1; label < soft.size(); ++label) is_bone[label] = !soft[label];
   const LabelSampler sampler(rest);
   Bones bones = bones_at_rest(rest, rest_bones, rows.rest);
   std::vector<Bones> slices(posed.grid.size.z);
   parallel_for(posed.grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
-    for (auto z = begin; z < end; ++z) read_slice(posed, posed_bones, static_cast<int>(z), rows.posed, sampler, is_bone, rest_point, slices[z]);
+    for (auto z = begin; z < end; ++z)
+      read_slice(posed, posed_bones, static_cast<int>(z), rows.posed, sampler, is_bone, rest_point, slices[z]);
   });
   for (Bones& slice : slices) add(std::move(slice), bones);
 

@@ -15,12 +15,14 @@ namespace limber {
 namespace {
 
 constexpr double kMargin = 24;  // mm around what bends by its weights: skin creases wider than weights blend
-constexpr double kGive = 16;    // mm around what the pose brings together: pressed flesh gives way less far than a crease reaches
-constexpr double kRim = 2.5;    // tets: two layers whole, whatever cells the tissue's border cuts
-constexpr double kJoint = 2;    // tets: so many layers share the sliding of two bones
-constexpr double kDrift = 2;    // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
+constexpr double kGive =
+    16;  // mm around what the pose brings together: pressed flesh gives way less far than a crease reaches
+constexpr double kRim = 2.5;  // tets: two layers whole, whatever cells the tissue's border cuts
+constexpr double kJoint = 2;  // tets: so many layers share the sliding of two bones
+constexpr double kDrift =
+    2;  // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
 constexpr double kContact = 1.4;  // mm from which skin is pushed apart; less where tets are small
-constexpr double kTouches = 1.5;   // of that distance: what counts as touching in reports
+constexpr double kTouches = 1.5;  // of that distance: what counts as touching in reports
 constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -36,7 +38,8 @@ double tet_spacing(const Fem& fem) {
 std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses) {
   std::vector<glm::dvec3> joints;
   for (size_t b = 0; b < armature.bones.size(); ++b)
-    if (armature.bones[b].parent >= 0 && std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) { return std::abs(pose.rotation[b].w) < kBent; }))
+    if (armature.bones[b].parent >= 0 &&
+        std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) { return std::abs(pose.rotation[b].w) < kBent; }))
       joints.push_back(armature.bones[b].head);
   return joints;
 }
@@ -46,7 +49,8 @@ BonePath way_through(const std::vector<Pose>& poses, const SkinWeights& weights,
   return [&](double t) {
     const double place = t * double(poses.size());
     const auto leg = std::min(std::size_t(place), poses.size() - 1);
-    return bone_motions(weights.bones(), armature, pose_between(leg ? poses[leg - 1] : rest_pose(armature), poses[leg], place - double(leg)));
+    return bone_motions(weights.bones(), armature,
+                        pose_between(leg ? poses[leg - 1] : rest_pose(armature), poses[leg], place - double(leg)));
   };
 }
 
@@ -95,26 +99,45 @@ void measure(const SolvedPose& solved, double spacing, double contact_mm, FemSha
 }
 
 SolveReport report_of(const SolvedPose& solved) {
-  return {.converged = solved.converged, .reached = solved.reached, .blocked_by = solved.blocked_by, .steps = solved.steps,
-          .iterations = solved.iterations, .factorizations = solved.factorizations, .analyses = solved.analyses, .residual_mm = solved.residual, .bone_drift_mm = solved.bone_drift_mm};
+  return {.converged = solved.converged,
+          .reached = solved.reached,
+          .blocked_by = solved.blocked_by,
+          .steps = solved.steps,
+          .iterations = solved.iterations,
+          .factorizations = solved.factorizations,
+          .analyses = solved.analyses,
+          .residual_mm = solved.residual,
+          .bone_drift_mm = solved.bone_drift_mm};
 }
 
 }  // namespace
 
-std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone,
-                                            const SkinWeights& weights, const Armature& armature, const Pose& pose, const Fem& fem,
-                                            Progress& progress) {
+std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
+                                            const TissueTable& tissues, const LabelSet& is_bone,
+                                            const SkinWeights& weights, const Armature& armature, const Pose& pose,
+                                            const Fem& fem, Progress& progress) {
   return FemSequence(volume, tissue, tissues, is_bone, weights, armature, {pose}, fem, progress).next(progress);
 }
 
-FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const LabelSet& is_bone,
-                         const SkinWeights& weights, const Armature& armature, std::vector<Pose> poses, Fem fem, Progress& progress)
-    : weights_(weights), armature_(armature), is_bone_(is_bone), poses_(std::move(poses)), fem_(std::move(fem)), spacing_(tet_spacing(fem_)) {
+FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                         const LabelSet& is_bone, const SkinWeights& weights, const Armature& armature,
+                         std::vector<Pose> poses, Fem fem, Progress& progress)
+    : weights_(weights),
+      armature_(armature),
+      is_bone_(is_bone),
+      poses_(std::move(poses)),
+      fem_(std::move(fem)),
+      spacing_(tet_spacing(fem_)) {
   const auto meshing = std::chrono::steady_clock::now();
   MovingTissue& moving = last_.moving;
   moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
-                         {.margin_mm = kMargin + spacing_, .rim_mm = kRim * spacing_, .contact = fem_.contact, .near_mm = 2 * spacing_, .give_mm = kGive + spacing_,
-                          .places = places_of(poses_.size())}, progress);
+                         {.margin_mm = kMargin + spacing_,
+                          .rim_mm = kRim * spacing_,
+                          .contact = fem_.contact,
+                          .near_mm = 2 * spacing_,
+                          .give_mm = kGive + spacing_,
+                          .places = places_of(poses_.size())},
+                         progress);
   last_.pose = rest_pose(armature);
   if (moving.empty()) return;
 
@@ -124,7 +147,8 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
   last_.mesh.fallback = meshed.warning;
-  last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
+  last_.model =
+      tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
   waiting_ = last_.model.fem.waiting;
   last_.V = last_.model.fem.mesh.V;
   last_.seconds_mesh = seconds_since(meshing);
@@ -137,10 +161,15 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   if (last_.moving.empty()) return nullptr;
   const auto solving = std::chrono::steady_clock::now();
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
-  const SolveSettings settings{.contact = fem_.contact, .contact_mm = std::min(kContact, finest_ / 4), .step_tolerance_mm = finest_ / 2, .bone_drift_mm = std::max(kDrift, spacing_ / 2)};
-  const SolvedPose solved = solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
+  const SolveSettings settings{.contact = fem_.contact,
+                               .contact_mm = std::min(kContact, finest_ / 4),
+                               .step_tolerance_mm = finest_ / 2,
+                               .bone_drift_mm = std::max(kDrift, spacing_ / 2)};
+  const SolvedPose solved =
+      solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // something should have moved
-    throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements", "choose a finer quality, or blend instead");
+    throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
+                "choose a finer quality, or blend instead");
   const bool ends = solved_ == poses_.size();
   auto shape = std::make_shared<FemShape>(ends ? std::move(last_) : FemShape(last_));
   shape->V = solved.V;
@@ -150,7 +179,9 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   shape->solve = report_of(solved);
   shape->mesh = {.fallback = shape->mesh.fallback};
   measure(solved, spacing_, settings.contact_mm, *shape);
-  std::erase_if(shape->mesh.stretch, [&](const auto& tissue) { return is_bone_[tissue.first] != 0; });  // painted rigidly, whatever tets it lies in
+  std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
+    return is_bone_[tissue.first] != 0;
+  });  // painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
   if (shape->reached < 1) waiting_.clear();  // the way on is another

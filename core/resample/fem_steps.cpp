@@ -5,9 +5,9 @@
 #include <fstream>
 #include <string_view>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/fem/tissue_model.h"
-#include "core/base/bytes.h"
 
 namespace limber {
 
@@ -18,7 +18,9 @@ constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 
 Path with(const Path& name, const char* ending) { return name.string() + ending; }
 
-[[noreturn]] void damaged(const std::string& where) { throw Error("the steps of finite elements cannot be read", where, "run the solve again"); }
+[[noreturn]] void damaged(const std::string& where) {
+  throw Error("the steps of finite elements cannot be read", where, "run the solve again");
+}
 
 void put_places(ByteWriter& writer, const Eigen::MatrixX3d& V) {
   writer.count(V.rows());
@@ -108,7 +110,9 @@ std::string encode(const FemStep& step) {
   writer.put(step.residual_mm);
   writer.count(step.motions.size());
   for (const RigidTransform& bone : step.motions)
-    for (const double each : {bone.rotation.w, bone.rotation.x, bone.rotation.y, bone.rotation.z, bone.translation.x, bone.translation.y, bone.translation.z}) writer.put(each);
+    for (const double each : {bone.rotation.w, bone.rotation.x, bone.rotation.y, bone.rotation.z, bone.translation.x,
+                              bone.translation.y, bone.translation.z})
+      writer.put(each);
   put_places(writer, step.V);
   return writer.take();
 }
@@ -121,8 +125,12 @@ FemStep decode_fem_step(const std::string& bytes, const std::string& where) {
   step.residual_mm = reader.get<double>();
   step.motions.resize(reader.count(7 * sizeof(double)));
   for (RigidTransform& bone : step.motions) {
-    for (double* each : {&bone.rotation.w, &bone.rotation.x, &bone.rotation.y, &bone.rotation.z, &bone.translation.x, &bone.translation.y, &bone.translation.z}) *each = reader.get<double>();
-    if (!(std::abs(glm::length(bone.rotation) - 1) < 1e-6) || !std::isfinite(glm::dot(bone.translation, bone.translation))) damaged(where);
+    for (double* each : {&bone.rotation.w, &bone.rotation.x, &bone.rotation.y, &bone.rotation.z, &bone.translation.x,
+                         &bone.translation.y, &bone.translation.z})
+      *each = reader.get<double>();
+    if (!(std::abs(glm::length(bone.rotation) - 1) < 1e-6) ||
+        !std::isfinite(glm::dot(bone.translation, bone.translation)))
+      damaged(where);
   }
   step.V = get_places(reader, where);
   return step;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A solve by finite elements as seen from another process: two files that the solver leaves for whoever watches,
 //   NAME.mesh  the tets at rest, once
-//   NAME.step  where the nodes and the bones are after the newest iteration, and at the end where they have come to rest
-// Each step takes the former one's place in one move, so that a reader sees a whole one, and the disk holds one only. Places
-// are single precision: 0.1 um on a body. Files of one program version are read by the same one; they are no archive.
+//   NAME.step  where the nodes and the bones are after the newest iteration, and at the end where they have come to
+//   rest
+// Each step takes the former one's place in one move, so that a reader sees a whole one, and the disk holds one only.
+// Places are single precision: 0.1 um on a body. Files of one program version are read by the same one; they are no
+// archive.
 #pragma once
 
 #include <memory>

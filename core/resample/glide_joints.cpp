@@ -85,7 +85,8 @@ class BentJoints {
  public:
   BentJoints(const Armature& armature, const Pose& pose, const std::vector<BoneTissue>& tissue,
              const GlideSettings& settings)
-      : armature_(armature), pose_(pose) {
+      : armature_(armature),
+        pose_(pose) {
     for (int bone = 0; bone < std::ssize(armature.bones); ++bone) {
       const int against = above_with_tissue(bone, tissue);
       if (tissue[bone].voxels.empty() || against < 0) continue;
@@ -169,7 +170,8 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   const Box first = taken_into(turning.box.grown(reach), fixed, way_back, grid.spacing);
   const Box near_turning = taken_into(first.grown(reach), turning, path, grid.spacing);
   const Box near_fixed = taken_into(near_turning.grown(reach), fixed, way_back, grid.spacing);
-  const VoxelBox of_fixed = voxels_around(near_fixed, grid.spacing), of_turning = voxels_around(near_turning, grid.spacing);
+  const VoxelBox of_fixed = voxels_around(near_fixed, grid.spacing),
+                 of_turning = voxels_around(near_turning, grid.spacing);
   if (of_fixed.size.x == 0 || of_turning.size.x == 0) return {};
   const BoneDistance from_fixed(grid.spacing, fixed.voxels, of_fixed),
       from_turning(grid.spacing, turning.voxels, of_turning);

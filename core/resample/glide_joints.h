@@ -2,7 +2,7 @@
 // Joints that glide: a pose turns every bone exactly as asked, and where the bones of a joint would overlap then, the
 // bone that turns is shifted by the least translation that frees it, and with it all that hangs on it. A rig's joint
 // is one fixed axis or centre; real joints roll, glide and open, and rigs lie some millimetres off. Axes are not
-// touched: fitting them is an edit of the rig (core/rig/fit_joint.h).
+// touched: fitting them is an edit of the rig (core/autorig/joint_axis_fit.h).
 //
 // A joint is between a rig bone with bone tissue and the nearest bone above it that has some. Which tissue that is
 // say the weights, as where bones are painted. A shift does not change how other joints stand, so each is found by
@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/label_sampler.h"
 

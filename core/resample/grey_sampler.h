@@ -2,7 +2,7 @@
 // Grey values of a volume anywhere in the world.
 #pragma once
 
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
@@ -26,7 +26,8 @@ class GreySampler {
   }
   bool covers(const glm::dvec3& world) const {
     const glm::dvec3 p = voxel_from_world_ * world;
-    return glm::all(glm::greaterThanEqual(p, glm::dvec3(-0.5))) && glm::all(glm::lessThan(p, glm::dvec3(grey_.grid.size) - 0.5));
+    return glm::all(glm::greaterThanEqual(p, glm::dvec3(-0.5))) &&
+           glm::all(glm::lessThan(p, glm::dvec3(grey_.grid.size) - 0.5));
   }
 
  private:

@@ -18,10 +18,11 @@ namespace {
 
 constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
 constexpr int kLongestTrace = 64;  // voxels, all of which come from beside the tissue itself
-constexpr std::size_t kTraced = 20000;  // voxels of all traces that are asked where they come from, which takes its time
-constexpr int kAttempts = 32;      // bridges tried for one part, each around the voxels that earlier ones may not take
+constexpr std::size_t kTraced =
+    20000;                     // voxels of all traces that are asked where they come from, which takes its time
+constexpr int kAttempts = 32;  // bridges tried for one part, each around the voxels that earlier ones may not take
 constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a part that came out smaller is not made up again
-constexpr int kSamples = 4;        // voxels of a part that are asked where they come from
+constexpr int kSamples = 4;                       // voxels of a part that are asked where they come from
 
 struct Part {
   int component;
@@ -43,10 +44,17 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
 class Mending {
  public:
   // `posed` may be `tissue` itself.
-  Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest, const LabelVolume& tissue,
-          const LabelSet& soft, const RestPoint& rest_point)
-      : posed_(posed), rest_(rest), tissue_(tissue), soft_(soft), in_tissue_(&posed == &tissue), rest_point_(rest_point),
-        of_posed_(std::move(of_posed)), of_rest_(of_rest), joined_(of_posed_.voxels.size()) {
+  Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest,
+          const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
+      : posed_(posed),
+        rest_(rest),
+        tissue_(tissue),
+        soft_(soft),
+        in_tissue_(&posed == &tissue),
+        rest_point_(rest_point),
+        of_posed_(std::move(of_posed)),
+        of_rest_(of_rest),
+        joined_(of_posed_.voxels.size()) {
     std::iota(joined_.begin(), joined_.end(), 0);
   }
 
@@ -118,7 +126,9 @@ class Mending {
   void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
       const auto from = sources(label, parts[i].component);
-      const bool was_small = std::all_of(from.begin(), from.end(), [&](int rest_part) { return rest_part >= 0 && of_rest_.voxels[rest_part] < kSmallestPart; });
+      const bool was_small = std::all_of(from.begin(), from.end(), [&](int rest_part) {
+        return rest_part >= 0 && of_rest_.voxels[rest_part] < kSmallestPart;
+      });
       if (was_small && pare(label, parts[i].component)) --too_many;
     }
   }
@@ -190,7 +200,8 @@ class Mending {
       int most = 0;
       std::int64_t best = 0;
       for (const auto& [at, count] : touches)
-        if (count > most && can_take(voxel_at(posed_.grid, at), label) && !joins_another(voxel_at(posed_.grid, at), label, part, part)) {
+        if (count > most && can_take(voxel_at(posed_.grid, at), label) &&
+            !joins_another(voxel_at(posed_.grid, at), label, part, part)) {
           most = count;
           best = at;
         }
@@ -221,11 +232,13 @@ class Mending {
 
   // Breadth first from the whole part; each layer is one voxel of bridge more. Smaller pieces of the tissue are crossed
   // for nothing.
-  //   along_trace  a longer bridge may be built, of voxels that all come from beside the tissue: a thin sheet that the pose
+  //   along_trace  a longer bridge may be built, of voxels that all come from beside the tissue: a thin sheet that the
+  //   pose
   //                stretched ran there, and fell between the voxels' centres
   std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
-    std::unordered_map<std::int64_t, std::int64_t> came_from;  // of voxels outside the part, those that cannot be taken too
+    std::unordered_map<std::int64_t, std::int64_t>
+        came_from;  // of voxels outside the part, those that cannot be taken too
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
     for (int length = 0; length <= longest && !layer.empty(); ++length) {
@@ -244,10 +257,8 @@ class Mending {
             const int component = joined(component_of(to));
             if (component == own || came_from.contains(at)) continue;
             came_from[at] = posed_.grid.index(from);
-            if (of_posed_.voxels[component] < kSmallestPart)
-              layer.push_back(to);
-            else if (same_rest_part(label, came_from, to))
-              return path(came_from, label, to, component);
+            if (of_posed_.voxels[component] < kSmallestPart) layer.push_back(to);
+            else if (same_rest_part(label, came_from, to)) return path(came_from, label, to, component);
           } else if (length < longest && came_from.try_emplace(at, posed_.grid.index(from)).second &&
                      can_take(to, label) && (!along_trace || comes_from_beside(to, label))) {
             next.push_back(to);
@@ -264,9 +275,9 @@ class Mending {
     if (is_new && comes_from_.size() <= kTraced) known->second = glm::ivec3(glm::floor(rest_point_(posed_voxel) + 0.5));
     if (!known->second) return false;
     const glm::ivec3 from = *known->second;
-    return rest_.at_or_air(from) == label || std::any_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
-             return rest_.at_or_air(from + step) == label;
-           });
+    return rest_.at_or_air(from) == label ||
+           std::any_of(neighbours().begin(), neighbours().end(),
+                       [&](const glm::ivec3& step) { return rest_.at_or_air(from + step) == label; });
   }
 
   struct Stretch {
@@ -301,15 +312,18 @@ class Mending {
     return !in_tissue_ || of_posed_.voxels[component_of(v)] != kSmallestPart;
   }
 
-  Bridge path(const std::unordered_map<std::int64_t, std::int64_t>& came_from, Label label, const glm::ivec3& end, int component) const {
+  Bridge path(const std::unordered_map<std::int64_t, std::int64_t>& came_from, Label label, const glm::ivec3& end,
+              int component) const {
     Bridge bridge;
     bridge.other = component;
-    for (auto step = came_from.find(posed_.grid.index(end)); step != came_from.end(); step = came_from.find(step->second))
+    for (auto step = came_from.find(posed_.grid.index(end)); step != came_from.end();
+         step = came_from.find(step->second))
       if (const glm::ivec3 v = voxel_at(posed_.grid, step->first); posed_.at(v) != label) bridge.voxels.push_back(v);
     return bridge;
   }
 
-  bool same_rest_part(Label label, const std::unordered_map<std::int64_t, std::int64_t>& came_from, const glm::ivec3& end) const {
+  bool same_rest_part(Label label, const std::unordered_map<std::int64_t, std::int64_t>& came_from,
+                      const glm::ivec3& end) const {
     std::int64_t start = posed_.grid.index(end);
     for (auto step = came_from.find(start); step != came_from.end(); step = came_from.find(start)) start = step->second;
     return rest_part(label, voxel_at(posed_.grid, start)) == rest_part(label, end);
@@ -355,14 +369,15 @@ class Mending {
   const LabelSet& soft_;
   const bool in_tissue_;  // voxels are taken from the parts' own volume
   const RestPoint& rest_point_;
-  Components of_posed_;                           // as they were before the first bridge, but for the parts' sizes
+  Components of_posed_;  // as they were before the first bridge, but for the parts' sizes
   const Components& of_rest_;
-  std::map<int, std::vector<Stretch>> stretches_; // of the present label's parts
-  std::vector<int> joined_;                       // component it was joined to; itself where it was not
-  std::unordered_map<std::int64_t, int> taken_;   // component of voxels in bridges
+  std::map<int, std::vector<Stretch>> stretches_;  // of the present label's parts
+  std::vector<int> joined_;                        // component it was joined to; itself where it was not
+  std::unordered_map<std::int64_t, int> taken_;    // component of voxels in bridges
   std::vector<glm::ivec3> bridges_;
-  std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;  // rest voxels of what was traced; none once there are too many
-  std::unordered_set<std::int64_t> barred_;       // voxels that the present part's bridges may not take
+  std::unordered_map<std::int64_t, std::optional<glm::ivec3>>
+      comes_from_;                           // rest voxels of what was traced; none once there are too many
+  std::unordered_set<std::int64_t> barred_;  // voxels that the present part's bridges may not take
 };
 
 }  // namespace

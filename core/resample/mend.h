@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps tissues the connected parts (26-connected, of 50 voxels or more) that they have at rest, where posing on a grid tears
-// them though the body is not torn: where a sheet or a strand is one voxel thick and the fold of a joint carries its voxels
-// apart, another tissue wins the voxel between them, or a small bone comes out a few voxels smaller when it is turned.
+// Keeps tissues the connected parts (26-connected, of 50 voxels or more) that they have at rest, where posing on a grid
+// tears them though the body is not torn: where a sheet or a strand is one voxel thick and the fold of a joint carries
+// its voxels apart, another tissue wins the voxel between them, or a small bone comes out a few voxels smaller when it
+// is turned.
 //
-// Bone tissues that have fewer parts than at rest are first parted (part_bones). For every tissue with more parts than at
-// rest, and until it has as many again, each part, smallest first, looks for another one that comes from the same rest part,
-// and takes the fewest voxels that join them: at most four, or up to 64 that all come from beside the tissue itself, as where
-// a tendon thinner than a voxel is stretched over a bent knee. Of a tissue with fewer, a part that came out smaller than 50
-// voxels, but half of them or more, is filled up to 50; a part of bone tissue that came out with 50, but had fewer, gives what
-// it gained. Soft tissue takes from soft tissue only, bone tissue from bone tissue. No voxel beside air is taken (so no skin is
-// opened), none whose own tissue would be split by the loss, and none that its own part needs to stay a part.
+// Bone tissues that have fewer parts than at rest are first parted (part_bones). For every tissue with more parts than
+// at rest, and until it has as many again, each part, smallest first, looks for another one that comes from the same
+// rest part, and takes the fewest voxels that join them: at most four, or up to 64 that all come from beside the tissue
+// itself, as where a tendon thinner than a voxel is stretched over a bent knee. Of a tissue with fewer, a part that
+// came out smaller than 50 voxels, but half of them or more, is filled up to 50; a part of bone tissue that came out
+// with 50, but had fewer, gives what it gained. Soft tissue takes from soft tissue only, bone tissue from bone tissue.
+// No voxel beside air is taken (so no skin is opened), none whose own tissue would be split by the loss, and none that
+// its own part needs to stay a part.
 #pragma once
 
 #include <vector>

@@ -20,7 +20,8 @@ const std::array<unsigned, 27>& beside() {
     std::array<unsigned, 27> places{};
     for (int a = 0; a < 27; ++a)
       for (int b = 0; b < 27; ++b)
-        if (std::abs(a % 3 - b % 3) <= 1 && std::abs(a / 3 % 3 - b / 3 % 3) <= 1 && std::abs(a / 9 - b / 9) <= 1) places[a] |= 1u << b;
+        if (std::abs(a % 3 - b % 3) <= 1 && std::abs(a / 3 % 3 - b / 3 % 3) <= 1 && std::abs(a / 9 - b / 9) <= 1)
+          places[a] |= 1u << b;
     return places;
   }();
   return all;
@@ -73,7 +74,8 @@ bool faces_hang_together(unsigned places) {
 template <class Body>
 void for_each_around(const LabelVolume& volume, const glm::ivec3& voxel, const Body& body) {
   const glm::ivec3 size = volume.grid.size;
-  const bool inside = glm::all(glm::greaterThanEqual(voxel, glm::ivec3(1))) && glm::all(glm::lessThanEqual(voxel, size - 2));
+  const bool inside =
+      glm::all(glm::greaterThanEqual(voxel, glm::ivec3(1))) && glm::all(glm::lessThanEqual(voxel, size - 2));
   const Label* at = inside ? &volume.voxels[volume.grid.index(voxel)] : nullptr;
   const std::int64_t row = size.x, slice = row * size.y;
   for (int k = 0; k < 27; ++k) {
@@ -97,7 +99,8 @@ const std::array<glm::ivec3, 26>& neighbours() {
 
 std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
   const std::int64_t row = v.y + std::int64_t{volume.grid.size.y} * v.z;
-  const auto begin = components.runs.begin() + components.first_run[row], end = components.runs.begin() + components.first_run[row + 1];
+  const auto begin = components.runs.begin() + components.first_run[row],
+             end = components.runs.begin() + components.first_run[row + 1];
   const auto run = std::partition_point(begin, end, [&](const Components::Run& r) { return r.end <= v.x; });
   return run - components.runs.begin();
 }

@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/volume/components.h"
+#include "core/volume/connected_components.h"
 
 namespace limber {
 
@@ -18,7 +18,8 @@ using RestPoint = std::function<glm::dvec3(const glm::ivec3& posed_voxel)>;
 
 const std::array<glm::ivec3, 26>& neighbours();
 // The six of them that share a face with it.
-constexpr std::array<glm::ivec3, 6> kFaceNeighbours{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+constexpr std::array<glm::ivec3, 6> kFaceNeighbours{
+    {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 // The voxel at a place of a grid, x fastest.
 inline glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
@@ -39,19 +40,21 @@ std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, 
 // The rest component of `label` nearest to a rest point, -1 when there is none within 8 voxels.
 int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point);
 
-// Whether the marked ones of a voxel's surroundings hang together, 26-connected, without the voxel itself; not when none is.
+// Whether the marked ones of a voxel's surroundings hang together, 26-connected, without the voxel itself; not when
+// none is.
 //   marked  27, x fastest; the middle one counts for nothing
 bool hang_together(const std::array<bool, 27>& marked);
 
 // Whether its tissue can spare the voxel: what is left of it around hangs together.
 bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Whether a tissue may have the voxel without two of its parts, or two ends of one, being joined: the label's voxels around it
-// hang together, and there is one.
+// Whether a tissue may have the voxel without two of its parts, or two ends of one, being joined: the label's voxels
+// around it hang together, and there is one.
 bool can_join(const LabelVolume& volume, const glm::ivec3& voxel, Label label);
 
-// Whether a voxel can go from air to tissue, or back, and the body's parts, holes and cavities stay as they are: it is a simple
-// point, for tissue of 26 and air of 6 neighbours [Bertrand & Malandain, Pattern Recognition Letters 15, 1994].
+// Whether a voxel can go from air to tissue, or back, and the body's parts, holes and cavities stay as they are: it is
+// a simple point, for tissue of 26 and air of 6 neighbours [Bertrand & Malandain, Pattern Recognition Letters 15,
+// 1994].
 bool air_can_change(const LabelVolume& volume, const glm::ivec3& voxel);
 
 // Whether all 26 voxels around have the voxel's own label.

@@ -75,10 +75,8 @@ class Organs {
       for (v.y = box.low.y; v.y <= box.high.y; ++v.y) {
         const Label* row = &posed_.voxels[posed_.grid.index({0, v.y, v.z})];
         for (v.x = box.low.x; v.x <= box.high.x; ++v.x)
-          if (row[v.x])
-            body(v, row + v.x);
-          else
-            v.x = end_of_air(row, v.x, box.high.x + 1) - 1;
+          if (row[v.x]) body(v, row + v.x);
+          else v.x = end_of_air(row, v.x, box.high.x + 1) - 1;
       }
   }
 
@@ -88,8 +86,7 @@ class Organs {
     const glm::ivec3 size = posed_.grid.size;
     const bool inside = glm::all(glm::greaterThan(v, glm::ivec3(0))) && glm::all(glm::lessThan(v, size - 1));
     const std::int64_t row = size.x, slice = row * size.y;
-    if (inside)
-      return is(at[-1]) || is(at[1]) || is(at[-row]) || is(at[row]) || is(at[-slice]) || is(at[slice]);
+    if (inside) return is(at[-1]) || is(at[1]) || is(at[-row]) || is(at[row]) || is(at[-slice]) || is(at[slice]);
     return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
                        [&](const glm::ivec3& step) { return is(posed_.at_or_air(v + step)); });
   }
@@ -123,13 +120,11 @@ class Organs {
     box.high = glm::min(box.high + int(grows), posed_.grid.size - 1);
     for_each_tissue_voxel(box, [&](const glm::ivec3& v, const Label* at) {
       if ((*at == label) == grows || !is_flesh(*at)) return;
-      const bool at_border = has_beside(v, at, [&](Label beside) {
-        return grows ? beside == label : beside != label && is_flesh(beside);
-      });
+      const bool at_border = has_beside(
+          v, at, [&](Label beside) { return grows ? beside == label : beside != label && is_flesh(beside); });
       if (!at_border) return;
-      const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
-        return posed_.at_or_air(v + step) == label;
-      });
+      const auto around = std::count_if(neighbours().begin(), neighbours().end(),
+                                        [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) == label; });
       surface.push_back({static_cast<int>(around), shuffled(static_cast<std::uint64_t>(posed_.grid.index(v))), v});
     });
     return surface;

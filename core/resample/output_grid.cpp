@@ -46,8 +46,9 @@ VoxelRange rest_tissue(const TissueVoxels& tissue) {
     }
     unsigned row = 0;  // bit x where any row has tissue
     for (int y = 0; y < TissueVoxels::kBrick; ++y) row |= columns >> (8 * y) & 0xff;
-    range = united(range, {brick.corner + glm::ivec3(std::countr_zero(row), std::countr_zero(columns) / 8, lowest),
-                           brick.corner + glm::ivec3(std::bit_width(row) - 1, (std::bit_width(columns) - 1) / 8, highest)});
+    range =
+        united(range, {brick.corner + glm::ivec3(std::countr_zero(row), std::countr_zero(columns) / 8, lowest),
+                       brick.corner + glm::ivec3(std::bit_width(row) - 1, (std::bit_width(columns) - 1) / 8, highest)});
   }
   return range;
 }
@@ -68,7 +69,9 @@ OutputGrid output_grid(const PosedLattice& lattice, const RigidBones& bones, con
   const Grid& input = lattice.volume().grid;
   const OutputLattice& output = lattice.output();
   const VoxelRange whole{glm::ivec3(0), input.size - 1}, tissue = rest_tissue(lattice.tissue());
-  auto in_output = [&](const glm::ivec3& voxels) { return glm::ivec3(glm::ceil(glm::dvec3(voxels) * output.ratio - 1e-9)); };
+  auto in_output = [&](const glm::ivec3& voxels) {
+    return glm::ivec3(glm::ceil(glm::dvec3(voxels) * output.ratio - 1e-9));
+  };
 
   OutputGrid result;
   if (tissue.empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The grid of a posed volume: spacing and direction as before (or another spacing), aligned to the input lattice, as large
-// as the posed tissue plus the air that the input had on each side. So the rest pose keeps the grid exactly, and no voxel
-// is dropped.
+// The grid of a posed volume: spacing and direction as before (or another spacing), aligned to the input lattice, as
+// large as the posed tissue plus the air that the input had on each side. So the rest pose keeps the grid exactly, and
+// no voxel is dropped.
 #pragma once
 
 #include "core/deform/posed_tets.h"

@@ -24,9 +24,14 @@ std::map<Label, int> large_parts(const Components& components, const LabelSet& s
 
 class Parting {
  public:
-  Parting(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest, const LabelSet& soft,
-          const RestPoint& rest_point)
-      : posed_(posed), of_posed_(of_posed), rest_(rest), of_rest_(of_rest), soft_(soft), rest_point_(rest_point) {}
+  Parting(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest,
+          const LabelSet& soft, const RestPoint& rest_point)
+      : posed_(posed),
+        of_posed_(of_posed),
+        rest_(rest),
+        of_rest_(of_rest),
+        soft_(soft),
+        rest_point_(rest_point) {}
 
   std::int64_t run() {
     const auto before = large_parts(of_rest_, soft_);
@@ -49,10 +54,8 @@ class Parting {
         if (posed_.at(v) != label) continue;
         const int other = touched_part(label, v);
         if (other < 0) continue;
-        if ((round > 0 || gives(part_of(v), other)) && give(v, label))
-          ++changed;
-        else
-          still.push_back(v);
+        if ((round > 0 || gives(part_of(v), other)) && give(v, label)) ++changed;
+        else still.push_back(v);
       }
       touching = std::move(still);
     }
@@ -129,7 +132,8 @@ class Parting {
   }
 
   bool gives(int part, int other) const {
-    return of_rest_.voxels[part] != of_rest_.voxels[other] ? of_rest_.voxels[part] > of_rest_.voxels[other] : part > other;
+    return of_rest_.voxels[part] != of_rest_.voxels[other] ? of_rest_.voxels[part] > of_rest_.voxels[other]
+                                                           : part > other;
   }
 
   int component_of(const glm::ivec3& v) const {
@@ -143,7 +147,8 @@ class Parting {
     for (const glm::ivec3& step : neighbours())
       if (const Label there = posed_.at_or_air(v + step); there != label && !soft_[there]) ++around[there];
     while (!around.empty()) {
-      const auto most = std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+      const auto most = std::max_element(around.begin(), around.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
       if (const int component = only_component(v, most->first); component >= 0) {
         posed_.at(v) = most->first;
         given_[posed_.grid.index(v)] = component;
@@ -189,16 +194,17 @@ class Parting {
     std::int64_t row = -1, run = 0;
   };
   mutable std::array<LastRun, 16> last_runs_;
-  std::vector<std::int64_t> first_of_run_;         // place in part_of_, -1 for runs that are not of the present label's large parts
+  std::vector<std::int64_t>
+      first_of_run_;  // place in part_of_, -1 for runs that are not of the present label's large parts
   std::vector<int> part_of_;
   std::vector<glm::ivec3> fused_;
-  std::unordered_map<std::int64_t, int> given_;    // component that a voxel was given to
+  std::unordered_map<std::int64_t, int> given_;  // component that a voxel was given to
 };
 
 }  // namespace
 
-std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest,
-                        const LabelSet& soft, const RestPoint& rest_point) {
+std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest,
+                        const Components& of_rest, const LabelSet& soft, const RestPoint& rest_point) {
   return Parting(posed, of_posed, rest, of_rest, soft, rest_point).run();
 }
 

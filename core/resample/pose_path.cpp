@@ -10,7 +10,9 @@ namespace limber {
 Pose part_of_pose(const Pose& pose, double t) {
   if (t == 1) return pose;
   Pose part = pose;
-  for (glm::dquat& turn : part.rotation) turn = t == 0 || turn == glm::dquat(1, 0, 0, 0) ? glm::dquat(1, 0, 0, 0) : glm::slerp(glm::dquat(1, 0, 0, 0), turn, t);
+  for (glm::dquat& turn : part.rotation)
+    turn =
+        t == 0 || turn == glm::dquat(1, 0, 0, 0) ? glm::dquat(1, 0, 0, 0) : glm::slerp(glm::dquat(1, 0, 0, 0), turn, t);
   part.root_translation *= t;
   for (glm::dvec3& shift : part.shift) shift *= t;
   return part;
@@ -30,7 +32,8 @@ Pose pose_between(const Pose& from, const Pose& to, double t) {
   return between;
 }
 
-std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature, const Pose& pose) {
+std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature,
+                                         const Pose& pose) {
   const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
   std::vector<RigidTransform> motions;
   for (const std::string& name : bones) motions.push_back(posed[require_bone(armature, name)]);
@@ -46,7 +49,8 @@ double largest_angle_degrees(const Pose& pose) {
 
 double largest_angle_degrees(const Pose& from, const Pose& to) {
   Pose turn = to;
-  for (size_t b = 0; b < turn.rotation.size(); ++b) turn.rotation[b] = to.rotation[b] * glm::conjugate(from.rotation[b]);
+  for (size_t b = 0; b < turn.rotation.size(); ++b)
+    turn.rotation[b] = to.rotation[b] * glm::conjugate(from.rotation[b]);
   return largest_angle_degrees(turn);
 }
 

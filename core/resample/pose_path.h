@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The way from rest to a pose, for what must go there in steps: at t every joint has turned by the share t of its rotation,
-// about the same axis, and the root has gone the share t of its way, as has every joint that glides.
+// The way from rest to a pose, for what must go there in steps: at t every joint has turned by the share t of its
+// rotation, about the same axis, and the root has gone the share t of its way, as has every joint that glides.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 
 namespace limber {
 
@@ -17,7 +17,8 @@ Pose part_of_pose(const Pose& pose, double t);
 Pose pose_between(const Pose& from, const Pose& to, double t);
 
 // posed_from_rest of the named bones, in their order.    throws Error when the rig has no such bone
-std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature, const Pose& pose);
+std::vector<RigidTransform> bone_motions(const std::vector<std::string>& bones, const Armature& armature,
+                                         const Pose& pose);
 
 // Of the joint that turns furthest from rest, or from another pose, degrees [0, 180].
 double largest_angle_degrees(const Pose& pose);

@@ -5,7 +5,7 @@
 
 #include "core/deform/carried_points.h"
 #include "core/resample/pose_path.h"
-#include "core/skin/skin_at.h"
+#include "core/skin/weight_at.h"
 
 namespace limber {
 
@@ -13,7 +13,8 @@ namespace {
 constexpr double kBesideMesh = 10;  // mm
 
 // By the mesh, where it has them in its charge.
-std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const TissueVoxels& tissue, const FemShape& shape, std::span<const glm::dvec3> points) {
+std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const TissueVoxels& tissue,
+                                               const FemShape& shape, std::span<const glm::dvec3> points) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid), to_world = world_from_voxel(volume.grid);
   std::vector<PointToCarry> rest;
   for (const glm::dvec3& point : points) rest.push_back({to_voxel * point, to_voxel * point});
@@ -33,9 +34,11 @@ std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const 
 }
 }  // namespace
 
-std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const SkinWeights& weights,
-                                     const Armature& armature, const Pose& pose, Blend blend, const FemShape* shape, std::span<const glm::dvec3> points) {
-  const auto motions = skin_transforms(bone_motions(weights.bones(), armature, shape ? part_of_pose(pose, shape->reached) : pose));
+std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                                     const SkinWeights& weights, const Armature& armature, const Pose& pose,
+                                     Blend blend, const FemShape* shape, std::span<const glm::dvec3> points) {
+  const auto motions =
+      skin_transforms(bone_motions(weights.bones(), armature, shape ? part_of_pose(pose, shape->reached) : pose));
   const std::vector<SkinAt> skin = skin_at(volume, tissue, weights, points);
   std::vector<std::optional<glm::dvec3>> by_mesh(points.size());
   if (shape) by_mesh = carried(volume, tissue, *shape, points);
@@ -48,7 +51,8 @@ std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxe
     }
     std::vector<BoneWeight> influences;
     for (int k = 0; k < 4; ++k)
-      if (skin[i].influence.weight[k] > 0) influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / 65535.0});
+      if (skin[i].influence.weight[k] > 0)
+        influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / 65535.0});
     posed.push_back(blend_point(blend, motions, influences, points[i]));
   }
   return posed;

@@ -49,9 +49,8 @@ std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& 
   };
   // At the side of the grid there is air beyond it.
   const auto touches_open_air = [&](const glm::ivec3& v) {
-    return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(), [&](const glm::ivec3& step) {
-      return !posed.grid.contains(v + step) || is_open_air(v + step);
-    });
+    return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
+                       [&](const glm::ivec3& step) { return !posed.grid.contains(v + step) || is_open_air(v + step); });
   };
   for (const UnderSkin& voxel : under_skin) {
     const glm::ivec3 v = voxel_at(posed.grid, voxel.at);

@@ -33,8 +33,8 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
                        const LabelSet& skin);
 
 // Where a seam opens or a stretch goes deeper, flesh lies bare that was covered at rest: its outermost voxels are skin
-// now. Bone that lay at a seam, under closed skin or deep inside gets skin over it. Nothing changes at air that the body
-// encloses.
+// now. Bone that lay at a seam, under closed skin or deep inside gets skin over it. Nothing changes at air that the
+// body encloses.
 //   was_air  what had no tissue before is added
 //   returns  the voxels changed
 std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,

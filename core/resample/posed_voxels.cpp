@@ -27,10 +27,10 @@ namespace {
 
 constexpr glm::ivec3 kTile = RestPoints::kTile;  // output voxels: 3 MB of map a thread
 constexpr std::int64_t kMostRest = 4 << 20;      // rest points that are kept: 48 MB
-constexpr int kReach = 8;                // voxels: as far as soft tissue is looked for where a joint opens between bones
+constexpr int kReach = 8;  // voxels: as far as soft tissue is looked for where a joint opens between bones
 
-constexpr double kMostSure = 0.8;        // of memberships: a voxel that is surer of its tissue keeps it
-constexpr std::int64_t kJudged = 5000;   // voxels: the grid alone changes smaller tissues by more than is asked here
+constexpr double kMostSure = 0.8;       // of memberships: a voxel that is surer of its tissue keeps it
+constexpr std::int64_t kJudged = 5000;  // voxels: the grid alone changes smaller tissues by more than is asked here
 
 // What one tile saw.
 struct TileCounts {
@@ -59,7 +59,8 @@ struct SoftBorders {
   std::vector<BorderMove> moves;
 };
 
-// How many rest points are kept: of a limb all, where the pose makes it no larger than by a quarter; of a large body none.
+// How many rest points are kept: of a limb all, where the pose makes it no larger than by a quarter; of a large body
+// none.
 std::int64_t room_for_rest(const TissueVoxels& tissue) {
   const std::int64_t room = tissue.size() + tissue.size() / 4;
   return room <= kMostRest ? room : 0;
@@ -69,8 +70,16 @@ std::int64_t room_for_rest(const TissueVoxels& tissue) {
 class PosedVoxels {
  public:
   PosedVoxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed)
-      : volume_(body.volume), labels_(body.labels), lattice_(body.lattice), bones_(body.bones), tets_(body.tets), depth_(body.depth),
-        settings_(settings), output_(body.output), mends_(body.mends), posed_(posed),
+      : volume_(body.volume),
+        labels_(body.labels),
+        lattice_(body.lattice),
+        bones_(body.bones),
+        tets_(body.tets),
+        depth_(body.depth),
+        settings_(settings),
+        output_(body.output),
+        mends_(body.mends),
+        posed_(posed),
         rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
                      [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
         sampler_(volume_),
@@ -101,7 +110,8 @@ class PosedVoxels {
   // Reading labels takes voxels from thin tissues and gives them to thick ones: they get back what the map gives them.
   void keep_soft_volumes(Progress& progress) {
     SoftBorders borders = soft_borders(progress);
-    posed_.report.mended_voxels += keep_tissue_volumes(posed_.volume, borders.by_cell, borders.moves, labels_.soft, labels_.skin).changed;
+    posed_.report.mended_voxels +=
+        keep_tissue_volumes(posed_.volume, borders.by_cell, borders.moves, labels_.soft, labels_.skin).changed;
   }
 
   void keep_organs() {
@@ -113,15 +123,19 @@ class PosedVoxels {
 
   void keep_masses(const TissueTable& tissues, Progress& progress) {
     MassExactReport& report = posed_.report.mass_exact.emplace();
-    for (const auto& [label, voxels] : soft_voxels(volume_)) report.tissues[label].wanted = std::llround(double(voxels) * output_per_rest());
+    for (const auto& [label, voxels] : soft_voxels(volume_))
+      report.tissues[label].wanted = std::llround(double(voxels) * output_per_rest());
     for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].before = voxels;
     std::map<Label, std::int64_t> wanted;
     for (const auto& [label, tissue] : report.tissues) {
-      const double percent = 100.0 * double(tissue.wanted - tissue.before) / double(std::max<std::int64_t>(tissue.wanted, 1));
-      if (tissue.wanted >= kJudged && std::abs(percent) > settings_.mass_limit_percent) throw too_far(tissues, label, percent);
+      const double percent =
+          100.0 * double(tissue.wanted - tissue.before) / double(std::max<std::int64_t>(tissue.wanted, 1));
+      if (tissue.wanted >= kJudged && std::abs(percent) > settings_.mass_limit_percent)
+        throw too_far(tissues, label, percent);
       wanted[label] = tissue.wanted;
     }
-    report.changed_voxels = keep_tissue_volumes(posed_.volume, wanted, soft_borders(progress).moves, labels_.soft, labels_.skin).changed;
+    report.changed_voxels =
+        keep_tissue_volumes(posed_.volume, wanted, soft_borders(progress).moves, labels_.soft, labels_.skin).changed;
     for (const auto& [label, voxels] : soft_voxels(posed_.volume)) report.tissues[label].after = voxels;
   }
 
@@ -131,10 +145,11 @@ class PosedVoxels {
     };
     const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
     const LabelVolume rest_bones = bones_.numbered();
-    const auto bridges = mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+    const auto bridges =
+        mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     for (const glm::ivec3& voxel : bridges) write_bridge(voxel, rest_bones, of_bone(voxel));
-    const std::int64_t kept =
-        keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+    const std::int64_t kept = keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone,
+                                                {&bone_rows_, &bone_rest_rows});
     const auto rest_point = [&](const glm::ivec3& voxel) {
       return posed_bones_.at(voxel) ? of_bone(voxel) : rest_points_.at(voxel);
     };
@@ -143,7 +158,8 @@ class PosedVoxels {
         std::ssize(bridges) + kept + closed + thin_skin(posed_.volume, inner_skin_, closed, flesh_, labels_.skin);
     std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
-    posed_.report.new_skin_voxels = cover_bare_flesh(posed_.volume, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
+    posed_.report.new_skin_voxels =
+        cover_bare_flesh(posed_.volume, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
     const Origins origins = origins_of(posed_.volume, was_air, rest_point);
     carry_fields(origins);
     for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;
@@ -156,8 +172,8 @@ class PosedVoxels {
   }
 
  private:
-  // A voxel that was given to a rigid bone is what the bone has nearest to it; where its rest point lies in another bone that
-  // touches this one at rest, it comes from there too.
+  // A voxel that was given to a rigid bone is what the bone has nearest to it; where its rest point lies in another
+  // bone that touches this one at rest, it comes from there too.
   void write_bridge(const glm::ivec3& voxel, const LabelVolume& rest_bones, const glm::dvec3& rest) {
     const Label number = posed_bones_.at(voxel);
     const std::optional<glm::ivec3> own = nearest_voxel(rest_bones, number, rest);
@@ -247,7 +263,8 @@ class PosedVoxels {
       if (own - share < kMostSure) moves.push_back({at, label, to, static_cast<float>(std::max(own - share, 0.0))});
     };
     for (int k = 0; k < found.count; ++k)
-      if (found.label[k] != label && labels_.soft[found.label[k]] && has_at_face(voxel, found.label[k])) add(found.label[k], found.share[k]);
+      if (found.label[k] != label && labels_.soft[found.label[k]] && has_at_face(voxel, found.label[k]))
+        add(found.label[k], found.share[k]);
     if (touches_air(posed_.volume, voxel)) add(0, 1 - body);
   }
 
@@ -280,8 +297,10 @@ class PosedVoxels {
   Error too_far(const TissueTable& tissues, Label label, double percent) const {
     const Tissue* tissue = tissues.find(label);
     char text[200];
-    std::snprintf(text, sizeof text, "%.60s would have to %s %.1f %% to keep its mass, and more than %g %% is not made up", tissue ? tissue->name.c_str() : "a tissue",
-                  percent > 0 ? "gain" : "lose", std::abs(percent), settings_.mass_limit_percent);
+    std::snprintf(text, sizeof text,
+                  "%.60s would have to %s %.1f %% to keep its mass, and more than %g %% is not made up",
+                  tissue ? tissue->name.c_str() : "a tissue", percent > 0 ? "gain" : "lose", std::abs(percent),
+                  settings_.mass_limit_percent);
     return Error(text, "mass-exact", "pose by finite elements, bend less, or allow more by --mass-limit");
   }
 
@@ -342,9 +361,11 @@ class PosedVoxels {
     if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
     if (mends_ && !labels_.skin[label] && may_touch_air(map, i, v)) {
       const glm::dvec3 rest = map.rest[i];
-      if (labels_.bone[label] ? skin_->was_bone_covered(rest) : skin_->was_covered(rest)) counts.under_skin.push_back({at, skin_->skin_over(rest)});
+      if (labels_.bone[label] ? skin_->was_bone_covered(rest) : skin_->was_covered(rest))
+        counts.under_skin.push_back({at, skin_->skin_over(rest)});
     }
-    if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v)) counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
+    if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v))
+      counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
@@ -381,11 +402,12 @@ class PosedVoxels {
     if (settings_.displacement)
       posed_.displacement[at] = world_from_rest_.linear * (lattice.to_rest(glm::dvec3(v)) - glm::dvec3(map.rest[i]));
     if (settings_.jacobian)
-      posed_.jacobian[at] = map.bone[i] != InverseMap::kNoBone
-                                ? 1.0f
-                                : static_cast<float>(map.posed_per_rest[i] / output_per_rest());
+      posed_.jacobian[at] =
+          map.bone[i] != InverseMap::kNoBone ? 1.0f : static_cast<float>(map.posed_per_rest[i] / output_per_rest());
     if (settings_.overlap)
-      posed_.overlap[at] = map.flags[i] & InverseMap::kBoneOverlap ? Label{2} : map.flags[i] & InverseMap::kOverlap ? Label{1} : Label{0};
+      posed_.overlap[at] = map.flags[i] & InverseMap::kBoneOverlap ? Label{2}
+                           : map.flags[i] & InverseMap::kOverlap   ? Label{1}
+                                                                   : Label{0};
   }
 
   void count(const InverseMap& map, std::int64_t i, const glm::ivec3& v, Label label, TileCounts& counts) const {
@@ -393,7 +415,8 @@ class PosedVoxels {
     counts.overlap += (map.flags[i] & InverseMap::kOverlap) != 0;
     counts.bone_overlap += (map.flags[i] & InverseMap::kBoneOverlap) != 0;
     if (!labels_.bone[label]) return;
-    const int bone = map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(voxel_at(volume_.grid, map.cell[i]));
+    const int bone =
+        map.bone[i] != InverseMap::kNoBone ? map.bone[i] : bones_.owner(voxel_at(volume_.grid, map.cell[i]));
     if (bone >= 0) counts.add_bone_voxel(bone, bones_.residual(bone, map.rest[i], v));
   }
 
@@ -446,7 +469,7 @@ class PosedVoxels {
   const bool mends_;
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
-  LabelSet flesh_;  // soft tissues but skin
+  LabelSet flesh_;          // soft tissues but skin
   RestPoints rest_points_;  // of the map alone
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;

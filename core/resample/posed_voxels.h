@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From the inverse map of a posed body to its voxels: read tile by tile from the volume at rest, then mended where the grid or a
-// stretch tore what was whole (mend.h, bone_volumes.h), and where it is asked for brought back to the volumes that tissues have
-// (tissue_volumes.h).
+// From the inverse map of a posed body to its voxels: read tile by tile from the volume at rest, then mended where the
+// grid or a stretch tore what was whole (mend.h, bone_volumes.h), and where it is asked for brought back to the volumes
+// that tissues have (tissue_volumes.h).
 #pragma once
 
 #include <vector>
@@ -34,10 +34,10 @@ struct PosedBody {
   const LabelSets& labels;
   const PosedLattice& lattice;
   const RigidBones& bones;
-  const PosedTets* tets;      // nullptr: not by finite elements
-  const TissueDepth* depth;   // at rest, mm; nullptr where the body cannot fold
+  const PosedTets* tets;     // nullptr: not by finite elements
+  const TissueDepth* depth;  // at rest, mm; nullptr where the body cannot fold
   const OutputGrid& output;
-  bool mends;                 // tears and lost volumes
+  bool mends;  // tears and lost volumes
 };
 
 // Into posed: its volume, the fields that are asked for, and what its report says of voxels.

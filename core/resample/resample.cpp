@@ -67,15 +67,19 @@ struct RigidBody {
 
   RigidBody(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
             std::shared_ptr<const Seams> seams, Progress& progress)
-      : volume(volume), tissues(tissues), armature(armature), tissue(volume), labels(tissues),
+      : volume(volume),
+        tissues(tissues),
+        armature(armature),
+        tissue(volume),
+        labels(tissues),
         weights(with_rigid_bones(weights, volume, tissue, tissues, labels.bone, armature, progress)) {
     tissue.set_seams(std::move(seams));
   }
 };
 
 //   shape  by finite elements, where anything bends
-Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape, const Method& method,
-                    const ResampleSettings& settings, Progress& progress) {
+Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
+                    const Method& method, const ResampleSettings& settings, Progress& progress) {
   const Seconds seconds;
   const LabelVolume& volume = body.volume;
   const LabelSets& labels = body.labels;
@@ -89,11 +93,14 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
 
   std::optional<SettledFlesh> settled;
   if (std::holds_alternative<MixedBlend>(method) && can_fold(motions))
-    report.settled = settled.emplace(volume, body.tissue, weights, labels.bone, motions, blend_of(method), progress).report();
-  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress, settled ? &*settled : nullptr);
+    report.settled =
+        settled.emplace(volume, body.tissue, weights, labels.bone, motions, blend_of(method), progress).report();
+  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress,
+                             settled ? &*settled : nullptr);
   const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
-  if (posed.shape) tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);
+  if (posed.shape)
+    tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);
   const OutputGrid output = output_grid(lattice, bones, tets ? &*tets : nullptr);
   std::optional<TissueDepth> depth;
   if (can_fold(motions)) depth.emplace(body.tissue, volume.grid.spacing);
@@ -106,7 +113,9 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
 
   const Seconds rasterize_seconds;
   const bool mends = can_fold(motions) && !settings.nearest;
-  write_voxels({volume, body.tissues, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, output, mends}, settings, posed, progress);
+  write_voxels(
+      {volume, body.tissues, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, output, mends},
+      settings, posed, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed;
@@ -114,23 +123,29 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
 
 }  // namespace
 
-Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
-               const Pose& pose, const Method& method, const ResampleSettings& settings, Progress& progress) {
+Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
+               const SkinWeights& weights, const Pose& pose, const Method& method, const ResampleSettings& settings,
+               Progress& progress) {
   Posed one;
-  resample_sequence(volume, tissues, armature, weights, {pose}, method, settings, [&](std::size_t, Posed posed) { one = std::move(posed); }, progress);
+  resample_sequence(
+      volume, tissues, armature, weights, {pose}, method, settings,
+      [&](std::size_t, Posed posed) { one = std::move(posed); }, progress);
   return one;
 }
 
-void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature, const SkinWeights& weights,
-                       const std::vector<Pose>& poses, const Method& method, const ResampleSettings& settings,
+void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
+                       const SkinWeights& weights, const std::vector<Pose>& poses, const Method& method,
+                       const ResampleSettings& settings,
                        const std::function<void(std::size_t place, Posed posed)>& on_posed, Progress& progress) {
   const Seconds preparing;
   const RigidBody body(volume, tissues, armature, weights, settings.seams, progress);
   const double prepared = preparing();
   std::optional<FemSequence> shapes;
-  if (const Fem* fem = std::get_if<Fem>(&method)) shapes.emplace(volume, body.tissue, tissues, body.labels.bone, body.weights, armature, poses, *fem, progress);
+  if (const Fem* fem = std::get_if<Fem>(&method))
+    shapes.emplace(volume, body.tissue, tissues, body.labels.bone, body.weights, armature, poses, *fem, progress);
   for (std::size_t place = 0; place < poses.size(); ++place) {
-    Posed posed = resample_body(body, poses[place], shapes ? shapes->next(progress) : nullptr, method, settings, progress);
+    Posed posed =
+        resample_body(body, poses[place], shapes ? shapes->next(progress) : nullptr, method, settings, progress);
     if (place == 0) posed.report.seconds_deform += prepared;
     on_posed(place, std::move(posed));
   }

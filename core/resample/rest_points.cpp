@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 
 namespace limber {
 

@@ -52,7 +52,7 @@ class RestPoints {
   std::int64_t room_;
   std::atomic<std::int64_t> used_ = 0;
   std::unique_ptr<glm::vec3[]> points_;
-  std::vector<std::vector<Row>> tiles_;  // y fastest; none where it was not kept
+  std::vector<std::vector<Row>> tiles_;             // y fastest; none where it was not kept
   std::unordered_map<std::int64_t, Block> blocks_;  // traced; by the lowest voxel's place
 };
 

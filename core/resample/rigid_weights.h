@@ -6,8 +6,8 @@
 #include "core/base/progress.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_sampler.h"
-#include "core/volume/tissue_table.h"
 
 namespace limber {
 

@@ -20,8 +20,13 @@ glm::ivec3 voxel_of(const glm::dvec3& rest_point) { return glm::ivec3(rest_point
 
 }  // namespace
 
-SkinAtRest::SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft, const LabelSet& skin)
-    : volume_(volume), tissue_(tissue), depth_(depth), soft_(soft), skin_(skin),
+SkinAtRest::SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth,
+                       const LabelSet& soft, const LabelSet& skin)
+    : volume_(volume),
+      tissue_(tissue),
+      depth_(depth),
+      soft_(soft),
+      skin_(skin),
       skin_reach_(kSkinReach * std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z})),
       deep_(glm::length(volume.grid.spacing)) {
   for (const AirPocket& pocket : air_pockets(volume))
@@ -44,7 +49,8 @@ bool SkinAtRest::touches_outside(const glm::ivec3& voxel) const {
   bool outside = false;
   for (const glm::ivec3& step : kFaceNeighbours) {
     const glm::ivec3 beside = voxel + step;
-    outside |= !volume_.grid.contains(beside) || (volume_.at(beside) == 0 && !enclosed_air_.contains(volume_.grid.index(beside)));
+    outside |= !volume_.grid.contains(beside) ||
+               (volume_.at(beside) == 0 && !enclosed_air_.contains(volume_.grid.index(beside)));
   }
   return outside;
 }
@@ -75,7 +81,8 @@ bool SkinAtRest::was_covered(const glm::dvec3& rest_point) const {
   const bool at_air = touches_air(volume_, voxel);
   if (at_air ? !touches_outside(voxel) : is_deep(voxel) || was_at_seam(rest_point)) return true;
   if (!is_closed_ || is_bare(voxel)) return false;
-  return skin_over(rest_point) || std::none_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return is_bare(voxel + step); });
+  return skin_over(rest_point) || std::none_of(neighbours().begin(), neighbours().end(),
+                                               [&](const glm::ivec3& step) { return is_bare(voxel + step); });
 }
 
 bool SkinAtRest::was_at_seam(const glm::dvec3& rest_point) const {
@@ -105,10 +112,8 @@ std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, c
     std::vector<glm::ivec3> left;
     std::vector<std::pair<glm::ivec3, Label>> layer;
     for (const glm::ivec3& v : bare)
-      if (const Label label = most_common_around(posed, v, reach, skin))
-        layer.push_back({v, label});
-      else
-        left.push_back(v);
+      if (const Label label = most_common_around(posed, v, reach, skin)) layer.push_back({v, label});
+      else left.push_back(v);
     for (const auto& [v, label] : layer) posed.at(v) = label;
     covered += std::ssize(layer);
     reach = layer.empty() ? reach + 1 : 1;
@@ -123,7 +128,8 @@ Label most_common_around(const LabelVolume& volume, const glm::ivec3& voxel, int
     for (int y = -reach; y <= reach; ++y)
       for (int x = -reach; x <= reach; ++x)
         if (const Label label = volume.at_or_air(voxel + glm::ivec3(x, y, z)); label && wanted[label]) ++counts[label];
-  const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == counts.end() ? Label{0} : most->first;
 }
 

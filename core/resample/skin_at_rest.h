@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of a body at rest, as posing has to keep it: where it is skin, and what may not come to lie bare. Skin is often one
-// voxel thick; a stretch opens it, and the two sides of a seam have none. What was covered at rest is covered when posed.
+// The surface of a body at rest, as posing has to keep it: where it is skin, and what may not come to lie bare. Skin is
+// often one voxel thick; a stretch opens it, and the two sides of a seam have none. What was covered at rest is covered
+// when posed.
 //
-// Coarse slices have skin around each of them and none on their steps; turned, their surface would need far more skin than there
-// is. Such a body has open skin, and flesh may lie bare as it did, but not what was deep inside.
+// Coarse slices have skin around each of them and none on their steps; turned, their surface would need far more skin
+// than there is. Such a body has open skin, and flesh may lie bare as it did, but not what was deep inside.
 #pragma once
 
 #include <unordered_set>
@@ -19,12 +20,14 @@ namespace limber {
 class SkinAtRest {
  public:
   // References are kept.
-  SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft, const LabelSet& skin);
+  SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft,
+             const LabelSet& skin);
 
   // Whether tissue that comes from this rest point must not lie bare when posed.
   bool was_covered(const glm::dvec3& rest_point) const;
   bool was_at_seam(const glm::dvec3& rest_point) const;
-  // The same for bone, which stays bone: it gets skin beside it where it lay at a seam, right under closed skin, or deep inside.
+  // The same for bone, which stays bone: it gets skin beside it where it lay at a seam, right under closed skin, or
+  // deep inside.
   bool was_bone_covered(const glm::dvec3& rest_point) const;
   // The skin that touches the rest point's voxel, 0 where there is none or the voxel lies deeper than skin can be.
   Label skin_over(const glm::dvec3& rest_point) const;
@@ -44,8 +47,8 @@ class SkinAtRest {
   bool is_closed_;
 };
 
-// Makes skin of voxels of the posed volume, each of the kind that the skin nearest to it has; those stay what they are that have
-// none within a few voxels.
+// Makes skin of voxels of the posed volume, each of the kind that the skin nearest to it has; those stay what they are
+// that have none within a few voxels.
 //   returns  the voxels changed
 std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, const LabelSet& skin);
 

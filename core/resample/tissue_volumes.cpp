@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kEach = 0.1;                         // cost of a voxel for its own sake: a way over few tissues is better than one over many
-constexpr std::int64_t kFrozen = 2 * kSmallestPart;   // voxels: smaller parts might come to count, or cease to
-constexpr int kRounds = 8;                            // over moves that had no place when it was their turn
+constexpr double kEach = 0.1;  // cost of a voxel for its own sake: a way over few tissues is better than one over many
+constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
+constexpr int kRounds = 8;                           // over moves that had no place when it was their turn
 const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
 // From one tissue to another one.
@@ -28,18 +28,25 @@ struct Border {
 class Exchange {
  public:
   Exchange(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const LabelSet& soft, const LabelSet& skin)
-      : posed_(posed), soft_(soft), skin_(skin), parts_(connected_components(posed, nullptr, &soft)), missing_(wanted) {
+      : posed_(posed),
+        soft_(soft),
+        skin_(skin),
+        parts_(connected_components(posed, nullptr, &soft)),
+        missing_(wanted) {
     for (const auto& run : parts_.runs) has_skin_ |= skin_[run.label] != 0;
     for (const auto& run : parts_.runs)
       if (const auto found = missing_.find(run.label); found != missing_.end()) found->second -= run.end - run.begin;
-    missing_[0] = -std::accumulate(missing_.begin(), missing_.end(), std::int64_t{0}, [](std::int64_t sum, const auto& tissue) { return sum + tissue.second; });
+    missing_[0] = -std::accumulate(missing_.begin(), missing_.end(), std::int64_t{0},
+                                   [](std::int64_t sum, const auto& tissue) { return sum + tissue.second; });
   }
 
   void add(const BorderMove& move) {
     borders_[{move.from, move.to}].moves.push_back(move);
     if (move.to == 0 && skin_[move.from])
       for (const glm::ivec3& step : kFaces)
-        if (const Label under = posed_.at_or_air(voxel_at(posed_.grid, move.at) + step); under && soft_[under] && !skin_[under]) borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
+        if (const Label under = posed_.at_or_air(voxel_at(posed_.grid, move.at) + step);
+            under && soft_[under] && !skin_[under])
+          borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
   }
 
   // Where the body may grow: air beside soft tissue, best where it is nearly surrounded.
@@ -60,7 +67,8 @@ class Exchange {
                 if (const Label under = posed_.at_or_air(v + step + below); under && soft_[under]) gains.insert(under);
           }
           if (gains.empty()) continue;
-          const auto around = std::count_if(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) != 0; });
+          const auto around = std::count_if(neighbours().begin(), neighbours().end(),
+                                            [&](const glm::ivec3& step) { return posed_.at_or_air(v + step) != 0; });
           for (const Label label : gains) add({posed_.grid.index(v), 0, label, 1 - float(around) / 26});
         }
   }
@@ -102,7 +110,8 @@ class Exchange {
     return moved;
   }
 
-  // Soft tissue that is to give, with what it can give to and at which cost [Bellman-Ford, the graph has a dozen places].
+  // Soft tissue that is to give, with what it can give to and at which cost [Bellman-Ford, the graph has a dozen
+  // places].
   std::optional<Way> cheapest_way() {
     struct Step {
       double cost;
@@ -131,7 +140,9 @@ class Exchange {
 
     std::optional<Label> best;
     for (const auto& [label, step] : reached)
-      if (const auto found = missing_.find(label); found != missing_.end() && found->second > 0 && (!best || step.cost < reached.at(*best).cost)) best = label;
+      if (const auto found = missing_.find(label);
+          found != missing_.end() && found->second > 0 && (!best || step.cost < reached.at(*best).cost))
+        best = label;
     if (!best) return std::nullopt;
     Way way{*best};
     while (reached.at(way.back()).from != way.back()) way.push_back(reached.at(way.back()).from);
@@ -246,17 +257,17 @@ class Exchange {
   LabelVolume& posed_;
   const LabelSet &soft_, &skin_;
   bool has_skin_ = false;
-  Components parts_;                                    // as they were, but for their sizes
+  Components parts_;  // as they were, but for their sizes
   std::unordered_map<std::int64_t, int> part_of_changed_;
-  std::map<Label, std::int64_t> missing_;               // of those wanted; air takes or gives what is over
-  std::map<std::pair<Label, Label>, Border> borders_;   // by giver and taker
+  std::map<Label, std::int64_t> missing_;              // of those wanted; air takes or gives what is over
+  std::map<std::pair<Label, Label>, Border> borders_;  // by giver and taker
   std::int64_t changed_ = 0;
 };
 
 }  // namespace
 
-TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted, const std::vector<BorderMove>& moves,
-                                  const LabelSet& soft, const LabelSet& skin) {
+TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted,
+                                  const std::vector<BorderMove>& moves, const LabelSet& soft, const LabelSet& skin) {
   Exchange exchange(posed, wanted, soft, skin);
   for (const BorderMove& move : moves) exchange.add(move);
   return exchange.run();

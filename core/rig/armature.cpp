@@ -16,7 +16,9 @@ constexpr int kMostBones = 4096;
 // Farther from the origin, a millimetre is lost in rounding.
 constexpr double kFarthestMm = 1e9;
 // False also for what is no number.
-bool near_enough(const glm::dvec3& v) { return std::abs(v.x) <= kFarthestMm && std::abs(v.y) <= kFarthestMm && std::abs(v.z) <= kFarthestMm; }
+bool near_enough(const glm::dvec3& v) {
+  return std::abs(v.x) <= kFarthestMm && std::abs(v.y) <= kFarthestMm && std::abs(v.z) <= kFarthestMm;
+}
 
 std::string names_of(const Armature& armature) {
   std::string names;
@@ -47,11 +49,13 @@ void check_armature(const Armature& armature, const std::string& where) {
     const Bone& bone = armature.bones[i];
     const std::string here = where + ", bone " + std::to_string(i) + (bone.name.empty() ? "" : " (" + bone.name + ")");
     if (bone.name.empty()) throw Error("a bone has no name", here, "give every bone a name of its own");
-    if (!names.insert(bone.name).second) throw Error("two bones share a name", here, "give every bone a name of its own");
+    if (!names.insert(bone.name).second)
+      throw Error("two bones share a name", here, "give every bone a name of its own");
     if (bone.parent < -1 || bone.parent >= static_cast<int>(i))
       throw Error("a bone's parent does not come before it", here, "list parents before their children");
     if (!near_enough(bone.head) || !near_enough(bone.tail) || !std::isfinite(bone.roll))
-      throw Error("a bone's position is not a finite number of millimetres within 1000 km", here, "give head, tail and roll as finite numbers");
+      throw Error("a bone's position is not a finite number of millimetres within 1000 km", here,
+                  "give head, tail and roll as finite numbers");
   }
 }
 
@@ -61,7 +65,8 @@ Armature parents_first(std::vector<Bone> bones, const std::string& where) {
   for (int i = 0; i < count; ++i) {
     if (bones[i].parent < -1 || bones[i].parent >= count)
       throw Error("the parent of bone " + std::to_string(i) + " is number " + std::to_string(bones[i].parent) + " of " +
-                      std::to_string(count) + " bones", where, "let it name one of the rig's bones, or -1 for a root");
+                      std::to_string(count) + " bones",
+                  where, "let it name one of the rig's bones, or -1 for a root");
     ordered = ordered && bones[i].parent < i;
   }
   if (ordered) return {std::move(bones)};
@@ -120,7 +125,8 @@ double roll_of(const Bone& bone, const glm::dvec3& x) {
 glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const Bone& bone = armature.bones[bone_index];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;
-  const std::string remedy = "give the bone a hinge axis in its limits, or name its joint, as in --joint \"left knee flexion=90\"";
+  const std::string remedy =
+      "give the bone a hinge axis in its limits, or name its joint, as in --joint \"left knee flexion=90\"";
   if (bone.parent < 0) throw Error("the bone has no parent to flex against", bone.name, remedy);
 
   const Bone& parent = armature.bones[bone.parent];

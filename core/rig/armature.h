@@ -15,9 +15,10 @@ namespace limber {
 struct JointLimits {
   enum class Type { Free, Fixed, Hinge, Ball };
   Type type = Type::Free;
-  glm::dvec3 axis{0};               // hinge: unit rotation axis, positive bends further; ball: unit twist axis (zero = along the bone)
-  double minimum = 0, maximum = 0;  // hinge: angle range
-  double cone = 0;                  // ball: largest swing away from rest
+  glm::dvec3 axis{
+      0};  // hinge: unit rotation axis, positive bends further; ball: unit twist axis (zero = along the bone)
+  double minimum = 0, maximum = 0;              // hinge: angle range
+  double cone = 0;                              // ball: largest swing away from rest
   double twist_minimum = 0, twist_maximum = 0;  // ball
 
   bool operator==(const JointLimits&) const = default;
@@ -47,8 +48,8 @@ int require_bone(const Armature& armature, std::string_view name);
 // position that is not finite. `where` names the file.
 void check_armature(const Armature& armature, const std::string& where);
 
-// The bones with parents before children, which otherwise stay in the order given; `parent` may point anywhere in `bones`.
-// Throws Error for a parent that is not among them, or bones that are their own ancestors.
+// The bones with parents before children, which otherwise stay in the order given; `parent` may point anywhere in
+// `bones`. Throws Error for a parent that is not among them, or bones that are their own ancestors.
 Armature parents_first(std::vector<Bone> bones, const std::string& where);
 
 // Blender's bone matrix: columns x, y, z, with y from head to tail and the roll applied [vec_roll_to_mat3].

@@ -23,7 +23,9 @@ std::vector<bool> marked(const Armature& armature, const std::vector<int>& bones
   return marks;
 }
 
-glm::dvec3& end_of(Armature& armature, const BoneEnd& end) { return end.tail ? armature.bones[end.bone].tail : armature.bones[end.bone].head; }
+glm::dvec3& end_of(Armature& armature, const BoneEnd& end) {
+  return end.tail ? armature.bones[end.bone].tail : armature.bones[end.bone].head;
+}
 
 // The shortest turn from one direction to another; none where one of them is nothing.
 glm::dquat shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
@@ -41,7 +43,8 @@ glm::dquat shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
 // The bone's own axes and those of its limits, after its direction changed.
 void turn_along(Bone& bone, const Bone& before) {
   const glm::dvec3 from = before.tail - before.head, to = bone.tail - bone.head;
-  if (glm::length(glm::cross(from, to)) <= 1e-12 * glm::length(from) * glm::length(to) && glm::dot(from, to) > 0) return;
+  if (glm::length(glm::cross(from, to)) <= 1e-12 * glm::length(from) * glm::length(to) && glm::dot(from, to) > 0)
+    return;
   const glm::dquat turn = shortest_turn(from, to);
   bone.roll = roll_of(bone, turn * rest_axes(before)[0]);
   if (bone.limits.axis != glm::dvec3(0)) bone.limits.axis = glm::normalize(turn * bone.limits.axis);
@@ -57,7 +60,9 @@ int unmarked_above(const Armature& armature, const std::vector<bool>& marks, int
 // "Arm" of "Arm.002".
 std::string without_number(const std::string& name) {
   const auto dot = name.rfind('.');
-  const bool numbered = dot != std::string::npos && dot > 0 && dot + 1 < name.size() && std::all_of(name.begin() + static_cast<std::ptrdiff_t>(dot) + 1, name.end(), [](unsigned char c) { return std::isdigit(c); });
+  const bool numbered = dot != std::string::npos && dot > 0 && dot + 1 < name.size() &&
+                        std::all_of(name.begin() + static_cast<std::ptrdiff_t>(dot) + 1, name.end(),
+                                    [](unsigned char c) { return std::isdigit(c); });
   return numbered ? name.substr(0, dot) : name;
 }
 
@@ -78,7 +83,9 @@ Armature dropped(const Armature& armature, const std::vector<bool>& marks) {
 
 }  // namespace
 
-const glm::dvec3& place_of(const Armature& armature, const BoneEnd& end) { return end.tail ? armature.bones[end.bone].tail : armature.bones[end.bone].head; }
+const glm::dvec3& place_of(const Armature& armature, const BoneEnd& end) {
+  return end.tail ? armature.bones[end.bone].tail : armature.bones[end.bone].head;
+}
 
 bool is_connected(const Armature& armature, int bone) {
   const int parent = armature.bones[bone].parent;
@@ -105,7 +112,8 @@ std::string free_name(const Armature& armature, const std::string& name) {
   }
 }
 
-Armature with_moved_ends(const Armature& armature, const std::vector<BoneEnd>& ends, const std::function<glm::dvec3(const glm::dvec3&)>& to) {
+Armature with_moved_ends(const Armature& armature, const std::vector<BoneEnd>& ends,
+                         const std::function<glm::dvec3(const glm::dvec3&)>& to) {
   Armature next = armature;
   std::vector<std::array<bool, 2>> moved(armature.bones.size(), {false, false});
   for (const BoneEnd& end : ends) {
@@ -121,7 +129,8 @@ Armature with_moved_ends(const Armature& armature, const std::vector<BoneEnd>& e
   return next;
 }
 
-Armature with_bone(const Armature& armature, const std::string& name, int parent, const glm::dvec3& head, const glm::dvec3& tail) {
+Armature with_bone(const Armature& armature, const std::string& name, int parent, const glm::dvec3& head,
+                   const glm::dvec3& tail) {
   Armature next = armature;
   next.bones.push_back({.name = free_name(armature, name), .parent = parent, .head = head, .tail = tail});
   return next;
@@ -138,15 +147,20 @@ Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec
 
 Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to) {
   const Bone &first = armature.bones.at(from.bone), &last = armature.bones.at(to.bone);
-  if (glm::distance(place_of(armature, from), place_of(armature, to)) <= kTouching) throw Error("the joints meet: there is nothing to fill", first.name + " and " + last.name, "choose bones that lie apart");
+  if (glm::distance(place_of(armature, from), place_of(armature, to)) <= kTouching)
+    throw Error("the joints meet: there is nothing to fill", first.name + " and " + last.name,
+                "choose bones that lie apart");
   Armature next = extruded(armature, from, place_of(armature, to));
   int root = from.bone;
   while (armature.bones[root].parent >= 0) root = armature.bones[root].parent;
-  if (!to.tail && last.parent < 0 && root != to.bone) next.bones[to.bone].parent = static_cast<int>(next.bones.size()) - 1;
+  if (!to.tail && last.parent < 0 && root != to.bone)
+    next.bones[to.bone].parent = static_cast<int>(next.bones.size()) - 1;
   return parents_first(std::move(next.bones), "filled rig");
 }
 
-Armature without_bones(const Armature& armature, const std::vector<int>& bones) { return dropped(armature, marked(armature, bones)); }
+Armature without_bones(const Armature& armature, const std::vector<int>& bones) {
+  return dropped(armature, marked(armature, bones));
+}
 
 Armature dissolved(const Armature& armature, const std::vector<int>& bones) {
   const std::vector<bool> marks = marked(armature, bones);
@@ -175,7 +189,8 @@ Armature subdivided(const Armature& armature, const std::vector<int>& bones, int
     all[bone].tail = place_at(1);
     int above = bone;
     for (int part = 1; part < parts; ++part) {
-      Bone next{free_name(names, whole.name), above, place_at(part), part + 1 == parts ? whole.tail : place_at(part + 1)};
+      Bone next{free_name(names, whole.name), above, place_at(part),
+                part + 1 == parts ? whole.tail : place_at(part + 1)};
       next.roll = whole.roll;
       names.bones.push_back(next);
       above = static_cast<int>(all.size());
@@ -215,16 +230,21 @@ Armature with_names_changed(const Armature& armature, const std::vector<int>& bo
   Armature next = armature;
   for (const int bone : bones) {
     std::string& name = next.bones.at(bone).name;
-    for (std::size_t at = 0; !change.find.empty() && (at = name.find(change.find, at)) != std::string::npos; at += change.replace.size()) name.replace(at, change.find.size(), change.replace);
+    for (std::size_t at = 0; !change.find.empty() && (at = name.find(change.find, at)) != std::string::npos;
+         at += change.replace.size())
+      name.replace(at, change.find.size(), change.replace);
     if (change.other_side) name = mirrored_name(name).value_or(name);
     name = change.prefix + name + change.suffix;
   }
   std::map<std::string, int> owners;
   for (int bone = 0; bone < std::ssize(next.bones); ++bone) {
     const std::string& name = next.bones[bone].name;
-    if (name.empty()) throw Error("a bone needs a name", armature.bones[bone].name, "leave a part of it, or add a prefix");
+    if (name.empty())
+      throw Error("a bone needs a name", armature.bones[bone].name, "leave a part of it, or add a prefix");
     if (const auto [owner, free] = owners.insert({name, bone}); !free)
-      throw Error("two bones would have the name '" + name + "'", armature.bones[owner->second].name + " and " + armature.bones[bone].name, "tell them apart by a prefix or a suffix");
+      throw Error("two bones would have the name '" + name + "'",
+                  armature.bones[owner->second].name + " and " + armature.bones[bone].name,
+                  "tell them apart by a prefix or a suffix");
   }
   return next;
 }
@@ -234,7 +254,10 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
   for (const int bone : bones) {
     if (bone == parent) continue;
     for (int above = parent; above >= 0; above = armature.bones.at(above).parent)
-      if (above == bone) throw Error("a bone cannot hang on one that hangs on it", armature.bones[bone].name + " on " + armature.bones[parent].name, "clear the parent of " + armature.bones[parent].name + " first");
+      if (above == bone)
+        throw Error("a bone cannot hang on one that hangs on it",
+                    armature.bones[bone].name + " on " + armature.bones[parent].name,
+                    "clear the parent of " + armature.bones[parent].name + " first");
     all.at(bone).parent = parent;
     if (join == Join::KeepOffset) continue;
     const glm::dvec3 by = armature.bones.at(parent).tail - armature.bones[bone].head;
@@ -264,7 +287,8 @@ Armature separated(const Armature& armature, const std::vector<int>& bones) {
   const std::vector<bool> marks = marked(armature, bones);
   Armature next = armature;
   for (Bone& bone : next.bones)
-    if (bone.parent >= 0 && marks[bone.parent] != marks[static_cast<std::size_t>(&bone - next.bones.data())]) bone.parent = -1;
+    if (bone.parent >= 0 && marks[bone.parent] != marks[static_cast<std::size_t>(&bone - next.bones.data())])
+      bone.parent = -1;
   return next;
 }
 
@@ -280,13 +304,15 @@ Armature with_flipped_direction(const Armature& armature, const std::vector<int>
   }
   // A chain that is flipped whole hangs on its other end; of two children the first carries it.
   for (int bone = std::ssize(all) - 1; bone >= 0; --bone)
-    if (const int parent = armature.bones[bone].parent; marks[bone] && parent >= 0 && marks[parent]) all[parent].parent = bone;
+    if (const int parent = armature.bones[bone].parent; marks[bone] && parent >= 0 && marks[parent])
+      all[parent].parent = bone;
   return parents_first(std::move(all), "flipped rig");
 }
 
 Armature rolled(const Armature& armature, const std::vector<int>& bones, double angle) {
   Armature next = armature;
-  for (const int bone : bones) next.bones.at(bone).roll = std::remainder(next.bones[bone].roll + angle, 2 * std::acos(-1.0));
+  for (const int bone : bones)
+    next.bones.at(bone).roll = std::remainder(next.bones[bone].roll + angle, 2 * std::acos(-1.0));
   return next;
 }
 

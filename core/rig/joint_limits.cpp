@@ -66,13 +66,15 @@ glm::dquat within_limits(const Bone& bone, const glm::dquat& rotation) {
     case JointLimits::Type::Hinge: {
       const SwingTwist parts = swing_twist(rotation, limits.axis);
       const double angle = cut(parts.twist, limits.minimum, limits.maximum);
-      const bool allowed = glm::length(parts.swing) <= kTolerance && std::abs(wrapped(angle - parts.twist)) <= kTolerance;
+      const bool allowed =
+          glm::length(parts.swing) <= kTolerance && std::abs(wrapped(angle - parts.twist)) <= kTolerance;
       return allowed ? rotation : exponential(angle * limits.axis);
     }
     case JointLimits::Type::Ball: {
       const glm::dvec3 axis = twist_axis(bone);
       SwingTwist parts = swing_twist(rotation, axis);
-      const double swing = glm::length(parts.swing), twist = cut(parts.twist, limits.twist_minimum, limits.twist_maximum);
+      const double swing = glm::length(parts.swing),
+                   twist = cut(parts.twist, limits.twist_minimum, limits.twist_maximum);
       if (swing <= limits.cone + kTolerance && std::abs(wrapped(twist - parts.twist)) <= kTolerance) return rotation;
       if (swing > limits.cone) parts.swing *= limits.cone / swing;
       parts.twist = twist;

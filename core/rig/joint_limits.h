@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a joint's limits allow. A ball's rotation is read as a twist about its axis followed by a swing across it,
 //   rotation = exp(swing) exp(twist axis),  swing at right angles to the axis,
-// the split in which a cone and a range of twist are independent [Grassia 1998, Practical parameterization of rotations].
-// Angles in radians, axes in the world at rest, rotations relative to rest and to the parent, as in a Pose.
+// the split in which a cone and a range of twist are independent [Grassia 1998, Practical parameterization of
+// rotations]. Angles in radians, axes in the world at rest, rotations relative to rest and to the parent, as in a Pose.
 #pragma once
 
 #include <glm/gtc/quaternion.hpp>
@@ -26,8 +26,8 @@ glm::dquat exponential(const glm::dvec3& rotation_vector);
 // The unit twist axis of a ball: its own, or along the bone.
 glm::dvec3 twist_axis(const Bone& bone);
 
-// The rotation nearest to `rotation` that the limits allow: hinges keep their angle about the axis, balls their swing and
-// twist, each cut to its range. `rotation` itself where it is allowed.
+// The rotation nearest to `rotation` that the limits allow: hinges keep their angle about the axis, balls their swing
+// and twist, each cut to its range. `rotation` itself where it is allowed.
 glm::dquat within_limits(const Bone& bone, const glm::dquat& rotation);
 
 // By how much a rotation exceeds the limits: the angle to within_limits.

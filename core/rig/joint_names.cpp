@@ -19,27 +19,28 @@ char lower(char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; 
 
 // "LHipJoint" -> l hip joint, "finger2-1.L" -> finger 2 1 l, "mixamorig:LeftArm" -> left arm
 Words words_of(std::string_view name) {
-  if (const size_t colon = name.rfind(':'); colon != name.npos && colon + 1 < name.size()) name.remove_prefix(colon + 1);
+  if (const size_t colon = name.rfind(':'); colon != name.npos && colon + 1 < name.size())
+    name.remove_prefix(colon + 1);
   Words words;
   for (size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i ? name[i - 1] : ' ', after = i + 1 < name.size() ? name[i + 1] : ' ';
     if (!is_upper(c) && !is_lower(c) && !is_digit(c)) continue;
     const bool joined = (is_upper(before) || is_lower(before)) && !is_digit(c) && !(is_upper(c) && is_lower(before)) &&
                         !(is_upper(c) && is_upper(before) && is_lower(after));
-    if (joined || (is_digit(c) && is_digit(before)))
-      words.back() += lower(c);
-    else
-      words.emplace_back(1, lower(c));
+    if (joined || (is_digit(c) && is_digit(before))) words.back() += lower(c);
+    else words.emplace_back(1, lower(c));
   }
 
   // Words that only say whose skeleton or what kind of object it is.
-  static const std::set<std::string, std::less<>> kNoise = {"mixamorig", "bip", "biped", "bone", "def", "org", "character", "cc",
-                                                            "jnt", "joint", "phalange", "phalanx", "vertebrae", "vertebra"};
+  static const std::set<std::string, std::less<>> kNoise = {"mixamorig", "bip",       "biped",     "bone",    "def",
+                                                            "org",       "character", "cc",        "jnt",     "joint",
+                                                            "phalange",  "phalanx",   "vertebrae", "vertebra"};
   const Words all = words;
   std::erase_if(words, [&](const std::string& word) { return kNoise.contains(word); });
   if (all.size() > 2 && all[0] == "cc" && all[1] == "base") words.erase(words.begin());
   // VRoid's "J_Bip_L_Hand", "J_Bip_C_Hips": C is the middle.
-  if (all.size() > 2 && all[0] == "j" && all[1] == "bip") words.erase(words.begin(), words.begin() + (words.size() > 2 && all[2] == "c" ? 2 : 1));
+  if (all.size() > 2 && all[0] == "j" && all[1] == "bip")
+    words.erase(words.begin(), words.begin() + (words.size() > 2 && all[2] == "c" ? 2 : 1));
   // "Bip01", "Character1": the number goes with the word.
   if (all.size() > 2 && kNoise.contains(all[0]) && is_digit(all[1][0]) && !words.empty()) words.erase(words.begin());
   return words.empty() ? all : words;
@@ -57,29 +58,109 @@ BodySide take_side(Words& words) {
 }
 
 // One meaning, or several of which the first that fits counts.
-enum class Word { Pelvis, Root, Trunk, Neck, Head, Clavicle, Shoulder, UpperArm, Elbow, Hand, Palm, Fingers, HipLink, Hip, Thigh, Leg, Shank, Foot, Toes };
+enum class Word {
+  Pelvis,
+  Root,
+  Trunk,
+  Neck,
+  Head,
+  Clavicle,
+  Shoulder,
+  UpperArm,
+  Elbow,
+  Hand,
+  Palm,
+  Fingers,
+  HipLink,
+  Hip,
+  Thigh,
+  Leg,
+  Shank,
+  Foot,
+  Toes
+};
 
 const std::map<std::string, Word, std::less<>>& dictionary() {
   static const std::map<std::string, Word, std::less<>> kWords = {
-      {"hips", Word::Pelvis}, {"pelvis", Word::Pelvis}, {"sacrum", Word::Pelvis}, {"root", Word::Root}, {"hip", Word::Hip},
-      {"spine", Word::Trunk}, {"chest", Word::Trunk}, {"abdomen", Word::Trunk}, {"torso", Word::Trunk}, {"back", Word::Trunk},
-      {"lowerback", Word::Trunk}, {"upperback", Word::Trunk}, {"lumbar", Word::Trunk}, {"thorax", Word::Trunk}, {"thoraxlower", Word::Trunk},
-      {"thoraxupper", Word::Trunk}, {"thoracic", Word::Trunk}, {"ab", Word::Trunk}, {"waist", Word::Trunk}, {"upperchest", Word::Trunk},
-      {"neck", Word::Neck}, {"cervical", Word::Neck}, {"lowercervical", Word::Neck}, {"uppercervical", Word::Neck},
-      {"lowerneck", Word::Neck}, {"upperneck", Word::Neck}, {"necklower", Word::Neck}, {"neckupper", Word::Neck},
-      {"head", Word::Head}, {"skull", Word::Head},
-      {"clavicle", Word::Clavicle}, {"clav", Word::Clavicle}, {"collar", Word::Clavicle}, {"collarbone", Word::Clavicle}, {"acromion", Word::Clavicle},
-      {"shoulder", Word::Shoulder}, {"shldr", Word::Shoulder}, {"shldrbend", Word::UpperArm}, {"forearmbend", Word::Elbow}, {"thighbend", Word::Thigh},
-      {"arm", Word::UpperArm}, {"upperarm", Word::UpperArm}, {"uparm", Word::UpperArm}, {"humerus", Word::UpperArm}, {"humrus", Word::UpperArm},
+      {"hips", Word::Pelvis},
+      {"pelvis", Word::Pelvis},
+      {"sacrum", Word::Pelvis},
+      {"root", Word::Root},
+      {"hip", Word::Hip},
+      {"spine", Word::Trunk},
+      {"chest", Word::Trunk},
+      {"abdomen", Word::Trunk},
+      {"torso", Word::Trunk},
+      {"back", Word::Trunk},
+      {"lowerback", Word::Trunk},
+      {"upperback", Word::Trunk},
+      {"lumbar", Word::Trunk},
+      {"thorax", Word::Trunk},
+      {"thoraxlower", Word::Trunk},
+      {"thoraxupper", Word::Trunk},
+      {"thoracic", Word::Trunk},
+      {"ab", Word::Trunk},
+      {"waist", Word::Trunk},
+      {"upperchest", Word::Trunk},
+      {"neck", Word::Neck},
+      {"cervical", Word::Neck},
+      {"lowercervical", Word::Neck},
+      {"uppercervical", Word::Neck},
+      {"lowerneck", Word::Neck},
+      {"upperneck", Word::Neck},
+      {"necklower", Word::Neck},
+      {"neckupper", Word::Neck},
+      {"head", Word::Head},
+      {"skull", Word::Head},
+      {"clavicle", Word::Clavicle},
+      {"clav", Word::Clavicle},
+      {"collar", Word::Clavicle},
+      {"collarbone", Word::Clavicle},
+      {"acromion", Word::Clavicle},
+      {"shoulder", Word::Shoulder},
+      {"shldr", Word::Shoulder},
+      {"shldrbend", Word::UpperArm},
+      {"forearmbend", Word::Elbow},
+      {"thighbend", Word::Thigh},
+      {"arm", Word::UpperArm},
+      {"upperarm", Word::UpperArm},
+      {"uparm", Word::UpperArm},
+      {"humerus", Word::UpperArm},
+      {"humrus", Word::UpperArm},
       {"humeurs", Word::UpperArm},
-      {"forearm", Word::Elbow}, {"elbow", Word::Elbow}, {"lowerarm", Word::Elbow}, {"loarm", Word::Elbow}, {"ulna", Word::Elbow},
-      {"unla", Word::Elbow}, {"radius", Word::Elbow},
-      {"hand", Word::Hand}, {"wrist", Word::Hand}, {"carpus", Word::Hand}, {"fingerbase", Word::Palm}, {"palm", Word::Palm},
-      {"fingers", Word::Fingers}, {"handfinger", Word::Fingers},
-      {"hiplink", Word::HipLink}, {"buttock", Word::HipLink},
-      {"thigh", Word::Thigh}, {"upleg", Word::Thigh}, {"upperleg", Word::Thigh}, {"femur", Word::Thigh}, {"leg", Word::Leg},
-      {"shank", Word::Shank}, {"shin", Word::Shank}, {"calf", Word::Shank}, {"knee", Word::Shank}, {"lowerleg", Word::Shank}, {"loleg", Word::Shank},
-      {"tibia", Word::Shank}, {"foot", Word::Foot}, {"ankle", Word::Foot}, {"toe", Word::Toes}, {"toes", Word::Toes}, {"toebase", Word::Toes},
+      {"forearm", Word::Elbow},
+      {"elbow", Word::Elbow},
+      {"lowerarm", Word::Elbow},
+      {"loarm", Word::Elbow},
+      {"ulna", Word::Elbow},
+      {"unla", Word::Elbow},
+      {"radius", Word::Elbow},
+      {"hand", Word::Hand},
+      {"wrist", Word::Hand},
+      {"carpus", Word::Hand},
+      {"fingerbase", Word::Palm},
+      {"palm", Word::Palm},
+      {"fingers", Word::Fingers},
+      {"handfinger", Word::Fingers},
+      {"hiplink", Word::HipLink},
+      {"buttock", Word::HipLink},
+      {"thigh", Word::Thigh},
+      {"upleg", Word::Thigh},
+      {"upperleg", Word::Thigh},
+      {"femur", Word::Thigh},
+      {"leg", Word::Leg},
+      {"shank", Word::Shank},
+      {"shin", Word::Shank},
+      {"calf", Word::Shank},
+      {"knee", Word::Shank},
+      {"lowerleg", Word::Shank},
+      {"loleg", Word::Shank},
+      {"tibia", Word::Shank},
+      {"foot", Word::Foot},
+      {"ankle", Word::Foot},
+      {"toe", Word::Toes},
+      {"toes", Word::Toes},
+      {"toebase", Word::Toes},
       {"ball", Word::Toes},
   };
   return kWords;
@@ -89,8 +170,9 @@ const std::map<std::string, Word, std::less<>>& dictionary() {
 
 std::optional<BodyPart> finger_of(const std::string& word) {
   static const std::map<std::string, BodyPart, std::less<>> kFingers = {
-      {"thumb", BodyPart::Thumb}, {"index", BodyPart::Index}, {"middle", BodyPart::Middle}, {"mid", BodyPart::Middle}, {"ring", BodyPart::Ring},
-      {"little", BodyPart::Little}, {"pinky", BodyPart::Little}, {"pinkie", BodyPart::Little}, {"small", BodyPart::Little}};
+      {"thumb", BodyPart::Thumb},  {"index", BodyPart::Index},   {"middle", BodyPart::Middle},
+      {"mid", BodyPart::Middle},   {"ring", BodyPart::Ring},     {"little", BodyPart::Little},
+      {"pinky", BodyPart::Little}, {"pinkie", BodyPart::Little}, {"small", BodyPart::Little}};
   const auto found = kFingers.find(word);
   return found == kFingers.end() ? std::nullopt : std::optional(found->second);
 }
@@ -105,13 +187,16 @@ std::optional<JointRole> finger_role(const Words& words, BodySide side) {
     auto finger = finger_of(words[i]);
     size_t next = i + 1;
     int segment = -1;
-    if (!finger && words[i] == "finger" && i + 2 < words.size() && is_digit(words[i + 1][0]) && is_digit(words[i + 2][0])) {
+    if (!finger && words[i] == "finger" && i + 2 < words.size() && is_digit(words[i + 1][0]) &&
+        is_digit(words[i + 2][0])) {
       const int number = std::atoi(words[i + 1].substr(0, 4).c_str());
-      if (number >= 1 && number <= 5) finger = static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number - 1), next = i + 2;
+      if (number >= 1 && number <= 5)
+        finger = static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number - 1), next = i + 2;
     }
     if (!finger && words[i] == "metacarpal" && i + 1 < words.size() && is_digit(words[i + 1][0])) {
       const int number = std::atoi(words[i + 1].substr(0, 4).c_str());
-      if (number >= 1 && number <= 4) finger = static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number), next = words.size(), segment = 0;
+      if (number >= 1 && number <= 4)
+        finger = static_cast<BodyPart>(static_cast<int>(BodyPart::Thumb) + number), next = words.size(), segment = 0;
     }
     if (!finger) continue;
     for (size_t k = next; k < words.size() && segment < 0; ++k) {
@@ -120,9 +205,11 @@ std::optional<JointRole> finger_role(const Words& words, BodySide side) {
       else if (starts_with_any(words[k], {"prox"})) segment = 1;
       else if (starts_with_any(words[k], {"mid", "interm"})) segment = 2;
       else if (starts_with_any(words[k], {"dist"})) segment = 3;
-      if (*finger == BodyPart::Thumb && segment >= 0 && !is_digit(words[k][0])) segment = segment == 0 ? 1 : segment == 1 ? 2 : 3;
+      if (*finger == BodyPart::Thumb && segment >= 0 && !is_digit(words[k][0]))
+        segment = segment == 0 ? 1 : segment == 1 ? 2 : 3;
     }
-    if (segment < 0) segment = std::find(words.begin(), words.end(), "in") != words.end() && *finger != BodyPart::Thumb ? 0 : 1;
+    if (segment < 0)
+      segment = std::find(words.begin(), words.end(), "in") != words.end() && *finger != BodyPart::Thumb ? 0 : 1;
     if (segment > 3) return std::nullopt;
     return JointRole{*finger, side, segment};
   }
@@ -154,13 +241,15 @@ Meaning meaning_of(const std::string& name) {
     if (!is_digit(word[0])) joined += word;
   auto found = dictionary().find(joined);
   // "rbuttock", "lthigh": a side without a break.
-  if (found == dictionary().end() && meaning.side == BodySide::Middle && joined.size() > 2 && (joined[0] == 'l' || joined[0] == 'r')) {
+  if (found == dictionary().end() && meaning.side == BodySide::Middle && joined.size() > 2 &&
+      (joined[0] == 'l' || joined[0] == 'r')) {
     found = dictionary().find(std::string_view(joined).substr(1));
     if (found != dictionary().end()) meaning.side = joined[0] == 'l' ? BodySide::Left : BodySide::Right;
   }
   if (found == dictionary().end())
     for (const char* trunk : {"lumbar", "thoracic", "spine", "cervical"})
-      if (joined.find(trunk) != joined.npos) meaning.word = trunk == std::string_view("cervical") ? Word::Neck : Word::Trunk;
+      if (joined.find(trunk) != joined.npos)
+        meaning.word = trunk == std::string_view("cervical") ? Word::Neck : Word::Trunk;
   if (found != dictionary().end()) meaning.word = found->second;
   // CMU's "LHipJoint" lost its second word as noise.
   if (meaning.word == Word::Hip && name.find("HipJoint") != name.npos) meaning.word = Word::HipLink;
@@ -181,15 +270,20 @@ std::optional<BodyPart> part_of(Word word, const std::set<Word>& same_side) {
     case Word::Palm: return BodyPart::Palm;
     case Word::Fingers: return BodyPart::Fingers;
     case Word::HipLink: return BodyPart::HipLink;
-    case Word::Hip: return has_thigh || (same_side.contains(Word::Leg) && same_side.contains(Word::Shank)) ? BodyPart::HipLink : BodyPart::Thigh;
+    case Word::Hip:
+      return has_thigh || (same_side.contains(Word::Leg) && same_side.contains(Word::Shank)) ? BodyPart::HipLink
+                                                                                             : BodyPart::Thigh;
     case Word::Thigh: return BodyPart::Thigh;
-    case Word::Leg: return same_side.contains(Word::Shank) && !has_thigh && !same_side.contains(Word::Hip) ? BodyPart::Thigh : BodyPart::Shank;
+    case Word::Leg:
+      return same_side.contains(Word::Shank) && !has_thigh && !same_side.contains(Word::Hip) ? BodyPart::Thigh
+                                                                                             : BodyPart::Shank;
     case Word::Shank: return BodyPart::Shank;
     case Word::Foot: return BodyPart::Foot;
     case Word::Toes: return BodyPart::Toes;
     case Word::Neck: return BodyPart::Neck;
     case Word::Head: return BodyPart::Head;
-    case Word::Pelvis: case Word::Root: return BodyPart::Pelvis;
+    case Word::Pelvis:
+    case Word::Root: return BodyPart::Pelvis;
     case Word::Trunk: return BodyPart::Spine;
   }
   return std::nullopt;
@@ -214,7 +308,8 @@ class Roles {
 };
 }  // namespace
 
-std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>& names, const std::vector<int>& parents) {
+std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>& names,
+                                                  const std::vector<int>& parents) {
   const size_t count = names.size();
   std::vector<Meaning> meanings(count);
   std::map<BodySide, std::set<Word>> words;
@@ -246,7 +341,8 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
   // The pelvis: by its name, else "hip" without a side, else the root.
   auto give_pelvis = [&](Word word) {
     for (size_t j = 0; j < count; ++j)
-      if (meanings[j].word == word && meanings[j].side == BodySide::Middle && roles.give(j, {BodyPart::Pelvis})) return true;
+      if (meanings[j].word == word && meanings[j].side == BodySide::Middle && roles.give(j, {BodyPart::Pelvis}))
+        return true;
     return false;
   };
   if (!give_pelvis(Word::Pelvis) && !give_pelvis(Word::Hip)) give_pelvis(Word::Root);
@@ -261,7 +357,8 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
     if (meanings[j].word == Word::Trunk || meanings[j].word == Word::Root || !meanings[j].word) spine.push_back(j);
   // A bare root above a sibling pelvis (Root -> Spine, Root -> Hips) is no vertebra.
   while (!spine.empty() && meanings[spine.back()].word != Word::Trunk) spine.pop_back();
-  for (size_t k = 0; k < spine.size(); ++k) roles.give(spine[k], {BodyPart::Spine, BodySide::Middle, static_cast<int>(spine.size() - 1 - k)});
+  for (size_t k = 0; k < spine.size(); ++k)
+    roles.give(spine[k], {BodyPart::Spine, BodySide::Middle, static_cast<int>(spine.size() - 1 - k)});
   return std::move(roles).all();
 }
 

@@ -42,7 +42,8 @@ std::optional<std::string> by_letter(const std::string& name) {
   for (std::size_t at = name.size(); at-- > 0;) {
     const char other = other_letter(name[at]);
     if (!other) continue;
-    const bool starts = at == 0 || is_separator(name[at - 1]), ends = at + 1 == name.size() || is_separator(name[at + 1]);
+    const bool starts = at == 0 || is_separator(name[at - 1]),
+               ends = at + 1 == name.size() || is_separator(name[at + 1]);
     const bool capital = at == 0 && is_upper(name[0]) && name.size() > 2 && is_upper(name[1]) && !is_upper(name[2]);
     if ((!starts || !ends || name.size() == 1) && !capital) continue;
     std::string mirrored = name;
@@ -54,7 +55,8 @@ std::optional<std::string> by_letter(const std::string& name) {
 
 JointLimits mirrored(const JointLimits& limits, const MirrorPlane& plane) {
   JointLimits other = limits;
-  // A hinge's axis mirrors like a turn, so that its range stays; a ball's like a direction, so that its twist turns round.
+  // A hinge's axis mirrors like a turn, so that its range stays; a ball's like a direction, so that its twist turns
+  // round.
   if (limits.type == JointLimits::Type::Hinge) other.axis = -plane.direction(limits.axis);
   if (limits.type == JointLimits::Type::Ball) {
     other.axis = plane.direction(limits.axis);
@@ -152,10 +154,8 @@ Armature symmetrized(const Armature& armature, const std::vector<int>& bones) {
       const int other = parent ? place_of(*parent) : -1;
       image.parent = other >= 0 ? other : all[b].parent;
     }
-    if (found < 0)
-      all.push_back(image);
-    else
-      all[found] = image;
+    if (found < 0) all.push_back(image);
+    else all[found] = image;
   }
   return parents_first(std::move(all), "symmetrized rig");
 }

@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/binding/flesh_graph.h"
+#include "core/binding/geodesic_front.h"
 #include "core/bones/min_cut.h"
 #include "core/seams/limbs.h"
 #include "core/seams/skin_layers.h"
-#include "core/skin/soft_body.h"
-#include "core/skin/tissue_front.h"
 #include "core/volume/tissue_set.h"
 
 namespace limber {
@@ -26,10 +26,10 @@ constexpr double kNarrowestBand = 4;   // of the longest voxel edge
 constexpr std::int64_t kGrain = 64;    // bricks a block of a parallel loop
 constexpr std::int64_t kNodes = 4096;  // of a band, likewise
 constexpr int kCostUnit = 1024;
-constexpr double kBridge = 0.5;        // cost of a bridge between two skins: half of theirs, and less towards its middle
+constexpr double kBridge = 0.5;  // cost of a bridge between two skins: half of theirs, and less towards its middle
 
-// What it costs to cut through a tissue, relative to connective tissue. Skin costs the same: where it is only drawn at the air,
-// the sheet between two limbs goes over into connective tissue, and its middle is meant.
+// What it costs to cut through a tissue, relative to connective tissue. Skin costs the same: where it is only drawn at
+// the air, the sheet between two limbs goes over into connective tissue, and its middle is meant.
 constexpr std::array<double, kLayers> kCostOfLayer{1, 3, 6, 12};
 double cost_of(TissueKind kind) { return kCostOfLayer[static_cast<int>(layer_of(kind))]; }
 
@@ -51,9 +51,17 @@ std::optional<LimbName> limb_of_tissue(const Tissue& tissue) {
 
 class SeamFinder {
  public:
-  SeamFinder(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature, const BoneParts& parts)
-      : volume_(volume), tissue_(tissue), armature_(armature), limbs_(limbs_of(armature)), seams_(volume.grid.size), kind_(65536, TissueKind::Unknown),
-        named_(65536), world_(world_from_voxel(volume.grid)), inside_(tissue) {
+  SeamFinder(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+             const Armature& armature, const BoneParts& parts)
+      : volume_(volume),
+        tissue_(tissue),
+        armature_(armature),
+        limbs_(limbs_of(armature)),
+        seams_(volume.grid.size),
+        kind_(65536, TissueKind::Unknown),
+        named_(65536),
+        world_(world_from_voxel(volume.grid)),
+        inside_(tissue) {
     for (const Tissue& t : tissues.tissues) {
       kind_[t.label] = t.kind;
       named_[t.label] = limb_of_tissue(t);
@@ -91,14 +99,17 @@ class SeamFinder {
     bool operator==(const Border& other) const { return place == other.place; }
   };
 
-  bool may_hold(int bone, Label label) const { return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone]; }
+  bool may_hold(int bone, Label label) const {
+    return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone];
+  }
 
   // Every voxel goes to the bone nearest to it through tissue whose name does not contradict.
   void spread_bones() {
     bone_ = held_by_;
     std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
     std::vector<Label> label;  // only where some label names a limb
-    if (std::any_of(named_.begin(), named_.end(), [](const auto& name) { return name.has_value(); })) label.resize(tissue_.size());
+    if (std::any_of(named_.begin(), named_.end(), [](const auto& name) { return name.has_value(); }))
+      label.resize(tissue_.size());
     TissueFront front(volume_, tissue_);
     front.start_all([&](std::int64_t place, const glm::ivec3& v) {
       if (!label.empty()) label[place] = volume_.at(v);
@@ -107,7 +118,10 @@ class SeamFinder {
       return has_soft_beside(v) ? held_by_[place] : TissueFront::kNoSource;
     });
     front.spread(
-        distance, [&](std::uint16_t bone, std::int64_t to, float way) { return way < distance[to] && (label.empty() || may_hold(bone, label[to])); },
+        distance,
+        [&](std::uint16_t bone, std::int64_t to, float way) {
+          return way < distance[to] && (label.empty() || may_hold(bone, label[to]));
+        },
         [&](std::uint16_t bone, std::int64_t to, float way) {
           distance[to] = way;
           bone_[to] = bone;
@@ -117,7 +131,8 @@ class SeamFinder {
   // How the free surface of the flesh of some bones is layered.
   SkinLayers skin_layers(const std::vector<bool>& of_bones) {
     if (!rays_) rays_ = skin_rays(volume_, tissue_, kind_);
-    return SkinLayers(*rays_, volume_.grid.spacing, [&](std::int64_t place) { return bone_[place] != kSoft && of_bones[bone_[place]]; });
+    return SkinLayers(*rays_, volume_.grid.spacing,
+                      [&](std::int64_t place) { return bone_[place] != kSoft && of_bones[bone_[place]]; });
   }
 
   bool has_soft_beside(const glm::ivec3& v) const {
@@ -135,22 +150,23 @@ class SeamFinder {
     std::atomic<bool> has_skin = false;
     for_bricks([&](std::int64_t place, const glm::ivec3& v) {
       const bool is_skin = kind_at(v) == TissueKind::Skin;
-      if (!is_skin)
-        flesh.add(v);
-      else if (!has_skin)
-        has_skin = true;
+      if (!is_skin) flesh.add(v);
+      else if (!has_skin) has_skin = true;
       if (held_by_[place] != kSoft) inside_.add(v);
     });
     has_skin_ = has_skin;
     if (has_skin_) inside_.spread(flesh);
   }
 
-  bool is_bridge(const glm::ivec3& v) const { return has_skin_ && !inside_.contains(v) && kind_at(v) != TissueKind::Skin; }
+  bool is_bridge(const glm::ivec3& v) const {
+    return has_skin_ && !inside_.contains(v) && kind_at(v) != TissueKind::Skin;
+  }
 
   // body(place, voxel) for all tissue, on several threads that share no brick.
   template <class Body>
   void for_bricks(const Body& body) const {
-    parallel_for(std::ssize(tissue_.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) { tissue_.for_each(begin, end, body); });
+    parallel_for(std::ssize(tissue_.bricks()), kGrain,
+                 [&](std::int64_t begin, std::int64_t end) { tissue_.for_each(begin, end, body); });
   }
 
   // body(direction, voxel there, its place) for the tissue that a voxel hangs together with.
@@ -164,10 +180,16 @@ class SeamFinder {
     }
   }
 
-  glm::dvec3 face_centre(const glm::ivec3& v, const glm::ivec3& w) const { return world_ * (0.5 * (glm::dvec3(v) + glm::dvec3(w))); }
+  glm::dvec3 face_centre(const glm::ivec3& v, const glm::ivec3& w) const {
+    return world_ * (0.5 * (glm::dvec3(v) + glm::dvec3(w)));
+  }
 
-  bool is_of(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.has_bone[bone_[place]]; }
-  bool may_touch(const Limb& limb, std::int64_t place) const { return bone_[place] != kSoft && limb.may_touch[bone_[place]]; }
+  bool is_of(const Limb& limb, std::int64_t place) const {
+    return bone_[place] != kSoft && limb.has_bone[bone_[place]];
+  }
+  bool may_touch(const Limb& limb, std::int64_t place) const {
+    return bone_[place] != kSoft && limb.may_touch[bone_[place]];
+  }
 
   // The voxels at which tissue of different bones meets, and of some others; by place.
   void find_borders() {
@@ -234,7 +256,9 @@ class SeamFinder {
     const glm::dvec3 spacing = volume_.grid.spacing;
     const double longest = std::max({spacing.x, spacing.y, spacing.z});
     double width = kWidestBand;
-    if (limb.root >= 0) width = std::min(width, kBandShare * glm::distance(armature_.bones[limb.root].head, armature_.bones[limb.root].tail));
+    if (limb.root >= 0)
+      width =
+          std::min(width, kBandShare * glm::distance(armature_.bones[limb.root].head, armature_.bones[limb.root].tail));
     width = std::max(width, kNarrowestBand * longest);
     for (size_t i = 0; i < open.size(); ++i) {
       const Node from = band_[open[i]];
@@ -295,14 +319,16 @@ class SeamFinder {
     return depth;
   }
 
-  // What it costs to cut through each voxel of the band. In a bridge the depth counts by its third power: a bridge is short,
-  // and its middle is meant.
+  // What it costs to cut through each voxel of the band. In a bridge the depth counts by its third power: a bridge is
+  // short, and its middle is meant.
   std::vector<double> costs() const {
-    const std::vector<float> in_sheet = depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
+    const std::vector<float> in_sheet =
+        depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
     const std::vector<float> in_bridge = depth_in_sheets([&](const Node& node) { return is_bridge(node.voxel); });
     std::vector<double> cost(band_.size());
     for (size_t n = 0; n < band_.size(); ++n) {
-      cost[n] = is_bridge(band_[n].voxel) ? kBridge / std::pow(1 + in_bridge[n], 3) : cost_of(kind_at(band_[n].voxel)) / (1 + in_sheet[n]);
+      cost[n] = is_bridge(band_[n].voxel) ? kBridge / std::pow(1 + in_bridge[n], 3)
+                                          : cost_of(kind_at(band_[n].voxel)) / (1 + in_sheet[n]);
     }
     return cost;
   }
@@ -312,9 +338,10 @@ class SeamFinder {
     double of_limb, of_other;
   };
 
-  // Of a surface that lies inward of it: more where fat or muscle lies nearer to it than to free skin. Bone tells nothing of
-  // that: it is near the skin of a hand and deep in a thigh.
-  SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& of_limb, const SkinLayers& of_other) const {
+  // Of a surface that lies inward of it: more where fat or muscle lies nearer to it than to free skin. Bone tells
+  // nothing of that: it is near the skin of a hand and deep in a thigh.
+  SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& of_limb,
+                              const SkinLayers& of_other) const {
     const int axis = inward >> 1, reach = std::max(of_limb.reach(axis), of_other.reach(axis));
     SurfaceCost cost{own_cost, own_cost};
     for (int k = 1; k < reach && !seams_.is_cut_towards(v, inward); ++k) {
@@ -334,7 +361,8 @@ class SeamFinder {
 
   // Bones, tissue whose name tells, and the band's ends stay what they are.
   void find_sides(const Limb& limb) {
-    const auto limb_name = limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
+    const auto limb_name =
+        limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
     side_.clear();
     for (std::size_t n = 0; n < band_.size(); ++n) side_.push_back(side_of(limb, limb_name, n));
   }
@@ -350,7 +378,8 @@ class SeamFinder {
   std::vector<std::uint8_t> cheapest_cut(const Limb& limb) {
     const std::vector<double> cost = costs();
     const SkinLayers of_limb = skin_layers(limb.has_bone), of_other = skin_layers(limb.may_touch);
-    CutGraph<6> graph{beside_, std::vector<std::array<std::int32_t, 6>>(band_.size()), std::vector<std::int32_t>(band_.size())};
+    CutGraph<6> graph{beside_, std::vector<std::array<std::int32_t, 6>>(band_.size()),
+                      std::vector<std::int32_t>(band_.size())};
     const glm::dvec3 s = volume_.grid.spacing, area(s.y * s.z, s.x * s.z, s.x * s.y);
     const double smallest = std::min({area.x, area.y, area.z});
     const auto set_capacities = [&](std::int32_t n) {
@@ -362,7 +391,9 @@ class SeamFinder {
         const SurfaceCost here = cost_as_surface(cost[n], band_[n].voxel, 2 * axis, of_limb, of_other);
         const SurfaceCost beyond = cost_as_surface(cost[m], band_[m].voxel, 2 * axis + 1, of_limb, of_other);
         const double unit = kCostUnit * area[axis] / smallest;
-        const auto capacity = [&](double surface) { return std::max(1, static_cast<int>(std::lround(unit * surface))); };
+        const auto capacity = [&](double surface) {
+          return std::max(1, static_cast<int>(std::lround(unit * surface)));
+        };
         graph.capacity[n][up] = capacity(here.of_limb + beyond.of_other);
         graph.capacity[m][down] = capacity(beyond.of_limb + here.of_other);
       }
@@ -373,8 +404,8 @@ class SeamFinder {
     return min_cut(std::move(graph));
   }
 
-  // What changes sides follows the bone of what is around it there. A fragment of one side that hangs on nothing else of it goes
-  // with the other.
+  // What changes sides follows the bone of what is around it there. A fragment of one side that hangs on nothing else
+  // of it goes with the other.
   void take_sides(const Limb& limb, const std::vector<std::uint8_t>& inside) {
     std::vector<bool> settled(band_.size());
     std::vector<std::int32_t> open;
@@ -418,26 +449,26 @@ class SeamFinder {
   const Armature& armature_;
   const std::vector<Limb> limbs_;
   Seams seams_;
-  std::vector<TissueKind> kind_;                  // by label
-  std::vector<std::optional<LimbName>> named_;    // by label
+  std::vector<TissueKind> kind_;                // by label
+  std::vector<std::optional<LimbName>> named_;  // by label
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
-  std::vector<std::uint16_t> held_by_, bone_;     // by place
-  std::vector<std::int32_t> node_of_;             // by place, -1 outside the band
+  std::vector<std::uint16_t> held_by_, bone_;  // by place
+  std::vector<std::int32_t> node_of_;          // by place, -1 outside the band
   std::vector<Node> band_;
   std::vector<std::array<std::int32_t, 6>> beside_;  // by node of the band and edge; -1 for none
-  std::vector<bool> is_end_;                      // by node of the band
-  std::vector<Side> side_;                        // by node of the band
+  std::vector<bool> is_end_;                         // by node of the band
+  std::vector<Side> side_;                           // by node of the band
   std::vector<Border> borders_;
   bool has_skin_ = false;
-  TissueSet inside_;                              // bones, and what hangs together with them without skin between
-  std::optional<std::vector<SkinRay>> rays_;      // once they are asked for
+  TissueSet inside_;                          // bones, and what hangs together with them without skin between
+  std::optional<std::vector<SkinRay>> rays_;  // once they are asked for
 };
 
 }  // namespace
 
-Seams find_seams(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues, const Armature& armature,
-                 const BoneParts& parts, Progress& progress) {
+Seams find_seams(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                 const Armature& armature, const BoneParts& parts, Progress& progress) {
   return SeamFinder(volume, tissue, tissues, armature, parts).run(progress);
 }
 

@@ -30,19 +30,33 @@ Roles roles_of(const Armature& armature) {
 }
 
 bool is_digit(BodyPart part) {
-  return part == BodyPart::Thumb || part == BodyPart::Index || part == BodyPart::Middle || part == BodyPart::Ring || part == BodyPart::Little;
+  return part == BodyPart::Thumb || part == BodyPart::Index || part == BodyPart::Middle || part == BodyPart::Ring ||
+         part == BodyPart::Little;
 }
 
 // Beyond the palm.
-bool is_free_digit(const JointRole& role) { return is_digit(role.part) && role.index >= (role.part == BodyPart::Thumb ? 2 : 1); }
+bool is_free_digit(const JointRole& role) {
+  return is_digit(role.part) && role.index >= (role.part == BodyPart::Thumb ? 2 : 1);
+}
 
 LimbName limb_name_of(const JointRole& role) {
   switch (role.part) {
-    case BodyPart::UpperArm: case BodyPart::Forearm: case BodyPart::Hand: case BodyPart::Palm: case BodyPart::Fingers:
-    case BodyPart::Thumb: case BodyPart::Index: case BodyPart::Middle: case BodyPart::Ring: case BodyPart::Little:
-      return LimbName::Arms;
-    case BodyPart::Thigh: case BodyPart::Shank: case BodyPart::Foot: case BodyPart::Toes: return LimbName::Legs;
-    case BodyPart::Neck: case BodyPart::Head: return LimbName::Head;
+    case BodyPart::UpperArm:
+    case BodyPart::Forearm:
+    case BodyPart::Hand:
+    case BodyPart::Palm:
+    case BodyPart::Fingers:
+    case BodyPart::Thumb:
+    case BodyPart::Index:
+    case BodyPart::Middle:
+    case BodyPart::Ring:
+    case BodyPart::Little: return LimbName::Arms;
+    case BodyPart::Thigh:
+    case BodyPart::Shank:
+    case BodyPart::Foot:
+    case BodyPart::Toes: return LimbName::Legs;
+    case BodyPart::Neck:
+    case BodyPart::Head: return LimbName::Head;
     default: return LimbName::Trunk;
   }
 }
@@ -58,10 +72,13 @@ Limb limb_where(const Armature& armature, const Roles& roles, const Belongs& bel
   return limb;
 }
 
-bool has_any(const Limb& limb) { return std::find(limb.has_bone.begin(), limb.has_bone.end(), true) != limb.has_bone.end(); }
+bool has_any(const Limb& limb) {
+  return std::find(limb.has_bone.begin(), limb.has_bone.end(), true) != limb.has_bone.end();
+}
 
 Limb arm_or_leg(const Armature& armature, const Roles& roles, LimbName name, BodySide side) {
-  Limb limb = limb_where(armature, roles, [&](const JointRole& role) { return limb_name_of(role) == name && role.side == side; });
+  Limb limb = limb_where(armature, roles,
+                         [&](const JointRole& role) { return limb_name_of(role) == name && role.side == side; });
   limb.grown_together = kLimbGrownTogether;
   for (size_t b = 0; b < roles.size(); ++b) {
     // The flesh of hip and buttock is one with the thigh.
@@ -72,7 +89,9 @@ Limb arm_or_leg(const Armature& armature, const Roles& roles, LimbName name, Bod
 }
 
 Limb digit(const Armature& armature, const Roles& roles, BodyPart part, BodySide side) {
-  Limb limb = limb_where(armature, roles, [&](const JointRole& role) { return role.part == part && role.side == side && is_free_digit(role); });
+  Limb limb = limb_where(armature, roles, [&](const JointRole& role) {
+    return role.part == part && role.side == side && is_free_digit(role);
+  });
   limb.grown_together = kFingerGrownTogether;
   for (size_t b = 0; b < roles.size(); ++b)
     limb.may_touch.push_back(roles[b] && roles[b]->side == side && roles[b]->part != part && is_free_digit(*roles[b]));
@@ -119,9 +138,11 @@ bool is_free(const Limb& limb, const Armature& armature, const glm::dvec3& point
 
 std::optional<LimbName> limb_named(std::string_view tissue_name) {
   std::string name(tissue_name);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(c)); });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(c)); });
   const auto ends_with = [&](std::string_view ending) { return name.ends_with(ending); };
-  // A single word after a comma means the limb; after another word it may be the head of a muscle or the neck of an organ.
+  // A single word after a comma means the limb; after another word it may be the head of a muscle or the neck of an
+  // organ.
   if (ends_with(" arms") || ends_with(", arm")) return LimbName::Arms;
   if (ends_with(" legs") || ends_with(", leg")) return LimbName::Legs;
   if (ends_with(", trunk") || ends_with(", torso")) return LimbName::Trunk;

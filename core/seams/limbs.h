@@ -13,10 +13,10 @@ namespace limber {
 
 // A part of the body that other parts may touch without being one with them.
 struct Limb {
-  std::vector<bool> has_bone;    // #bones of the rig
-  int root = -1;                 // the bone that it begins with, where the rig has it
-  double grown_together = 0;     // share of the root's length along which it is one with its neighbours by nature
-  std::vector<bool> may_touch;   // #bones of the rig: what it can lie against
+  std::vector<bool> has_bone;   // #bones of the rig
+  int root = -1;                // the bone that it begins with, where the rig has it
+  double grown_together = 0;    // share of the root's length along which it is one with its neighbours by nature
+  std::vector<bool> may_touch;  // #bones of the rig: what it can lie against
 };
 
 // Arms and legs, then fingers and thumbs. None where the bones' names mean nothing known.

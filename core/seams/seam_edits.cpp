@@ -14,10 +14,14 @@ constexpr glm::dvec3 kAside(1.17e-4, 2.31e-4, 3.43e-4);
 
 // Whether the line from a to b, along one voxel axis, passes a triangle.
 bool passes(const glm::dvec3& a, const glm::dvec3& b, const std::array<glm::dvec3, 3>& triangle) {
-  const auto volume = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r, const glm::dvec3& s) { return glm::dot(glm::cross(q - p, r - p), s - p); };
-  const double above = volume(triangle[0], triangle[1], triangle[2], a), below = volume(triangle[0], triangle[1], triangle[2], b);
+  const auto volume = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r, const glm::dvec3& s) {
+    return glm::dot(glm::cross(q - p, r - p), s - p);
+  };
+  const double above = volume(triangle[0], triangle[1], triangle[2], a),
+               below = volume(triangle[0], triangle[1], triangle[2], b);
   if ((above > 0) == (below > 0) || above == below) return false;
-  const bool first = volume(a, b, triangle[0], triangle[1]) > 0, second = volume(a, b, triangle[1], triangle[2]) > 0, third = volume(a, b, triangle[2], triangle[0]) > 0;
+  const bool first = volume(a, b, triangle[0], triangle[1]) > 0, second = volume(a, b, triangle[1], triangle[2]) > 0,
+             third = volume(a, b, triangle[2], triangle[0]) > 0;
   return first == second && second == third;
 }
 
@@ -48,10 +52,13 @@ LabelSet soft_labels(const TissueTable& tissues) {
   return soft;
 }
 
-std::int64_t cut_between(Seams& seams, const LabelVolume& volume, const LabelSet& soft, const Blade& first, const Blade& second) {
+std::int64_t cut_between(Seams& seams, const LabelVolume& volume, const LabelSet& soft, const Blade& first,
+                         const Blade& second) {
   const AffineTransform voxel = voxel_from_world(volume.grid);
-  const std::array<glm::dvec3, 4> corners{voxel * first.from + kAside, voxel * first.to + kAside, voxel * second.to + kAside, voxel * second.from + kAside};
-  const std::array<std::array<glm::dvec3, 3>, 2> sheet{{{corners[0], corners[1], corners[2]}, {corners[0], corners[2], corners[3]}}};
+  const std::array<glm::dvec3, 4> corners{voxel * first.from + kAside, voxel * first.to + kAside,
+                                          voxel * second.to + kAside, voxel * second.from + kAside};
+  const std::array<std::array<glm::dvec3, 3>, 2> sheet{
+      {{corners[0], corners[1], corners[2]}, {corners[0], corners[2], corners[3]}}};
   glm::dvec3 low = corners[0], high = corners[0];
   for (const glm::dvec3& corner : corners) low = glm::min(low, corner), high = glm::max(high, corner);
   if (!(glm::length(high - low) < 1e9)) return 0;

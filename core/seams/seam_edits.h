@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams changed by hand. A knife that goes along a stroke cuts the faces that it passes between soft voxels, so that a stroke makes a
-// thin sheet and not a heap of single voxels; a ball joins all faces within it.
+// Seams changed by hand. A knife that goes along a stroke cuts the faces that it passes between soft voxels, so that a
+// stroke makes a thin sheet and not a heap of single voxels; a ball joins all faces within it.
 #pragma once
 
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
 #include "core/volume/seams.h"
-#include "core/volume/tissue_table.h"
 
 namespace limber {
 
@@ -19,7 +19,8 @@ struct Blade {
 
 // Cuts the faces between soft voxels whose centres lie on both sides of the sheet between two blades.
 //   returns  the faces that were not cut before
-std::int64_t cut_between(Seams& seams, const LabelVolume& volume, const LabelSet& soft, const Blade& first, const Blade& second);
+std::int64_t cut_between(Seams& seams, const LabelVolume& volume, const LabelSet& soft, const Blade& first,
+                         const Blade& second);
 
 // Joins the faces whose middle lies within a ball.
 //   centre, radius  world, mm     returns  the faces that were cut before

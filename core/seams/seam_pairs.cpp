@@ -5,9 +5,9 @@
 #include <limits>
 #include <map>
 
+#include "core/binding/flesh_graph.h"
 #include "core/rig/joint_names.h"
 #include "core/seams/limbs.h"
-#include "core/skin/soft_body.h"
 
 namespace limber {
 
@@ -17,14 +17,16 @@ constexpr double kEnd = 8;  // voxels: as far as the end of a seam takes its nam
 
 const char* word_for(BodyPart part) {
   switch (part) {
-    case BodyPart::Pelvis: case BodyPart::HipLink: return "hip";
+    case BodyPart::Pelvis:
+    case BodyPart::HipLink: return "hip";
     case BodyPart::Spine: return "trunk";
     case BodyPart::Neck: return "neck";
     case BodyPart::Head: return "head";
     case BodyPart::Clavicle: return "shoulder";
     case BodyPart::UpperArm: return "upper arm";
     case BodyPart::Forearm: return "forearm";
-    case BodyPart::Hand: case BodyPart::Palm: return "hand";
+    case BodyPart::Hand:
+    case BodyPart::Palm: return "hand";
     case BodyPart::Fingers: return "fingers";
     case BodyPart::Thumb: return "thumb";
     case BodyPart::Index: return "index finger";
@@ -46,7 +48,6 @@ std::string words_for(const JointRole& role) {
   return role.side == BodySide::Left ? "left " + part : role.side == BodySide::Right ? "right " + part : part;
 }
 
-
 struct Face {
   glm::dvec3 middle;
   int lower, upper;  // bones, -1 for none
@@ -56,18 +57,22 @@ struct Face {
 bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   if (face.lower < 0 || face.upper < 0) return false;
   return std::any_of(limbs.begin(), limbs.end(), [&](const Limb& limb) {
-    return (limb.has_bone[face.lower] && limb.may_touch[face.upper]) || (limb.has_bone[face.upper] && limb.may_touch[face.lower]);
+    return (limb.has_bone[face.lower] && limb.may_touch[face.upper]) ||
+           (limb.has_bone[face.upper] && limb.may_touch[face.lower]);
   });
 }
 
-// Around the end of a seam the nearest bone of both sides may be of one limb: such faces lie between what those beside them do.
+// Around the end of a seam the nearest bone of both sides may be of one limb: such faces lie between what those beside
+// them do.
 void settle_ends(std::vector<Face>& faces, const std::vector<Limb>& limbs, double reach) {
   std::vector<Face> settled;
   for (const Face& face : faces)
     if (may_touch(limbs, face)) settled.push_back(face);
   for (Face& face : faces) {
     if (settled.empty() || may_touch(limbs, face)) continue;
-    const Face& nearest = *std::min_element(settled.begin(), settled.end(), [&](const Face& a, const Face& b) { return glm::distance(a.middle, face.middle) < glm::distance(b.middle, face.middle); });
+    const Face& nearest = *std::min_element(settled.begin(), settled.end(), [&](const Face& a, const Face& b) {
+      return glm::distance(a.middle, face.middle) < glm::distance(b.middle, face.middle);
+    });
     if (glm::distance(nearest.middle, face.middle) <= reach) face.lower = nearest.lower, face.upper = nearest.upper;
   }
 }
@@ -75,7 +80,9 @@ void settle_ends(std::vector<Face>& faces, const std::vector<Limb>& limbs, doubl
 glm::dvec3 nearest_to_mean(const std::vector<glm::dvec3>& points) {
   glm::dvec3 mean(0);
   for (const glm::dvec3& point : points) mean += point / double(points.size());
-  return *std::min_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) { return glm::distance(a, mean) < glm::distance(b, mean); });
+  return *std::min_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::distance(a, mean) < glm::distance(b, mean);
+  });
 }
 
 }  // namespace
@@ -90,8 +97,8 @@ std::vector<std::string> body_parts_of(const Armature& armature) {
   return names;
 }
 
-std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, const BoneParts& parts,
-                                 Progress& progress) {
+std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, const TissueVoxels& tissue,
+                                 const Armature& armature, const BoneParts& parts, Progress& progress) {
   progress.update("seams", 0);
   if (seams.empty()) return {};
   TissueVoxels parted = tissue;
@@ -120,7 +127,8 @@ std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, 
     faces[{pair.first, pair.second}].push_back(face.middle);
   }
   std::vector<SeamPair> pairs;
-  for (const auto& [parts_of_pair, middles] : faces) pairs.push_back({parts_of_pair.first, parts_of_pair.second, std::ssize(middles), nearest_to_mean(middles)});
+  for (const auto& [parts_of_pair, middles] : faces)
+    pairs.push_back({parts_of_pair.first, parts_of_pair.second, std::ssize(middles), nearest_to_mean(middles)});
   std::stable_sort(pairs.begin(), pairs.end(), [](const SeamPair& a, const SeamPair& b) { return a.faces > b.faces; });
   progress.update("seams", 1);
   return pairs;

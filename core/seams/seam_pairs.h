@@ -21,9 +21,10 @@ struct SeamPair {
 // A bone's part of the body, "left hand"; its own name where that means nothing known.
 std::vector<std::string> body_parts_of(const Armature& armature);
 
-// By most faces. Each side of a face belongs to the bone nearest to it through tissue, which the way does not leave across a seam.
+// By most faces. Each side of a face belongs to the bone nearest to it through tissue, which the way does not leave
+// across a seam.
 //   parts  of the same volume and armature
-std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, const BoneParts& parts,
-                                 Progress& progress = no_progress());
+std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, const TissueVoxels& tissue,
+                                 const Armature& armature, const BoneParts& parts, Progress& progress = no_progress());
 
 }  // namespace limber

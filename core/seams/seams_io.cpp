@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
@@ -19,7 +19,8 @@ std::vector<int> faces_by_label(const TissueTable& tissues, const Path& path) {
   for (const Tissue& tissue : tissues.tissues) {
     const double value = tissue.file_value;
     if (!(value >= 1 && value <= 7) || value != std::floor(value))
-      throw Error("these are no seams: value " + std::to_string(value), path.string(), "write them with 'limber prepare --seams'");
+      throw Error("these are no seams: value " + std::to_string(value), path.string(),
+                  "write them with 'limber prepare --seams'");
     faces[tissue.label] = static_cast<int>(value);
   }
   return faces;
@@ -29,7 +30,8 @@ bool is_same_place(const Grid& a, const Grid& b) {
   if (a.size != b.size) return false;
   const AffineTransform of_a = world_from_voxel(a), of_b = world_from_voxel(b);
   for (const glm::dvec3& corner : {glm::dvec3(0), glm::dvec3(a.size)})
-    if (glm::length(of_a * corner - of_b * corner) > kSamePlace * double(1 + std::max({a.size.x, a.size.y, a.size.z}))) return false;
+    if (glm::length(of_a * corner - of_b * corner) > kSamePlace * double(1 + std::max({a.size.x, a.size.y, a.size.z})))
+      return false;
   return true;
 }
 
@@ -37,14 +39,16 @@ bool is_same_place(const Grid& a, const Grid& b) {
 
 void write_seams(const Seams& seams, const Grid& grid, const Path& path) {
   LabelVolume faces{grid, ZeroedVector<Label>(grid.voxel_count())};
-  seams.for_each([&](const glm::ivec3& lower, int axis) { faces.at(lower) = static_cast<Label>(faces.at(lower) | 1 << axis); });
+  seams.for_each(
+      [&](const glm::ivec3& lower, int axis) { faces.at(lower) = static_cast<Label>(faces.at(lower) | 1 << axis); });
   write_volume(faces, path, {}, {"NRRD", "uint8", true});
 }
 
 Seams read_seams(const Path& path, const LabelVolume& volume, Progress& progress) {
   const VolumeFile file = read_volume(path, progress);
   if (!is_same_place(file.volume.grid, volume.grid))
-    throw Error("the seams lie on another grid than the volume", path.string(), "find them for this volume: limber prepare --seams");
+    throw Error("the seams lie on another grid than the volume", path.string(),
+                "find them for this volume: limber prepare --seams");
   const std::vector<int> faces = faces_by_label(file.tissues, path);
   Seams seams(volume.grid.size);
   const glm::ivec3 size = volume.grid.size;

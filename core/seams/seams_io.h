@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams to and from files: a label volume on the body's grid whose voxels say which of their faces are cut, the sum of 1 for the
-// face towards higher x, 2 towards higher y, 4 towards higher z (voxel axes). So any program that shows label volumes shows them.
+// Seams to and from files: a label volume on the body's grid whose voxels say which of their faces are cut, the sum of
+// 1 for the face towards higher x, 2 towards higher y, 4 towards higher z (voxel axes). So any program that shows label
+// volumes shows them.
 #pragma once
 
 #include "core/base/file.h"

@@ -20,9 +20,14 @@ constexpr double kUsual = 0.5, kUnusual = 0.05;  // of the rays
 
 Layer layer_of(TissueKind kind) {
   switch (kind) {
-    case TissueKind::Skin: case TissueKind::Connective: return Layer::Sheet;
-    case TissueKind::Unknown: case TissueKind::Fat: return Layer::Fat;
-    case TissueKind::Muscle: case TissueKind::Vessel: case TissueKind::Blood: case TissueKind::Nerve: return Layer::Muscle;
+    case TissueKind::Skin:
+    case TissueKind::Connective: return Layer::Sheet;
+    case TissueKind::Unknown:
+    case TissueKind::Fat: return Layer::Fat;
+    case TissueKind::Muscle:
+    case TissueKind::Vessel:
+    case TissueKind::Blood:
+    case TissueKind::Nerve: return Layer::Muscle;
     default: return Layer::Deep;
   }
 }
@@ -35,7 +40,8 @@ int steps_along(const glm::dvec3& spacing, int axis) {
 }
 
 //   inward  direction of the ray: 0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
-std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueKind>& kind, glm::ivec3 voxel, int inward) {
+std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueKind>& kind, glm::ivec3 voxel,
+                            int inward) {
   const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume.grid.spacing, axis);
   SkinRay ray{0, static_cast<std::uint8_t>(axis), {}};
   ray.first.fill(static_cast<std::uint16_t>(steps));
@@ -50,7 +56,8 @@ std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueK
 
 }  // namespace
 
-std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kind) {
+std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue,
+                               const std::vector<TissueKind>& kind) {
   constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<std::vector<SkinRay>> found((bricks + kGrain - 1) / kGrain);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How deep fat and muscle lie below free skin: on an arm of 3 mm voxels fat begins one or two voxels below the air, muscle
-// two or three. Where two limbs touch, the surface of each ought to look the same. Muscle right below a cut tells that the
-// cut lies too deep on that side, and skin that lies on the fat of one limb and on the muscle of the other is the skin of the
-// first. So every body says itself whose the tissue between two limbs is.
+// How deep fat and muscle lie below free skin: on an arm of 3 mm voxels fat begins one or two voxels below the air,
+// muscle two or three. Where two limbs touch, the surface of each ought to look the same. Muscle right below a cut
+// tells that the cut lies too deep on that side, and skin that lies on the fat of one limb and on the muscle of the
+// other is the skin of the first. So every body says itself whose the tissue between two limbs is.
 //
 // Depths are counted in voxels along an axis, on rays that come from the air and go in through skin.
 #pragma once
@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
-#include "core/volume/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {
@@ -27,12 +27,14 @@ Layer layer_of(TissueKind kind);
 struct SkinRay {
   std::int64_t place;  // of the skin in the list of tissue voxels
   std::uint8_t axis;
-  std::array<std::uint16_t, kLayers> first;  // voxels below the air's face; for a layer that is not met, the ray's length
+  std::array<std::uint16_t, kLayers>
+      first;  // voxels below the air's face; for a layer that is not met, the ray's length
 };
 
 // All rays through the skin of a body. One that comes out again or never leaves the skin says nothing and is left out.
 //   kind  by label
-std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kind);
+std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue,
+                               const std::vector<TissueKind>& kind);
 
 class SkinLayers {
  public:
@@ -45,8 +47,8 @@ class SkinLayers {
     finish();
   }
 
-  // How unusual it is that a layer or what lies deeper is met within `steps` voxels along an axis below the air's face: 0
-  // where half of the rays meet it there, 1 where a twentieth or fewer do. 0 where too few rays were counted to tell.
+  // How unusual it is that a layer or what lies deeper is met within `steps` voxels along an axis below the air's face:
+  // 0 where half of the rays meet it there, 1 where a twentieth or fewer do. 0 where too few rays were counted to tell.
   double surprise(int axis, Layer layer, int steps) const {
     return steps < reach_[axis] ? surprise_[axis][static_cast<int>(layer)][steps] : 0;
   }

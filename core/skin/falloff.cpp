@@ -27,8 +27,10 @@ double cover(FalloffShape shape, double share) {
 std::vector<double> slopes(std::span<const glm::dvec2> points) {
   const std::size_t count = points.size();
   std::vector<double> slope(count), secant(count > 0 ? count - 1 : 0);
-  for (std::size_t i = 0; i + 1 < count; ++i) secant[i] = (points[i + 1].y - points[i].y) / (points[i + 1].x - points[i].x);
-  for (std::size_t i = 1; i + 1 < count; ++i) slope[i] = secant[i - 1] * secant[i] <= 0 ? 0 : (secant[i - 1] + secant[i]) / 2;
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    secant[i] = (points[i + 1].y - points[i].y) / (points[i + 1].x - points[i].x);
+  for (std::size_t i = 1; i + 1 < count; ++i)
+    slope[i] = secant[i - 1] * secant[i] <= 0 ? 0 : (secant[i - 1] + secant[i]) / 2;
   if (count > 1) slope[0] = secant[0], slope[count - 1] = secant[count - 2];
   for (std::size_t i = 0; i + 1 < count; ++i) {
     if (secant[i] == 0) {
@@ -41,7 +43,8 @@ std::vector<double> slopes(std::span<const glm::dvec2> points) {
   return slope;
 }
 
-void find_covers(const float* table, int steps, const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) {
+void find_covers(const float* table, int steps, const float* distance, int count, float per_radius, float strength,
+                 std::uint16_t* covers) {
   for (int i = 0; i < count; ++i) {
     const float share = std::min(distance[i] * per_radius, 1.0f), at = share * static_cast<float>(steps);
     const int step = std::min(static_cast<int>(at), steps - 1);
@@ -73,7 +76,8 @@ Falloff::Falloff(std::span<const glm::dvec2> points) {
     } else {
       const glm::dvec2 &a = points[after - 1], &b = points[after];
       const double h = b.x - a.x, t = (x - a.x) / h, u = 1 - t;
-      y = a.y * u * u * (1 + 2 * t) + b.y * t * t * (3 - 2 * t) + h * (slope[after - 1] * t * u * u - slope[after] * t * t * u);
+      y = a.y * u * u * (1 + 2 * t) + b.y * t * t * (3 - 2 * t) +
+          h * (slope[after - 1] * t * u * u - slope[after] * t * t * u);
     }
     table_[i] = static_cast<float>(std::clamp(y, 0.0, 1.0));
   }

@@ -21,7 +21,9 @@ Influence quantize(const std::vector<std::pair<int, double>>& weights) {
   for (const auto& candidate : weights) {
     if (!(candidate.second > 0)) continue;
     int place = count < 4 ? count : 3;
-    auto before = [](const auto& a, const auto& b) { return a.second > b.second || (a.second == b.second && a.first < b.first); };
+    auto before = [](const auto& a, const auto& b) {
+      return a.second > b.second || (a.second == b.second && a.first < b.first);
+    };
     if (count == 4 && !before(candidate, best[3])) continue;
     while (place > 0 && before(candidate, best[place - 1])) {
       best[place] = best[place - 1];

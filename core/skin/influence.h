@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which bones a tissue voxel follows, and by how much: up to four, in whole numbers of 1/65535 that sum to exactly 65535.
+// Which bones a tissue voxel follows, and by how much: up to four, in whole numbers of 1/65535 that sum to exactly
+// 65535.
 #pragma once
 
 #include <array>

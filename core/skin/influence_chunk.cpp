@@ -30,7 +30,8 @@ class BoneSets {
 
 }  // namespace
 
-InfluenceChunk::InfluenceChunk(std::span<const Influence> influences) : count_(static_cast<std::uint16_t>(influences.size())) {
+InfluenceChunk::InfluenceChunk(std::span<const Influence> influences)
+    : count_(static_cast<std::uint16_t>(influences.size())) {
   if (influences.size() > 65535) throw std::logic_error("InfluenceChunk: more than a brick");
   static_assert(sizeof(std::uint64_t) == kSetBytes);
   BoneSets sets;
@@ -62,7 +63,8 @@ InfluenceChunk::InfluenceChunk(std::span<const Influence> influences) : count_(s
   bytes_ = std::move(bytes);
 }
 
-InfluenceChunk::InfluenceChunk(std::size_t count, const Influence& all) : InfluenceChunk(std::vector<Influence>(count, all)) {}
+InfluenceChunk::InfluenceChunk(std::size_t count, const Influence& all)
+    : InfluenceChunk(std::vector<Influence>(count, all)) {}
 
 namespace {
 
@@ -79,7 +81,8 @@ struct Records {
     std::memcpy(&bones, sets + set * sizeof(Bones), sizeof bones);
     std::memcpy(&others, record + kSetBytes, sizeof others);  // what lies behind is masked
     others &= (std::uint64_t{1} << (16 * kWeights)) - 1;
-    const std::uint64_t weights = (kFullWeight - ((others & 0xffff) + (others >> 16 & 0xffff) + (others >> 32))) | others << 16;
+    const std::uint64_t weights =
+        (kFullWeight - ((others & 0xffff) + (others >> 16 & 0xffff) + (others >> 32))) | others << 16;
     std::memcpy(influence.bone.data(), &bones, sizeof bones);
     std::memcpy(influence.weight.data(), &weights, sizeof weights);
   }
@@ -107,7 +110,8 @@ void InfluenceChunk::unpack(Influence* influences) const {
   const auto all = [&](const auto& records) {
     for (std::size_t i = 0; i < count_; ++i) records.unpack(i, influences[i]);
   };
-  if (!with_records(set_bytes_, weights_, bytes_.get(), bytes_.get() + records_, all)) std::copy(begin(), end(), influences);
+  if (!with_records(set_bytes_, weights_, bytes_.get(), bytes_.get() + records_, all))
+    std::copy(begin(), end(), influences);
 }
 
 void InfluenceChunk::unpack(std::span<const std::uint16_t> places, Influence* influences) const {
@@ -119,7 +123,8 @@ void InfluenceChunk::unpack(std::span<const std::uint16_t> places, Influence* in
 }
 
 bool InfluenceChunk::operator==(const InfluenceChunk& other) const {
-  return count_ == other.count_ && records_ == other.records_ && set_bytes_ == other.set_bytes_ && weights_ == other.weights_ &&
+  return count_ == other.count_ && records_ == other.records_ && set_bytes_ == other.set_bytes_ &&
+         weights_ == other.weights_ &&
          std::memcmp(bytes_.get(), other.bytes_.get(), static_cast<std::size_t>(heap_bytes())) == 0;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The influences of one brick, packed and never changed. In a brick few sets of bones occur, and most voxels follow one or
-// two bones: each set is held once, a voxel holds which set is its own and the weights but the first, which is what the
-// others leave of one. That is 0 to 8 bytes a voxel where an Influence has 16. Nothing is lost.
+// The influences of one brick, packed and never changed. In a brick few sets of bones occur, and most voxels follow one
+// or two bones: each set is held once, a voxel holds which set is its own and the weights but the first, which is what
+// the others leave of one. That is 0 to 8 bytes a voxel where an Influence has 16. Nothing is lost.
 #pragma once
 
 #include <algorithm>
@@ -80,7 +80,9 @@ class InfluenceChunk {
   bool operator==(const InfluenceChunk& other) const;
   bool operator==(const std::vector<Influence>& other) const;
 
-  std::int64_t heap_bytes() const { return static_cast<std::int64_t>(records_ + std::size_t{count_} * stride_ + kBehind); }
+  std::int64_t heap_bytes() const {
+    return static_cast<std::int64_t>(records_ + std::size_t{count_} * stride_ + kBehind);
+  }
 
  private:
   static_assert(std::endian::native == std::endian::little);
@@ -107,10 +109,8 @@ class InfluenceView {
   Influence operator[](std::size_t i) const { return plain_ ? plain_[i] : (*packed_)[i]; }
   // The whole brick, of `count`.
   void unpack(std::size_t count, Influence* influences) const {
-    if (plain_)
-      std::copy_n(plain_, count, influences);
-    else
-      packed_->unpack(influences);
+    if (plain_) std::copy_n(plain_, count, influences);
+    else packed_->unpack(influences);
   }
 
  private:

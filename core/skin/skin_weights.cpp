@@ -6,14 +6,16 @@
 namespace limber {
 
 SkinWeights::SkinWeights(std::vector<std::string> bones, const TissueVoxels& tissue)
-    : bones_(std::move(bones)), size_(tissue.size()) {
+    : bones_(std::move(bones)),
+      size_(tissue.size()) {
   chunks_.reserve(tissue.bricks().size());
   for (const auto& brick : tissue.bricks())
     chunks_.push_back(std::make_shared<const Chunk>(brick.count(), rigid_influence(0)));
 }
 
 SkinWeights::SkinWeights(std::vector<std::string> bones, std::vector<std::shared_ptr<const Chunk>> chunks)
-    : bones_(std::move(bones)), chunks_(std::move(chunks)) {
+    : bones_(std::move(bones)),
+      chunks_(std::move(chunks)) {
   for (const auto& chunk : chunks_) {
     if (!chunk) throw std::logic_error("SkinWeights: a chunk is missing");
     size_ += std::ssize(*chunk);
@@ -21,12 +23,14 @@ SkinWeights::SkinWeights(std::vector<std::string> bones, std::vector<std::shared
 }
 
 void SkinWeights::set_chunk(std::int64_t brick, std::span<const Influence> influences) {
-  if (influences.size() != chunks_[brick]->size()) throw std::logic_error("SkinWeights: a chunk's length may not change");
+  if (influences.size() != chunks_[brick]->size())
+    throw std::logic_error("SkinWeights: a chunk's length may not change");
   chunks_[brick] = std::make_shared<const Chunk>(influences);
 }
 
 void SkinWeights::share_chunk(std::int64_t brick, const SkinWeights& from) {
-  if (from.chunk(brick).size() != chunks_[brick]->size()) throw std::logic_error("SkinWeights: a chunk's length may not change");
+  if (from.chunk(brick).size() != chunks_[brick]->size())
+    throw std::logic_error("SkinWeights: a chunk's length may not change");
   chunks_[brick] = from.chunks_[brick];
 }
 

@@ -2,8 +2,8 @@
 // How tissue follows the bones: up to four bones and weights for every tissue voxel, in the brick order of
 // TissueVoxels. Weights are whole numbers of 1/65535 and sum to exactly 65535, always.
 //
-// The influences are stored brick by brick in shared, packed, immutable chunks, so that a copy costs one pointer a brick and
-// an edit clones only the bricks it touches.
+// The influences are stored brick by brick in shared, packed, immutable chunks, so that a copy costs one pointer a
+// brick and an edit clones only the bricks it touches.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace limber {
 
 class SkinWeights {
  public:
-  using Chunk = InfluenceChunk;                 // one brick's, in brick order
-  using Influences = std::vector<Influence>;    // the same to be worked on
+  using Chunk = InfluenceChunk;               // one brick's, in brick order
+  using Influences = std::vector<Influence>;  // the same to be worked on
 
   SkinWeights() = default;
   // Every tissue voxel of `tissue` on bone 0.

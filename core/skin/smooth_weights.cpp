@@ -8,10 +8,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kCell = 0.75;     // of the width: cells are no larger
-constexpr double kAtOnce = 0.5;    // of what a full cell holds, that one step moves: more would swing to and fro
+constexpr double kCell = 0.75;       // of the width: cells are no larger
+constexpr double kAtOnce = 0.5;      // of what a full cell holds, that one step moves: more would swing to and fro
 constexpr float kMostAtOnce = 0.9f;  // of what a fragment of a cell holds
-constexpr float kNothing = 1e-5f;  // of a voxel's weight
+constexpr float kNothing = 1e-5f;    // of a voxel's weight
 
 glm::ivec3 voxel_in_brick(int cell) { return {cell & 7, cell >> 3 & 7, cell >> 6}; }
 int cell_in_brick(const glm::ivec3& v) { return v.x + 8 * v.y + 64 * v.z; }
@@ -19,7 +19,9 @@ int cell_in_brick(const glm::ivec3& v) { return v.x + 8 * v.y + 64 * v.z; }
 }  // namespace
 
 SmoothWeights::SmoothWeights(const TissueVoxels& tissue, const glm::dvec3& spacing)
-    : tissue_(tissue), spacing_(spacing), slot_of_(tissue.bricks().size(), kNone) {}
+    : tissue_(tissue),
+      spacing_(spacing),
+      slot_of_(tissue.bricks().size(), kNone) {}
 
 void SmoothWeights::spread(const std::vector<int>& bricks, double width,
                            const std::function<InfluenceView(int)>& weights) {
@@ -123,8 +125,8 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
     for (int direction = 0; direction < 6; ++direction) {
       glm::ivec3 there = corner;
       there[direction >> 1] += direction & 1 ? kBrick : -kBrick;
-      const bool in_grid = glm::all(glm::greaterThanEqual(there, glm::ivec3(0))) &&
-                           glm::all(glm::lessThan(there, tissue_.grid_size()));
+      const bool in_grid =
+          glm::all(glm::greaterThanEqual(there, glm::ivec3(0))) && glm::all(glm::lessThan(there, tissue_.grid_size()));
       const int brick = in_grid ? tissue_.brick_at(there) : -1;
       if (brick >= 0 && slot_of_[brick] != kNone)
         cells_beside[direction] = &cell_of_[std::size_t(slot_of_[brick]) * kVoxels];

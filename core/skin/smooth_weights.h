@@ -12,7 +12,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/skin/weights_around.h"
+#include "core/skin/neighbour_weights.h"
 
 namespace limber {
 
@@ -60,16 +60,16 @@ class SmoothWeights {
 
   const TissueVoxels& tissue_;
   const glm::dvec3 spacing_;
-  glm::ivec3 edge_{1};                             // of a cell, voxels
-  std::vector<std::int32_t> slot_of_;              // by brick: its place among those that were spread, or kNone
-  std::vector<int> spread_;                        // bricks
-  std::vector<std::int32_t> cell_of_;              // by slot and voxel; kNone for air
-  std::vector<std::int32_t> voxels_in_;            // by cell
+  glm::ivec3 edge_{1};                               // of a cell, voxels
+  std::vector<std::int32_t> slot_of_;                // by brick: its place among those that were spread, or kNone
+  std::vector<int> spread_;                          // bricks
+  std::vector<std::int32_t> cell_of_;                // by slot and voxel; kNone for air
+  std::vector<std::int32_t> voxels_in_;              // by cell
   std::vector<std::array<std::int32_t, 6>> beside_;  // by cell and direction: with which it shares most faces, or kNone
-  std::vector<Link> links_;                        // rising by `from`
-  std::vector<std::int32_t> first_link_;           // by cell, and one more
-  std::vector<int> bones_;                         // that weigh anything here
-  std::vector<float> weight_, next_;               // by cell and place in bones_
+  std::vector<Link> links_;                          // rising by `from`
+  std::vector<std::int32_t> first_link_;             // by cell, and one more
+  std::vector<int> bones_;                           // that weigh anything here
+  std::vector<float> weight_, next_;                 // by cell and place in bones_
 };
 
 }  // namespace limber

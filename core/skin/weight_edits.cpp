@@ -7,8 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/skin/skin_at.h"
-#include "core/skin/weights_around.h"
+#include "core/skin/neighbour_weights.h"
+#include "core/skin/weight_at.h"
 
 namespace limber {
 
@@ -18,19 +18,20 @@ constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
 constexpr std::int64_t kBricksOfStep = 2048;  // between two looks at the progress: some ten milliseconds
 
-void check(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope) {
+void check(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
     throw std::logic_error("an edit of weights of another body");
-  if (!scope.region.empty() && std::ssize(scope.region) != body.tissue.size()) throw std::logic_error("a region of another body");
+  if (!scope.region.empty() && std::ssize(scope.region) != body.tissue.size())
+    throw std::logic_error("a region of another body");
 }
 
-void check_bones(const StrokeBody& body, std::span<const int> bones) {
+void check_bones(const WeightedBody& body, std::span<const int> bones) {
   const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
   if (bones.empty() || !std::all_of(bones.begin(), bones.end(), in_rig)) throw std::logic_error("no bone of the rig");
 }
 
 // The bone with the most weight in the region, as heir where no relative is free.
-int most_of_region(const SkinWeights& weights, const StrokeBody& body, const EditScope& scope) {
+int most_of_region(const SkinWeights& weights, const WeightedBody& body, const EditScope& scope) {
   std::vector<std::int64_t> sum(body.armature.bones.size());
   std::int64_t place = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
@@ -46,19 +47,19 @@ int most_of_region(const SkinWeights& weights, const StrokeBody& body, const Edi
 }
 
 // Whether the tree leaves some bone without an heir.
-bool needs_nearby(const StrokeBody& body, const WeightRules& rules) {
+bool needs_nearby(const WeightedBody& body, const WeightRules& rules) {
   for (int b = 0; b < std::ssize(body.armature.bones); ++b)
     if (rules.heir(b) < 0) return true;
   return false;
 }
 
-WeightRules rules_of(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope) {
+WeightRules rules_of(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   WeightRules rules(body.armature, scope.locked, scope.normalize);
   if (!needs_nearby(body, rules)) return rules;
   return WeightRules(body.armature, scope.locked, scope.normalize, most_of_region(weights, body, scope));
 }
 
-LabelSet bone_labels(const StrokeBody& body) {
+LabelSet bone_labels(const WeightedBody& body) {
   LabelSet labels(65536, 0);
   for (const Tissue& tissue : body.tissues.tissues) labels[tissue.label] = is_bone(tissue.kind);
   return labels;
@@ -89,7 +90,8 @@ struct Share {
 };
 
 template <class Change>
-WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope, const Change& change, const Share& share = {}) {
+WeightEdit edited_voxels(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope,
+                         const Change& change, const Share& share = {}) {
   check(body, weights, scope);
   const WeightRules rules = rules_of(body, weights, scope);
   const LabelSet bone = bone_labels(body);
@@ -100,7 +102,8 @@ WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, con
     for (auto b = begin; b < end; ++b) {
       const std::int64_t first = body.tissue.bricks()[b].first;
       const SkinWeights::Influences before = weights.chunk(b);
-      const WeightsAround around(body.tissue, static_cast<int>(b), [&](int index) -> InfluenceView { return weights.chunk(index); });
+      const WeightsAround around(body.tissue, static_cast<int>(b),
+                                 [&](int index) -> InfluenceView { return weights.chunk(index); });
       body.tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
         if (!scope.region.empty() && !scope.region[place]) return;
         if (scope.rigid_bone_tissue && bone[body.volume.at(voxel)]) return;
@@ -114,8 +117,10 @@ WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, con
     }
   };
   for (std::int64_t step = 0; step < bricks; step += kBricksOfStep) {
-    if (scope.progress) scope.progress->update("weights", share.from + (share.to - share.from) * double(step) / double(bricks));
-    parallel_for(std::min(kBricksOfStep, bricks - step), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) { edit_bricks(step + begin, step + end); });
+    if (scope.progress)
+      scope.progress->update("weights", share.from + (share.to - share.from) * double(step) / double(bricks));
+    parallel_for(std::min(kBricksOfStep, bricks - step), kBricksAtOnce,
+                 [&](std::int64_t begin, std::int64_t end) { edit_bricks(step + begin, step + end); });
   }
   WeightEdit edit{weights};
   for (std::int64_t b = 0; b < bricks; ++b)
@@ -125,25 +130,28 @@ WeightEdit edited_voxels(const StrokeBody& body, const SkinWeights& weights, con
     edit.changed += tally.changed;
     for (const auto& [by, times] : tally.blocked) blocked[by] += times, edit.blocked += times;
   }
-  if (edit.blocked > 0) edit.blocked_by = static_cast<int>(std::max_element(blocked.begin(), blocked.end()) - blocked.begin());
+  if (edit.blocked > 0)
+    edit.blocked_by = static_cast<int>(std::max_element(blocked.begin(), blocked.end()) - blocked.begin());
   return edit;
 }
 
 }  // namespace
 
-WeightEdit edited(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope, const VoxelChange& change) {
+WeightEdit edited(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope,
+                  const VoxelChange& change) {
   return edited_voxels(body, weights, scope,
-                       [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel, const auto&) {
-    return change(rules, influence, place, voxel);
-  });
+                       [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel,
+                           const auto&) { return change(rules, influence, place, voxel); });
 }
 
 // Regions
 
-TissueRegion region_where(const TissueVoxels& tissue, const std::function<bool(std::int64_t, const glm::ivec3&)>& belongs) {
+TissueRegion region_where(const TissueVoxels& tissue,
+                          const std::function<bool(std::int64_t, const glm::ivec3&)>& belongs) {
   TissueRegion region(tissue.size(), 0);
   parallel_for(std::ssize(tissue.bricks()), kBricksAtOnce, [&](std::int64_t begin, std::int64_t end) {
-    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& voxel) { region[place] = belongs(place, voxel); });
+    tissue.for_each(begin, end,
+                    [&](std::int64_t place, const glm::ivec3& voxel) { region[place] = belongs(place, voxel); });
   });
   return region;
 }
@@ -184,39 +192,44 @@ TissueRegion region_of_bone(const SkinWeights& weights, const TissueVoxels& tiss
 
 // Edits
 
-WeightEdit flooded(const StrokeBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind, double value, double amount,
-                   const EditScope& scope) {
+WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind,
+                   double value, double amount, const EditScope& scope) {
   check_bones(body, bones);
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    const double before = WeightRules::sum_of(influence, bones);
-    double to = before;
-    switch (kind) {
-      case Flood::Add: to = before + value * kFullWeight; break;
-      case Flood::Subtract: to = before - value * kFullWeight; break;
-      case Flood::Set: to = value * kFullWeight; break;
-      case Flood::Multiply: to = before * value; break;
-    }
-    return rules.set(influence, bones, whole(before + (to - before) * amount));
-  });
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  const double before = WeightRules::sum_of(influence, bones);
+                  double to = before;
+                  switch (kind) {
+                    case Flood::Add: to = before + value * kFullWeight; break;
+                    case Flood::Subtract: to = before - value * kFullWeight; break;
+                    case Flood::Set: to = value * kFullWeight; break;
+                    case Flood::Multiply: to = before * value; break;
+                  }
+                  return rules.set(influence, bones, whole(before + (to - before) * amount));
+                });
 }
 
-WeightEdit with_gradient(const StrokeBody& body, const SkinWeights& weights, std::span<const int> bones, const Gradient& gradient,
-                         double amount, const EditScope& scope) {
+WeightEdit with_gradient(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones,
+                         const Gradient& gradient, double amount, const EditScope& scope) {
   check_bones(body, bones);
   const glm::dvec3 way = gradient.to - gradient.from;
   const double length = glm::length(way);
   if (!(length > 0)) throw std::logic_error("a gradient between two points in one place");
   const AffineTransform world = world_from_voxel(body.volume.grid);
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel) {
-    const glm::dvec3 off = world * glm::dvec3(voxel) - gradient.from;
-    const double share = std::clamp((gradient.radial ? glm::length(off) : glm::dot(off, way) / length) / length, 0.0, 1.0);
-    const double value = gradient.to_value + (gradient.from_value - gradient.to_value) * gradient.falloff(static_cast<float>(share));
-    const double before = WeightRules::sum_of(influence, bones);
-    return rules.set(influence, bones, whole(before + (value * kFullWeight - before) * amount));
-  });
+  return edited(
+      body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel) {
+        const glm::dvec3 off = world * glm::dvec3(voxel) - gradient.from;
+        const double share =
+            std::clamp((gradient.radial ? glm::length(off) : glm::dot(off, way) / length) / length, 0.0, 1.0);
+        const double value =
+            gradient.to_value + (gradient.from_value - gradient.to_value) * gradient.falloff(static_cast<float>(share));
+        const double before = WeightRules::sum_of(influence, bones);
+        return rules.set(influence, bones, whole(before + (value * kFullWeight - before) * amount));
+      });
 }
 
-WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int passes, double amount, const EditScope& scope, Progress& progress) {
+WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int passes, double amount,
+                    const EditScope& scope, Progress& progress) {
   WeightEdit all{weights};
   for (int pass = 0; pass < passes; ++pass) {
     if (!scope.progress) progress.update("smoothing", double(pass) / passes);
@@ -231,56 +244,66 @@ WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int pass
       for (int i = 0; i < count; ++i) add_to(mean, beside[i], 1);
       return rules.blend(influence, mean, amount);
     };
-    WeightEdit once = edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
+    WeightEdit once =
+        edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
     all = std::move(once);
   }
   // Changed is what differs in the end, not in the last pass.
   all.changed = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
     if (weights.shared_chunk(b) != all.weights.shared_chunk(b))
-      for (std::size_t i = 0; i < weights.chunk(b).size(); ++i) all.changed += weights.chunk(b)[i] != all.weights.chunk(b)[i];
+      for (std::size_t i = 0; i < weights.chunk(b).size(); ++i)
+        all.changed += weights.chunk(b)[i] != all.weights.chunk(b)[i];
   return all;
 }
 
-WeightEdit copied(const StrokeBody& body, const SkinWeights& weights, int from, int to, Copy kind, const EditScope& scope) {
+WeightEdit copied(const WeightedBody& body, const SkinWeights& weights, int from, int to, Copy kind,
+                  const EditScope& scope) {
   const std::array<int, 2> both{from, to};
   check_bones(body, both);
   if (from == to) throw std::logic_error("a bone copied to itself");
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    const int source = WeightRules::sum_of(influence, std::span(&both[0], 1)), target = WeightRules::sum_of(influence, std::span(&both[1], 1));
-    switch (kind) {
-      case Copy::Replace: return rules.set(influence, to, source);
-      case Copy::Add: return rules.set(influence, to, std::min(source + target, kFullWeight));
-      case Copy::Move: return rules.divide(influence, to, from, source + target);
-      case Copy::Swap: return rules.divide(influence, to, from, source);
-    }
-    return WeightChange{};
-  });
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  const int source = WeightRules::sum_of(influence, std::span(&both[0], 1)),
+                            target = WeightRules::sum_of(influence, std::span(&both[1], 1));
+                  switch (kind) {
+                    case Copy::Replace: return rules.set(influence, to, source);
+                    case Copy::Add: return rules.set(influence, to, std::min(source + target, kFullWeight));
+                    case Copy::Move: return rules.divide(influence, to, from, source + target);
+                    case Copy::Swap: return rules.divide(influence, to, from, source);
+                  }
+                  return WeightChange{};
+                });
 }
 
-WeightEdit limited(const StrokeBody& body, const SkinWeights& weights, int most, const EditScope& scope) {
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    return rules.limit(influence, most);
-  });
+WeightEdit limited(const WeightedBody& body, const SkinWeights& weights, int most, const EditScope& scope) {
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  return rules.limit(influence, most);
+                });
 }
 
-WeightEdit pruned(const StrokeBody& body, const SkinWeights& weights, double least, const EditScope& scope) {
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    return rules.prune(influence, whole(least * kFullWeight));
-  });
+WeightEdit pruned(const WeightedBody& body, const SkinWeights& weights, double least, const EditScope& scope) {
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  return rules.prune(influence, whole(least * kFullWeight));
+                });
 }
 
-WeightEdit in_steps(const StrokeBody& body, const SkinWeights& weights, int steps, const EditScope& scope) {
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    return rules.quantize_to(influence, steps);
-  });
+WeightEdit in_steps(const WeightedBody& body, const SkinWeights& weights, int steps, const EditScope& scope) {
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  return rules.quantize_to(influence, steps);
+                });
 }
 
-WeightEdit with_levels(const StrokeBody& body, const SkinWeights& weights, int bone, const WeightRules::Levels& levels, const EditScope& scope) {
+WeightEdit with_levels(const WeightedBody& body, const SkinWeights& weights, int bone,
+                       const WeightRules::Levels& levels, const EditScope& scope) {
   check_bones(body, std::span(&bone, 1));
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    return rules.levels(influence, bone, levels);
-  });
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  return rules.levels(influence, bone, levels);
+                });
 }
 
 namespace {
@@ -314,7 +337,8 @@ std::optional<glm::ivec3> nearest_voxel(const Grid& grid, const glm::dvec3& at, 
 
 }  // namespace
 
-MirrorEdit mirrored(const StrokeBody& body, const SkinWeights& weights, const MirrorSettings& settings, const EditScope& scope) {
+MirrorEdit mirrored(const WeightedBody& body, const SkinWeights& weights, const MirrorSettings& settings,
+                    const EditScope& scope) {
   const std::vector<int> pairs = mirror_pairs(body.armature);
   const AffineTransform world = world_from_voxel(body.volume.grid), to_voxel = voxel_from_world(body.volume.grid);
   const LabelSet bone = bone_labels(body);
@@ -322,32 +346,38 @@ MirrorEdit mirrored(const StrokeBody& body, const SkinWeights& weights, const Mi
     return glm::dot(world * glm::dvec3(voxel) - settings.plane.point, settings.plane.normal) > 0;
   };
   std::vector<std::uint8_t> unmatched(body.tissue.size(), 0);
-  MirrorEdit edit{edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel) {
-    if (!is_mirrored_to(voxel)) return WeightChange{};
-    const glm::dvec3 point = world * glm::dvec3(voxel);
-    const bool is_bone = bone[body.volume.at(voxel)] != 0;
-    const auto source = nearest_voxel(body.volume.grid, to_voxel * settings.plane.place(point), settings.reach, [&](const glm::ivec3& v) {
-      const Label label = body.volume.at(v);
-      return label != 0 && (bone[label] != 0) == is_bone && !is_mirrored_to(v);
-    });
-    if (!source) {
-      unmatched[place] = 1;
-      return WeightChange{};
-    }
-    const int brick = body.tissue.brick_at(*source);
-    const Influence& from = weights.chunk(brick)[body.tissue.index_of(*source) - body.tissue.bricks()[brick].first];
-    std::array<std::pair<int, double>, 4> target;
-    int count = 0;
-    for (int i = 0; i < 4; ++i)
-      if (from.weight[i]) target[count++] = {pairs[from.bone[i]], double(from.weight[i])};
-    return rules.blend(influence, std::span(target.data(), count), 1);
-  }), {}};
+  MirrorEdit edit{
+      edited(body, weights, scope,
+             [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel) {
+               if (!is_mirrored_to(voxel)) return WeightChange{};
+               const glm::dvec3 point = world * glm::dvec3(voxel);
+               const bool is_bone = bone[body.volume.at(voxel)] != 0;
+               const auto source = nearest_voxel(
+                   body.volume.grid, to_voxel * settings.plane.place(point), settings.reach, [&](const glm::ivec3& v) {
+                     const Label label = body.volume.at(v);
+                     return label != 0 && (bone[label] != 0) == is_bone && !is_mirrored_to(v);
+                   });
+               if (!source) {
+                 unmatched[place] = 1;
+                 return WeightChange{};
+               }
+               const int brick = body.tissue.brick_at(*source);
+               const Influence& from =
+                   weights.chunk(brick)[body.tissue.index_of(*source) - body.tissue.bricks()[brick].first];
+               std::array<std::pair<int, double>, 4> target;
+               int count = 0;
+               for (int i = 0; i < 4; ++i)
+                 if (from.weight[i]) target[count++] = {pairs[from.bone[i]], double(from.weight[i])};
+               return rules.blend(influence, std::span(target.data(), count), 1);
+             }),
+      {}};
   for (std::int64_t place = 0; place < body.tissue.size(); ++place)
     if (unmatched[place]) edit.unmatched.push_back(place);
   return edit;
 }
 
-TransferEdit transferred(const StrokeBody& body, const SkinWeights& weights, const TransferSource& from, const EditScope& scope, Progress& progress) {
+TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, const TransferSource& from,
+                         const EditScope& scope, Progress& progress) {
   // The bone of the same name, else that of the nearest ancestor.
   std::vector<int> to(from.armature.bones.size(), -1);
   std::vector<bool> own(to.size(), false);
@@ -361,21 +391,26 @@ TransferEdit transferred(const StrokeBody& body, const SkinWeights& weights, con
       to[b] = to[bone.parent];
     }
   }
-  if (!any) throw Error("the two rigs have no bone in common", "bones by name", "rename the bones, or choose weights of the same rig");
+  if (!any)
+    throw Error("the two rigs have no bone in common", "bones by name",
+                "rename the bones, or choose weights of the same rig");
   progress.update("weights of the other volume", 0);
   const AffineTransform world = world_from_voxel(body.volume.grid);
   std::vector<glm::dvec3> points(body.tissue.size());
   body.tissue.for_each([&](std::int64_t place, const glm::ivec3& voxel) { points[place] = world * glm::dvec3(voxel); });
   const std::vector<SkinAt> skin = skin_at(from.volume, from.tissue, from.weights, points);
   progress.update("weights of the other volume", 0.8);
-  TransferEdit edit{edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3&) {
-    const Influence& source = skin[place].influence;
-    std::array<std::pair<int, double>, 4> target;
-    int count = 0;
-    for (int i = 0; i < 4; ++i)
-      if (source.weight[i] && to[source.bone[i]] >= 0) target[count++] = {to[source.bone[i]], double(source.weight[i])};
-    return rules.blend(influence, std::span(target.data(), count), 1);
-  }), {}};
+  TransferEdit edit{edited(body, weights, scope,
+                           [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3&) {
+                             const Influence& source = skin[place].influence;
+                             std::array<std::pair<int, double>, 4> target;
+                             int count = 0;
+                             for (int i = 0; i < 4; ++i)
+                               if (source.weight[i] && to[source.bone[i]] >= 0)
+                                 target[count++] = {to[source.bone[i]], double(source.weight[i])};
+                             return rules.blend(influence, std::span(target.data(), count), 1);
+                           }),
+                    {}};
   std::vector<bool> used(to.size(), false);
   for (const SkinAt& at : skin)
     for (int i = 0; i < 4; ++i)

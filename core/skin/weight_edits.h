@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the weights of a whole body or a region of it, under the same rules as a stroke (weight_rules.h): sums stay exact,
-// locked bones keep every bit, bricks that do not change stay shared. The same for any number of threads.
+// Edits of the weights of a whole body or a region of it, under the same rules as a stroke (weight_rules.h): sums stay
+// exact, locked bones keep every bit, bricks that do not change stay shared. The same for any number of threads.
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/progress.h"
-#include "core/skin/stroke.h"
+#include "core/rig/mirror.h"
+#include "core/skin/falloff.h"
+#include "core/skin/normalize.h"
+#include "core/skin/skin_weights.h"
+#include "core/skin/weighted_body.h"
 
 namespace limber {
 
@@ -33,8 +38,10 @@ struct WeightEdit {
 // Regions
 
 // Voxels for which `belongs` says so; called from several threads.
-TissueRegion region_where(const TissueVoxels& tissue, const std::function<bool(std::int64_t place, const glm::ivec3& voxel)>& belongs);
-// The tissue that hangs together with a voxel through faces, all of it or as far as it has the same label. Nothing for air.
+TissueRegion region_where(const TissueVoxels& tissue,
+                          const std::function<bool(std::int64_t place, const glm::ivec3& voxel)>& belongs);
+// The tissue that hangs together with a voxel through faces, all of it or as far as it has the same label. Nothing for
+// air.
 enum class Part { Tissue, Label };
 TissueRegion connected_part(const LabelVolume& volume, const TissueVoxels& tissue, const glm::ivec3& voxel, Part part);
 TissueRegion region_of_label(const LabelVolume& volume, const TissueVoxels& tissue, Label label);
@@ -46,21 +53,21 @@ TissueRegion region_of_bone(const SkinWeights& weights, const TissueVoxels& tiss
 enum class Flood { Add, Subtract, Set, Multiply };
 //   value   Add, Subtract, Set: [0, 1]; Multiply: 0 and more
 //   amount  [0, 1]
-WeightEdit flooded(const StrokeBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind, double value, double amount = 1,
-                   const EditScope& scope = {});
+WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind,
+                   double value, double amount = 1, const EditScope& scope = {});
 
 struct Gradient {
   glm::dvec3 from{0}, to{0};  // world, mm; apart
-  bool radial = false;        // from the point `from` outwards to the distance of `to`, else along the line between them
+  bool radial = false;  // from the point `from` outwards to the distance of `to`, else along the line between them
   double from_value = 1, to_value = 0;
   Falloff falloff = FalloffShape::Linear;
 };
-WeightEdit with_gradient(const StrokeBody& body, const SkinWeights& weights, std::span<const int> bones, const Gradient& gradient,
-                         double amount = 1, const EditScope& scope = {});
+WeightEdit with_gradient(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones,
+                         const Gradient& gradient, double amount = 1, const EditScope& scope = {});
 
 // Every bone's weights, towards the mean of the six neighbours.    amount  [0, 1] a pass
-WeightEdit smoothed(const StrokeBody& body, const SkinWeights& weights, int passes, double amount = 1, const EditScope& scope = {},
-                    Progress& progress = no_progress());
+WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int passes, double amount = 1,
+                    const EditScope& scope = {}, Progress& progress = no_progress());
 
 enum class Copy {
   Replace,  // `to` gets the weight that `from` has
@@ -68,18 +75,20 @@ enum class Copy {
   Move,     // and `from` gives it up
   Swap,
 };
-WeightEdit copied(const StrokeBody& body, const SkinWeights& weights, int from, int to, Copy kind, const EditScope& scope = {});
+WeightEdit copied(const WeightedBody& body, const SkinWeights& weights, int from, int to, Copy kind,
+                  const EditScope& scope = {});
 
 // Voxel by voxel, as in weight_rules.h.
-WeightEdit limited(const StrokeBody& body, const SkinWeights& weights, int most, const EditScope& scope = {});
-WeightEdit pruned(const StrokeBody& body, const SkinWeights& weights, double least, const EditScope& scope = {});
-WeightEdit in_steps(const StrokeBody& body, const SkinWeights& weights, int steps, const EditScope& scope = {});
-WeightEdit with_levels(const StrokeBody& body, const SkinWeights& weights, int bone, const WeightRules::Levels& levels,
-                       const EditScope& scope = {});
+WeightEdit limited(const WeightedBody& body, const SkinWeights& weights, int most, const EditScope& scope = {});
+WeightEdit pruned(const WeightedBody& body, const SkinWeights& weights, double least, const EditScope& scope = {});
+WeightEdit in_steps(const WeightedBody& body, const SkinWeights& weights, int steps, const EditScope& scope = {});
+WeightEdit with_levels(const WeightedBody& body, const SkinWeights& weights, int bone,
+                       const WeightRules::Levels& levels, const EditScope& scope = {});
 
-// The side that the plane's normal points to takes over what the other side has, bone by bone of the pairs (mirror_pairs): each
-// voxel from the nearest tissue of that side to its mirror image that is bone where it is bone, at most `reach` away. Bodies need
-// not be symmetric: voxels without a match keep their weights and are reported. Done twice it is as done once.
+// The side that the plane's normal points to takes over what the other side has, bone by bone of the pairs
+// (mirror_pairs): each voxel from the nearest tissue of that side to its mirror image that is bone where it is bone, at
+// most `reach` away. Bodies need not be symmetric: voxels without a match keep their weights and are reported. Done
+// twice it is as done once.
 struct MirrorSettings {
   MirrorPlane plane;
   double reach = 10;  // mm
@@ -87,12 +96,14 @@ struct MirrorSettings {
 struct MirrorEdit : WeightEdit {
   std::vector<std::int64_t> unmatched;  // places in the tissue list
 };
-MirrorEdit mirrored(const StrokeBody& body, const SkinWeights& weights, const MirrorSettings& settings, const EditScope& scope = {});
+MirrorEdit mirrored(const WeightedBody& body, const SkinWeights& weights, const MirrorSettings& settings,
+                    const EditScope& scope = {});
 
-// Weights of another volume of the same place in the world, whatever its spacing, interpolated between its voxels; bones are
-// matched by name.
+// Weights of another volume of the same place in the world, whatever its spacing, interpolated between its voxels;
+// bones are matched by name.
 struct TransferEdit : WeightEdit {
-  std::vector<std::string> missing;  // bones of the other rig with weight that this one lacks: their nearest ancestor that it has takes over
+  std::vector<std::string>
+      missing;  // bones of the other rig with weight that this one lacks: their nearest ancestor that it has takes over
 };
 struct TransferSource {
   const LabelVolume& volume;
@@ -101,11 +112,13 @@ struct TransferSource {
   const SkinWeights& weights;
 };
 // Throws Error where the two rigs have no bone name in common.
-TransferEdit transferred(const StrokeBody& body, const SkinWeights& weights, const TransferSource& from, const EditScope& scope = {},
-                         Progress& progress = no_progress());
+TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, const TransferSource& from,
+                         const EditScope& scope = {}, Progress& progress = no_progress());
 
 // Any other edit: change(rules, influence, place, voxel), called from several threads, one for each voxel of the scope.
-using VoxelChange = std::function<WeightChange(const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3& voxel)>;
-WeightEdit edited(const StrokeBody& body, const SkinWeights& weights, const EditScope& scope, const VoxelChange& change);
+using VoxelChange = std::function<WeightChange(const WeightRules& rules, Influence& influence, std::int64_t place,
+                                               const glm::ivec3& voxel)>;
+WeightEdit edited(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope,
+                  const VoxelChange& change);
 
 }  // namespace limber

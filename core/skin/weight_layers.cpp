@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/skin/carry_weights.h"
-#include "core/skin/weights_around.h"
+#include "core/skin/neighbour_weights.h"
+#include "core/skin/transfer_to_volume.h"
 
 namespace limber {
 
@@ -76,16 +76,19 @@ SkinWeights::Influences composed_chunk(const WeightLayers& layers, std::int64_t 
   return chunk;
 }
 
-SkinWeights::Influences composed_over_base(const WeightLayers& layers, std::int64_t brick, SkinWeights::Influences base) {
+SkinWeights::Influences composed_over_base(const WeightLayers& layers, std::int64_t brick,
+                                           SkinWeights::Influences base) {
   for (const auto& layer : layers.layers) cover_with(base, *layer, brick);
   return base;
 }
 
 SkinWeights composed(const WeightLayers& layers) {
   const auto covered = [&](std::int64_t brick) {
-    return std::any_of(layers.layers.begin(), layers.layers.end(), [&](const auto& layer) { return layer->visible && layer->mask[brick]; });
+    return std::any_of(layers.layers.begin(), layers.layers.end(),
+                       [&](const auto& layer) { return layer->visible && layer->mask[brick]; });
   };
-  return made_from(*layers.base, covered, [&](std::int64_t brick) { return composed_chunk(layers, brick, layers.layers.size()); });
+  return made_from(*layers.base, covered,
+                   [&](std::int64_t brick) { return composed_chunk(layers, brick, layers.layers.size()); });
 }
 
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
@@ -93,7 +96,9 @@ std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const Weigh
   if (before.base->chunk_count() != count) throw std::logic_error("layers of another body");
   // Layers that cover nothing in a brick do not count there.
   const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
-    while (from < of.layers.size() && (!of.layers[from]->visible || of.layers[from]->opacity == 0 || !of.layers[from]->mask[brick])) ++from;
+    while (from < of.layers.size() &&
+           (!of.layers[from]->visible || of.layers[from]->opacity == 0 || !of.layers[from]->mask[brick]))
+      ++from;
     return from;
   };
   const auto differs = [&](std::int64_t brick) {
@@ -102,9 +107,12 @@ std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const Weigh
     for (;; ++now, ++was) {
       now = next(layers, now, brick);
       was = next(before, was, brick);
-      if (now == layers.layers.size() || was == before.layers.size()) return now != layers.layers.size() || was != before.layers.size();
+      if (now == layers.layers.size() || was == before.layers.size())
+        return now != layers.layers.size() || was != before.layers.size();
       const WeightLayer &a = *layers.layers[now], &b = *before.layers[was];
-      if (a.opacity != b.opacity || a.mask[brick] != b.mask[brick] || a.weights.shared_chunk(brick) != b.weights.shared_chunk(brick)) return true;
+      if (a.opacity != b.opacity || a.mask[brick] != b.mask[brick] ||
+          a.weights.shared_chunk(brick) != b.weights.shared_chunk(brick))
+        return true;
     }
   };
   std::vector<std::int64_t> changed;
@@ -136,7 +144,8 @@ SkinWeights canvas(const WeightLayers& layers, std::size_t index) {
     for (auto b = begin; b < end; ++b) whole[b] = layer.mask[b] && covers_all(*layer.mask[b]);
   });
   const auto mixed_here = [&](std::int64_t brick) {
-    return !whole[brick] && std::any_of(layers.layers.begin(), layers.layers.begin() + index + 1, [&](const auto& l) { return l->mask[brick] != nullptr; });
+    return !whole[brick] && std::any_of(layers.layers.begin(), layers.layers.begin() + index + 1,
+                                        [&](const auto& l) { return l->mask[brick] != nullptr; });
   };
   SkinWeights shown = made_from(*layers.base, mixed_here, [&](std::int64_t brick) {
     SkinWeights::Influences chunk = composed_chunk(layers, brick, index);
@@ -158,8 +167,10 @@ struct PaintedBrick {
   WeightLayer::Mask mask;
 };
 
-PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was, const SkinWeights::Influences& is) {
-  PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
+PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was,
+                           const SkinWeights::Influences& is) {
+  PaintedBrick painted{layer.weights.chunk(brick),
+                       layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
   for (std::size_t i = 0; i < was.size(); ++i) {
     if (was[i] == is[i]) continue;
     painted.weights[i] = is[i];
@@ -171,7 +182,8 @@ PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const S
 }  // namespace
 
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
-  if (before.size() != after.size() || before.size() != layer.weights.size()) throw std::logic_error("a layer of another body");
+  if (before.size() != after.size() || before.size() != layer.weights.size())
+    throw std::logic_error("a layer of another body");
   WeightLayer painted = layer;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
     if (before.shared_chunk(b) == after.shared_chunk(b) || before.chunk(b) == after.chunk(b)) continue;
@@ -185,16 +197,20 @@ WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, cons
 namespace {
 
 // What comes out with that brick in the layer's place.
-SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick, const PaintedBrick& painted) {
+SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick,
+                                      const PaintedBrick& painted) {
   const WeightLayer& layer = layer_at(layers, index);
   SkinWeights::Influences chunk = composed_chunk(layers, brick, index);
   if (layer.visible)
-    for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], painted.weights[i], layer.opacity * painted.mask[i] / kFullWeight);
-  for (std::size_t above = index + 1; above < layers.layers.size(); ++above) cover_with(chunk, *layers.layers[above], brick);
+    for (std::size_t i = 0; i < chunk.size(); ++i)
+      chunk[i] = mixed(chunk[i], painted.weights[i], layer.opacity * painted.mask[i] / kFullWeight);
+  for (std::size_t above = index + 1; above < layers.layers.size(); ++above)
+    cover_with(chunk, *layers.layers[above], brick);
   return chunk;
 }
 
-PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& is) {
+PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::int64_t brick,
+                          const SkinWeights::Influences& is) {
   const WeightLayer& layer = layer_at(layers, index);
   PaintedBrick masked{layer.weights.chunk(brick), WeightLayer::Mask(is.size(), 0)};
   const SkinWeights::Influences below = composed_chunk(layers, brick, index);
@@ -208,18 +224,21 @@ PaintedBrick masked_brick(const WeightLayers& layers, std::size_t index, std::in
 
 }  // namespace
 
-SkinWeights::Influences composed_while_painted(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& before,
-                                          const SkinWeights::Influences& after) {
+SkinWeights::Influences composed_while_painted(const WeightLayers& layers, std::size_t index, std::int64_t brick,
+                                               const SkinWeights::Influences& before,
+                                               const SkinWeights::Influences& after) {
   return composed_with(layers, index, brick, painted_brick(layer_at(layers, index), brick, before, after));
 }
 
-SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& mask) {
+SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::size_t index, std::int64_t brick,
+                                              const SkinWeights::Influences& mask) {
   return composed_with(layers, index, brick, masked_brick(layers, index, brick, mask));
 }
 
 namespace {
 
-// What a stroke paints in place of a layer: made(influence, cover) for each voxel, bone 0 where the layer covers nothing.
+// What a stroke paints in place of a layer: made(influence, cover) for each voxel, bone 0 where the layer covers
+// nothing.
 template <class Made>
 SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones, const Made& made) {
   std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;  // by length
@@ -241,7 +260,8 @@ SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones,
 
 // A brick that covers nothing any more is no part of the layer.
 void put(WeightLayer& layer, std::int64_t brick, PaintedBrick painted) {
-  const bool any = std::any_of(painted.mask.begin(), painted.mask.end(), [](std::uint16_t cover) { return cover != 0; });
+  const bool any =
+      std::any_of(painted.mask.begin(), painted.mask.end(), [](std::uint16_t cover) { return cover != 0; });
   layer.weights.set_chunk(brick, std::move(painted.weights));
   layer.mask[brick] = any ? std::make_shared<const WeightLayer::Mask>(std::move(painted.mask)) : nullptr;
 }
@@ -251,13 +271,15 @@ void put(WeightLayer& layer, std::int64_t brick, PaintedBrick painted) {
 SkinWeights mask_as_weights(const WeightLayer& layer) {
   static_assert(kNotCovering == 0);
   return as_painted(layer, {"not covering", "covering"}, [](const Influence&, int cover) {
-    Influence made{{kNotCovering, kCovering, 0, 0}, {static_cast<std::uint16_t>(kFullWeight - cover), static_cast<std::uint16_t>(cover), 0, 0}};
+    Influence made{{kNotCovering, kCovering, 0, 0},
+                   {static_cast<std::uint16_t>(kFullWeight - cover), static_cast<std::uint16_t>(cover), 0, 0}};
     sort_influence(made);
     return made;
   });
 }
 
-WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const SkinWeights& before, const SkinWeights& after) {
+WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const SkinWeights& before,
+                            const SkinWeights& after) {
   WeightLayer layer = layer_at(layers, index);
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
     if (before.shared_chunk(b) != after.shared_chunk(b)) put(layer, b, masked_brick(layers, index, b, after.chunk(b)));
@@ -293,14 +315,17 @@ SkinWeights shares_as_weights(const WeightLayer& layer) {
 
 namespace {
 
-PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was, const SkinWeights::Influences& is) {
-  PaintedBrick painted{layer.weights.chunk(brick), layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
+PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const SkinWeights::Influences& was,
+                          const SkinWeights::Influences& is) {
+  PaintedBrick painted{layer.weights.chunk(brick),
+                       layer.mask[brick] ? *layer.mask[brick] : WeightLayer::Mask(was.size(), 0)};
   for (std::size_t i = 0; i < was.size(); ++i) {
     if (was[i] == is[i]) continue;
     std::vector<std::pair<int, double>> own;
     int cover = 0;
     for (int k = 0; k < 4; ++k)
-      if (is[i].weight[k] && is[i].bone[k] != kBelow) own.emplace_back(is[i].bone[k] - 1, is[i].weight[k]), cover += is[i].weight[k];
+      if (is[i].weight[k] && is[i].bone[k] != kBelow)
+        own.emplace_back(is[i].bone[k] - 1, is[i].weight[k]), cover += is[i].weight[k];
     painted.mask[i] = static_cast<std::uint16_t>(cover);
     if (!own.empty()) painted.weights[i] = quantize(own), sort_influence(painted.weights[i]);
   }
@@ -309,20 +334,23 @@ PaintedBrick shared_brick(const WeightLayer& layer, std::int64_t brick, const Sk
 
 }  // namespace
 
-SkinWeights::Influences composed_while_shared(const WeightLayers& layers, std::size_t index, std::int64_t brick, const SkinWeights::Influences& before,
-                                         const SkinWeights::Influences& after) {
+SkinWeights::Influences composed_while_shared(const WeightLayers& layers, std::size_t index, std::int64_t brick,
+                                              const SkinWeights::Influences& before,
+                                              const SkinWeights::Influences& after) {
   return composed_with(layers, index, brick, shared_brick(layer_at(layers, index), brick, before, after));
 }
 
 WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
   WeightLayer painted = layer;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b)
-    if (before.shared_chunk(b) != after.shared_chunk(b)) put(painted, b, shared_brick(layer, b, before.chunk(b), after.chunk(b)));
+    if (before.shared_chunk(b) != after.shared_chunk(b))
+      put(painted, b, shared_brick(layer, b, before.chunk(b), after.chunk(b)));
   return painted;
 }
 
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base) {
-  if (base->chunk_count() != layers.base->chunk_count() || base->bones() != layers.base->bones()) throw std::logic_error("layers of another body");
+  if (base->chunk_count() != layers.base->chunk_count() || base->bones() != layers.base->bones())
+    throw std::logic_error("layers of another body");
   WeightLayers over{std::move(base), {}};
   for (const auto& layer : layers.layers) {
     WeightLayer next = *layer;
@@ -333,7 +361,8 @@ WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWei
   return over;
 }
 
-std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to, const std::vector<std::string>& names) {
+std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to,
+                                    const std::vector<std::string>& names) {
   const auto base = carried(*layers.base, to, names);
   if (!base) return std::nullopt;
   WeightLayers next{std::make_shared<const SkinWeights>(*base), {}};
@@ -347,7 +376,8 @@ std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vecto
   return next;
 }
 
-WeightLayer with_mask(const WeightLayers& layers, std::size_t index, const TissueVoxels& tissue, const TissueRegion& region, double cover) {
+WeightLayer with_mask(const WeightLayers& layers, std::size_t index, const TissueVoxels& tissue,
+                      const TissueRegion& region, double cover) {
   WeightLayer layer = layer_at(layers, index);
   const SkinWeights shown = canvas(layers, index);
   const auto value = static_cast<std::uint16_t>(std::lround(std::clamp(cover, 0.0, 1.0) * kFullWeight));

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/skin/weights_around.h"
+#include "core/skin/neighbour_weights.h"
 
 namespace limber {
 
@@ -22,7 +22,11 @@ constexpr int kAround = 3;
 class Body {
  public:
   //   progress  told now and then, so that the search can be cancelled
-  Body(const StrokeBody& body, const SkinWeights& weights, Progress& progress = no_progress()) : body_(body), weights_(weights), progress_(progress), voxel_(body.tissue.size()) {
+  Body(const WeightedBody& body, const SkinWeights& weights, Progress& progress = no_progress())
+      : body_(body),
+        weights_(weights),
+        progress_(progress),
+        voxel_(body.tissue.size()) {
     body.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { voxel_[place] = glm::i16vec3(v); });
   }
 
@@ -52,9 +56,10 @@ class Body {
     }
   }
 
-  // Which piece each voxel belongs to, in order of their first voxels; -1 where `group` is negative. Neighbours hang together
-  // where their groups are the same.
-  std::vector<std::int32_t> pieces(const std::vector<std::int32_t>& group, std::vector<std::vector<std::int64_t>>& found) const {
+  // Which piece each voxel belongs to, in order of their first voxels; -1 where `group` is negative. Neighbours hang
+  // together where their groups are the same.
+  std::vector<std::int32_t> pieces(const std::vector<std::int32_t>& group,
+                                   std::vector<std::vector<std::int64_t>>& found) const {
     std::vector<std::int32_t> piece(size(), -1);
     for (std::int64_t start = 0; start < size(); ++start) {
       if (group[start] < 0 || piece[start] >= 0) continue;
@@ -96,14 +101,14 @@ class Body {
   }
 
  private:
-  const StrokeBody& body_;
+  const WeightedBody& body_;
   const SkinWeights& weights_;
   Progress& progress_;
   double done_ = 0;
   std::vector<glm::i16vec3> voxel_;
 };
 
-LabelSet bone_labels(const StrokeBody& body) {
+LabelSet bone_labels(const WeightedBody& body) {
   LabelSet labels(65536, 0);
   for (const Tissue& tissue : body.tissues.tissues) labels[tissue.label] = is_bone(tissue.kind);
   return labels;
@@ -124,12 +129,14 @@ int steps_between(const Armature& armature, int a, int b) {
   for (int at = a; at >= 0; at = armature.bones[at].parent) line.push_back(at);
   int steps = 0;
   for (int at = b; at >= 0; at = armature.bones[at].parent, ++steps)
-    if (const auto found = std::find(line.begin(), line.end(), at); found != line.end()) return steps + static_cast<int>(found - line.begin());
+    if (const auto found = std::find(line.begin(), line.end(), at); found != line.end())
+      return steps + static_cast<int>(found - line.begin());
   return std::numeric_limits<int>::max();  // rigs apart
 }
 
 // Pieces of tissue that hold no bone tissue and through which no rig bone runs.
-void find_unreached(const StrokeBody& body, const Body& all, const LabelSet& bone, std::vector<WeightProblem>& problems) {
+void find_unreached(const WeightedBody& body, const Body& all, const LabelSet& bone,
+                    std::vector<WeightProblem>& problems) {
   std::vector<std::vector<std::int64_t>> pieces;
   const std::vector<std::int32_t> piece = all.pieces(std::vector<std::int32_t>(all.size(), 0), pieces);
   if (pieces.size() < 2) return;
@@ -142,12 +149,14 @@ void find_unreached(const StrokeBody& body, const Body& all, const LabelSet& bon
     const int steps = 1 + static_cast<int>(std::min(2 * std::max({way.x, way.y, way.z}), 1e5));
     for (int i = 0; i <= steps; ++i) {
       const glm::dvec3 at = glm::round(glm::mix(from, to, double(i) / steps));
-      if (!glm::all(glm::lessThan(glm::abs(at), glm::dvec3(1e6))) || body.volume.at_or_air(glm::ivec3(at)) == 0) continue;
+      if (!glm::all(glm::lessThan(glm::abs(at), glm::dvec3(1e6))) || body.volume.at_or_air(glm::ivec3(at)) == 0)
+        continue;
       reached[piece[body.tissue.index_of(glm::ivec3(at))]] = true;
     }
   }
   for (std::size_t p = 0; p < pieces.size(); ++p)
-    if (!reached[p]) problems.push_back({Kind::Unreached, all.main_bone(pieces[p]), -1, all.middle(pieces[p]), std::move(pieces[p])});
+    if (!reached[p])
+      problems.push_back({Kind::Unreached, all.main_bone(pieces[p]), -1, all.middle(pieces[p]), std::move(pieces[p])});
 }
 
 // Pieces of the body that belong to other problems are no islands.
@@ -167,7 +176,8 @@ void find_islands(const Body& all, const ProblemSettings& settings, std::vector<
   }
 }
 
-void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettings& settings, std::vector<WeightProblem>& problems) {
+void find_far_bones(const WeightedBody& body, const Body& all, const ProblemSettings& settings,
+                    std::vector<WeightProblem>& problems) {
   const int least = static_cast<int>(std::ceil(settings.far_weight * kFullWeight));
   std::map<std::pair<int, int>, bool> far;
   std::map<std::pair<int, int>, std::vector<std::int64_t>> found;
@@ -177,7 +187,8 @@ void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettin
     for (int i = 0; i < 4; ++i)
       for (int k = i + 1; k < 4; ++k) {
         if (influence.weight[k] < std::max(least, 1)) continue;
-        const std::pair<int, int> pair(std::min(influence.bone[i], influence.bone[k]), std::max(influence.bone[i], influence.bone[k]));
+        const std::pair<int, int> pair(std::min(influence.bone[i], influence.bone[k]),
+                                       std::max(influence.bone[i], influence.bone[k]));
         const auto [known, fresh] = far.insert({pair, false});
         if (fresh) known->second = steps_between(body.armature, pair.first, pair.second) >= settings.far_steps;
         if (known->second) found[pair].push_back(place);
@@ -189,9 +200,11 @@ void find_far_bones(const StrokeBody& body, const Body& all, const ProblemSettin
   }
 }
 
-// The bone that each voxel of bone tissue is to follow, -1 elsewhere: the one that it follows most. But a small patch that grows on
-// other bone tissue belongs to what it has the longest border with; small is measured by the largest patch of its own bone.
-std::vector<std::int32_t> bones_of_bone_tissue(const StrokeBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings) {
+// The bone that each voxel of bone tissue is to follow, -1 elsewhere: the one that it follows most. But a small patch
+// that grows on other bone tissue belongs to what it has the longest border with; small is measured by the largest
+// patch of its own bone.
+std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const Body& all, const LabelSet& bone,
+                                               const ProblemSettings& settings) {
   std::vector<std::int32_t> follows(all.size(), -1);
   for (std::int64_t place = 0; place < all.size(); ++place)
     if (bone[body.volume.at(all.voxel(place))]) follows[place] = all.influence(place).bone[0];
@@ -203,33 +216,38 @@ std::vector<std::int32_t> bones_of_bone_tissue(const StrokeBody& body, const Bod
   std::vector<std::size_t> small;
   for (std::size_t p = 0; p < pieces.size(); ++p)
     if (double(pieces[p].size()) < settings.island_share * double(largest[follows[pieces[p][0]]])) small.push_back(p);
-  std::stable_sort(small.begin(), small.end(), [&](std::size_t a, std::size_t b) { return pieces[a].size() > pieces[b].size(); });
+  std::stable_sort(small.begin(), small.end(),
+                   [&](std::size_t a, std::size_t b) { return pieces[a].size() > pieces[b].size(); });
   for (const std::size_t p : small) {
     std::map<int, int> border;
     const int own = follows[pieces[p][0]];
     for (const auto place : pieces[p])
       all.beside(place, [&](std::int64_t next) {
-        if (follows[next] >= 0 && piece[next] != static_cast<std::int32_t>(p) && follows[next] != own) ++border[follows[next]];
+        if (follows[next] >= 0 && piece[next] != static_cast<std::int32_t>(p) && follows[next] != own)
+          ++border[follows[next]];
       });
-    const auto longest = std::max_element(border.begin(), border.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto longest = std::max_element(border.begin(), border.end(),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
     if (longest == border.end()) continue;
     for (const auto place : pieces[p]) follows[place] = longest->first;
   }
   return follows;
 }
 
-void find_soft_bone(const StrokeBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings, std::vector<WeightProblem>& problems) {
+void find_soft_bone(const WeightedBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings,
+                    std::vector<WeightProblem>& problems) {
   const std::vector<std::int32_t> follows = bones_of_bone_tissue(body, all, bone, settings);
   std::map<int, std::vector<std::int64_t>> found;
   for (std::int64_t place = 0; place < all.size(); ++place)
-    if (follows[place] >= 0 && all.influence(place) != rigid_influence(follows[place])) found[follows[place]].push_back(place);
+    if (follows[place] >= 0 && all.influence(place) != rigid_influence(follows[place]))
+      found[follows[place]].push_back(place);
   for (auto& [main, voxels] : found) {
     const glm::dvec3 middle = all.middle(voxels);
     problems.push_back({Kind::SoftBone, main, -1, middle, std::move(voxels)});
   }
 }
 
-void find_steep(const StrokeBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings,
+void find_steep(const WeightedBody& body, const Body& all, const LabelSet& bone, const ProblemSettings& settings,
                 std::vector<WeightProblem>& problems) {
   const int steep = static_cast<int>(settings.steep * kFullWeight);
   std::vector<std::uint8_t> is_steep(all.size(), 0);
@@ -238,7 +256,8 @@ void find_steep(const StrokeBody& body, const Body& all, const LabelSet& bone, c
       if (bone[body.volume.at(all.voxel(place))]) continue;
       all.beside(place, [&](std::int64_t next) {
         // Beside bone it is the bone that stays as it is.
-        if (!bone[body.volume.at(all.voxel(next))] && difference(all.influence(place), all.influence(next)) > steep) is_steep[place] = 1;
+        if (!bone[body.volume.at(all.voxel(next))] && difference(all.influence(place), all.influence(next)) > steep)
+          is_steep[place] = 1;
       });
     }
   });
@@ -251,7 +270,8 @@ void find_steep(const StrokeBody& body, const Body& all, const LabelSet& bone, c
     std::map<int, int> others;
     for (const auto place : piece)
       if (all.influence(place).bone[0] != main) ++others[all.influence(place).bone[0]];
-    const auto most = std::max_element(others.begin(), others.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most = std::max_element(others.begin(), others.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
     const glm::dvec3 middle = all.middle(piece);
     problems.push_back({Kind::Steep, main, most == others.end() ? -1 : most->first, middle, std::move(piece)});
   }
@@ -259,7 +279,8 @@ void find_steep(const StrokeBody& body, const Body& all, const LabelSet& bone, c
 
 }  // namespace
 
-std::vector<WeightProblem> find_problems(const StrokeBody& body, const SkinWeights& weights, const ProblemSettings& settings, Progress& progress) {
+std::vector<WeightProblem> find_problems(const WeightedBody& body, const SkinWeights& weights,
+                                         const ProblemSettings& settings, Progress& progress) {
   Body all(body, weights, progress);
   const LabelSet bone = bone_labels(body);
   std::vector<WeightProblem> problems;
@@ -273,21 +294,25 @@ std::vector<WeightProblem> find_problems(const StrokeBody& body, const SkinWeigh
   all.at(0.8);
   find_steep(body, all, bone, settings, problems);
   std::erase_if(problems, [&](const WeightProblem& p) { return std::ssize(p.voxels) < settings.least_voxels; });
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const auto& a, const auto& b) { return a.kind < b.kind || (a.kind == b.kind && a.voxels.size() > b.voxels.size()); });
+  std::stable_sort(problems.begin(), problems.end(), [](const auto& a, const auto& b) {
+    return a.kind < b.kind || (a.kind == b.kind && a.voxels.size() > b.voxels.size());
+  });
   return problems;
 }
 
 std::string describe(const WeightProblem& problem, const Armature& armature) {
   const auto name = [&](int bone) { return bone >= 0 ? armature.bones.at(bone).name : std::string("nothing"); };
-  const std::string voxels = std::to_string(problem.voxels.size()) + (problem.voxels.size() == 1 ? " voxel" : " voxels");
+  const std::string voxels =
+      std::to_string(problem.voxels.size()) + (problem.voxels.size() == 1 ? " voxel" : " voxels");
   switch (problem.kind) {
     case Kind::Unreached: return voxels + " that no bone reaches, given to " + name(problem.bone);
     case Kind::Island: return voxels + " of " + name(problem.bone) + " apart from the rest";
-    case Kind::FarBones: return voxels + " between " + name(problem.bone) + " and " + name(problem.other) + ", which are far apart";
+    case Kind::FarBones:
+      return voxels + " between " + name(problem.bone) + " and " + name(problem.other) + ", which are far apart";
     case Kind::SoftBone: return voxels + " of bone not rigid with " + name(problem.bone);
     case Kind::Steep:
-      return voxels + " where weights change abruptly, at " + name(problem.bone) + (problem.other >= 0 ? " and " + name(problem.other) : "");
+      return voxels + " where weights change abruptly, at " + name(problem.bone) +
+             (problem.other >= 0 ? " and " + name(problem.other) : "");
   }
   return voxels;
 }
@@ -301,7 +326,8 @@ TissueRegion region_of(const std::vector<std::int64_t>& voxels, std::int64_t siz
 }
 
 // The influence of the tissue nearest to the piece that does not belong to it.
-WeightEdit attached(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, const EditScope& scope) {
+WeightEdit attached(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
+                    const EditScope& scope) {
   const TissueRegion piece = region_of(problem.voxels, body.tissue.size(), {});
   const glm::dvec3 centre = voxel_from_world(body.volume.grid) * problem.place;
   std::int64_t nearest = -1;
@@ -313,15 +339,17 @@ WeightEdit attached(const StrokeBody& body, const SkinWeights& weights, const We
   });
   if (nearest < 0) return {weights};
   const Influence from = Body(body, weights).influence(nearest);
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-    std::array<std::pair<int, double>, 4> target;
-    for (int i = 0; i < 4; ++i) target[i] = {from.bone[i], double(from.weight[i])};
-    return rules.blend(influence, target, 1);
-  });
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                  std::array<std::pair<int, double>, 4> target;
+                  for (int i = 0; i < 4; ++i) target[i] = {from.bone[i], double(from.weight[i])};
+                  return rules.blend(influence, target, 1);
+                });
 }
 
 // From the rim inwards, each voxel the mean of those beside it that are done.
-WeightEdit filled_in(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, const EditScope& scope) {
+WeightEdit filled_in(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
+                     const EditScope& scope) {
   const Body all(body, weights);
   TissueRegion open = region_of(problem.voxels, body.tissue.size(), {});
   std::map<std::int64_t, Influence> made;
@@ -336,26 +364,25 @@ WeightEdit filled_in(const StrokeBody& body, const SkinWeights& weights, const W
         const auto known = made.find(next);
         add_to(mean, known == made.end() ? all.influence(next) : known->second, 1);
       });
-      if (mean.empty())
-        inner.push_back(place);
-      else
-        layer.emplace_back(place, quantize(mean));
+      if (mean.empty()) inner.push_back(place);
+      else layer.emplace_back(place, quantize(mean));
     }
     if (layer.empty()) break;
     for (const auto& [place, influence] : layer) made[place] = influence, open[place] = 0;
     left = std::move(inner);
   }
-  return edited(body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3&) {
-    const auto found = made.find(place);
-    if (found == made.end()) return WeightChange{};
-    std::array<std::pair<int, double>, 4> target;
-    for (int i = 0; i < 4; ++i) target[i] = {found->second.bone[i], double(found->second.weight[i])};
-    return rules.blend(influence, target, 1);
-  });
+  return edited(body, weights, scope,
+                [&](const WeightRules& rules, Influence& influence, std::int64_t place, const glm::ivec3&) {
+                  const auto found = made.find(place);
+                  if (found == made.end()) return WeightChange{};
+                  std::array<std::pair<int, double>, 4> target;
+                  for (int i = 0; i < 4; ++i) target[i] = {found->second.bone[i], double(found->second.weight[i])};
+                  return rules.blend(influence, target, 1);
+                });
 }
 
-WeightEdit smoothed_out(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, EditScope scope, const TissueRegion& within,
-                        const ProblemSettings& settings) {
+WeightEdit smoothed_out(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
+                        EditScope scope, const TissueRegion& within, const ProblemSettings& settings) {
   const Body all(body, weights);
   const LabelSet bone = bone_labels(body);
   std::vector<std::int64_t> around = problem.voxels;
@@ -377,7 +404,8 @@ WeightEdit smoothed_out(const StrokeBody& body, const SkinWeights& weights, cons
     const bool still = std::any_of(problem.voxels.begin(), problem.voxels.end(), [&](std::int64_t place) {
       bool is_steep = false;
       now.beside(place, [&](std::int64_t next) {
-        if (!bone[body.volume.at(now.voxel(next))]) is_steep = is_steep || difference(now.influence(place), now.influence(next)) > steep;
+        if (!bone[body.volume.at(now.voxel(next))])
+          is_steep = is_steep || difference(now.influence(place), now.influence(next)) > steep;
       });
       return is_steep;
     });
@@ -395,23 +423,25 @@ WeightEdit smoothed_out(const StrokeBody& body, const SkinWeights& weights, cons
 
 }  // namespace
 
-WeightEdit repaired(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, const EditScope& scope,
-                    const ProblemSettings& settings) {
+WeightEdit repaired(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
+                    const EditScope& scope, const ProblemSettings& settings) {
   EditScope there = scope;
   there.region = region_of(problem.voxels, body.tissue.size(), scope.region);
   switch (problem.kind) {
     case Kind::Unreached: return attached(body, weights, problem, there);
     case Kind::Island: return filled_in(body, weights, problem, there);
     case Kind::FarBones:
-      return edited(body, weights, there, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-        const bool lesser = influence.of(problem.bone) < influence.of(problem.other);
-        return rules.set(influence, lesser ? problem.bone : problem.other, 0);
-      });
+      return edited(body, weights, there,
+                    [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                      const bool lesser = influence.of(problem.bone) < influence.of(problem.other);
+                      return rules.set(influence, lesser ? problem.bone : problem.other, 0);
+                    });
     case Kind::SoftBone:
       there.rigid_bone_tissue = false;
-      return edited(body, weights, there, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
-        return rules.set(influence, problem.bone, kFullWeight);
-      });
+      return edited(body, weights, there,
+                    [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
+                      return rules.set(influence, problem.bone, kFullWeight);
+                    });
     case Kind::Steep: return smoothed_out(body, weights, problem, there, scope.region, settings);
   }
   return {weights};

@@ -18,8 +18,9 @@ namespace limber {
 struct WeightProblem {
   enum class Kind { Unreached, Island, FarBones, SoftBone, Steep };
   Kind kind = Kind::Unreached;
-  int bone = -1, other = -1;         // Unreached, Island: the bone followed most; SoftBone: the bone to be followed; FarBones: both; Steep: the two sides
-  glm::dvec3 place{0};               // world, mm: the middle of the voxel nearest to the middle of all
+  int bone = -1, other = -1;  // Unreached, Island: the bone followed most; SoftBone: the bone to be followed; FarBones:
+                              // both; Steep: the two sides
+  glm::dvec3 place{0};        // world, mm: the middle of the voxel nearest to the middle of all
   std::vector<std::int64_t> voxels;  // places in the tissue list, growing; what FarBones and Steep would change
 };
 
@@ -32,8 +33,8 @@ struct ProblemSettings {
 };
 
 // By kind, within a kind the largest first.
-std::vector<WeightProblem> find_problems(const StrokeBody& body, const SkinWeights& weights, const ProblemSettings& settings = {},
-                                         Progress& progress = no_progress());
+std::vector<WeightProblem> find_problems(const WeightedBody& body, const SkinWeights& weights,
+                                         const ProblemSettings& settings = {}, Progress& progress = no_progress());
 
 // "12 voxels of Hand apart from the rest"
 std::string describe(const WeightProblem& problem, const Armature& armature);
@@ -44,7 +45,7 @@ std::string describe(const WeightProblem& problem, const Armature& armature);
 //   FarBones    the lesser of the two goes, the others take over
 //   SoftBone    rigid with its bone
 //   Steep       smoothed there and for three voxels around, until it is not steep, 40 times at most
-WeightEdit repaired(const StrokeBody& body, const SkinWeights& weights, const WeightProblem& problem, const EditScope& scope = {},
-                    const ProblemSettings& settings = {});
+WeightEdit repaired(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
+                    const EditScope& scope = {}, const ProblemSettings& settings = {});
 
 }  // namespace limber

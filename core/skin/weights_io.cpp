@@ -11,18 +11,19 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
-#include "core/skin/best_four.h"
-#include "core/volume/volume_io.h"
-#include "core/volume/nrrd_header.h"
+#include "core/skin/top_four.h"
 #include "core/volume/seam_text.h"
-#include "core/volume/voxel_source.h"
+#include "core/volume_io/nrrd.h"
+#include "core/volume_io/volume_io.h"
+#include "core/volume_io/voxel_source.h"
 
 namespace limber {
 
 namespace fs = std::filesystem;
 
 namespace {
-static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::little, "Influence is stored as it lies in memory");
+static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::little,
+              "Influence is stored as it lies in memory");
 const char* const kMakeAnew = "make weights anew with `limber weights`";
 
 std::string tissue_sha256(const TissueVoxels& tissue) {
@@ -50,7 +51,10 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
   std::vector<std::uint16_t> in_rig;
   for (const auto& name : list) {
     const auto found = name.is_string() ? place.find(name.get<std::string>()) : place.end();
-    if (found == place.end()) throw Error("the weights name a bone that the rig lacks", where + ", " + name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 80), "use the rig they were made with, or " + std::string(kMakeAnew));
+    if (found == place.end())
+      throw Error("the weights name a bone that the rig lacks",
+                  where + ", " + name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 80),
+                  "use the rig they were made with, or " + std::string(kMakeAnew));
     in_rig.push_back(static_cast<std::uint16_t>(found->second));
   }
   return in_rig;
@@ -64,12 +68,16 @@ void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, cons
     if (influence.weight[k] == 0) {
       influence.bone[k] = 0;
     } else if (influence.bone[k] >= in_rig.size()) {
-      throw Error("a weight belongs to bone " + std::to_string(influence.bone[k]) + " of " + std::to_string(in_rig.size()), where, kMakeAnew);
+      throw Error(
+          "a weight belongs to bone " + std::to_string(influence.bone[k]) + " of " + std::to_string(in_rig.size()),
+          where, kMakeAnew);
     } else {
       influence.bone[k] = in_rig[influence.bone[k]];
     }
   }
-  if (sum != kFullWeight) throw Error("a voxel's weights sum to " + std::to_string(sum) + " of " + std::to_string(kFullWeight), where, kMakeAnew);
+  if (sum != kFullWeight)
+    throw Error("a voxel's weights sum to " + std::to_string(sum) + " of " + std::to_string(kFullWeight), where,
+                kMakeAnew);
   for (int k = 1; k < 4; ++k)
     for (int j = k; j > 0 && influence.weight[j] > influence.weight[j - 1]; --j) {
       std::swap(influence.weight[j], influence.weight[j - 1]);
@@ -85,8 +93,9 @@ std::vector<std::string> names_of(const Armature& armature) {
 
 void require_same_grid(const Grid& grid, const LabelVolume& volume, const Path& path) {
   if (grid.size != volume.grid.size)
-    throw Error("the weights are for a grid of " + text_of(grid.size) + " voxels, the volume has " + text_of(volume.grid.size), path.string(),
-                "give the volume they were made for");
+    throw Error(
+        "the weights are for a grid of " + text_of(grid.size) + " voxels, the volume has " + text_of(volume.grid.size),
+        path.string(), "give the volume they were made for");
 }
 
 // Tissue without any weight follows the nearest rig bone.
@@ -100,22 +109,27 @@ void cover_the_rest(BestFour& best, const LabelVolume& volume, const TissueVoxel
     int nearest = 0;
     double least = std::numeric_limits<double>::max();
     for (std::size_t b = 0; b < armature.bones.size(); ++b)
-      if (const double d = distance_to_bone(armature.bones[b], from_voxel * glm::dvec3(v)); d < least) least = d, nearest = static_cast<int>(b);
+      if (const double d = distance_to_bone(armature.bones[b], from_voxel * glm::dvec3(v)); d < least)
+        least = d, nearest = static_cast<int>(b);
     best.hold(tissue.brick_at(v), place, nearest);
   });
   if (left_out > 0)
-    warnings.push_back(path.string() + " gives no bone to " + std::to_string(left_out) + " tissue voxels: each follows the nearest bone");
+    warnings.push_back(path.string() + " gives no bone to " + std::to_string(left_out) +
+                       " tissue voxels: each follows the nearest bone");
 }
 
-WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
+WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
+                               const Armature& armature) {
   std::vector<Path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name.rfind("weight_", 0) == 0 && (entry.path().extension() == ".mha" || entry.path().extension() == ".mhd")) files.push_back(entry.path());
+    if (name.rfind("weight_", 0) == 0 && (entry.path().extension() == ".mha" || entry.path().extension() == ".mhd"))
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   if (files.size() != armature.bones.size())
-    throw Error("the folder holds " + std::to_string(files.size()) + " files weight_NN.mha, the rig has " + std::to_string(armature.bones.size()) + " bones",
+    throw Error("the folder holds " + std::to_string(files.size()) + " files weight_NN.mha, the rig has " +
+                    std::to_string(armature.bones.size()) + " bones",
                 folder.string(), "give one file for each bone, in the rig's order");
   WeightsFile result;
   BestFour best(tissue);
@@ -133,15 +147,16 @@ WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, co
   return result;
 }
 
-WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
+WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue,
+                            const Armature& armature) {
   constexpr int kFirstBone = 2;
   VolumeFile map = read_volume(path);
   require_same_grid(map.volume.grid, volume, path);
   std::vector<int> bone(1 << 16, -1);
   for (const Tissue& value : map.tissues.tissues) {
     if (value.file_value < 1 || value.file_value >= kFirstBone + double(armature.bones.size()))
-      throw Error("the skin map holds the value " + std::to_string(static_cast<std::int64_t>(value.file_value)) + ", the rig has " +
-                      std::to_string(armature.bones.size()) + " bones, numbered from 2",
+      throw Error("the skin map holds the value " + std::to_string(static_cast<std::int64_t>(value.file_value)) +
+                      ", the rig has " + std::to_string(armature.bones.size()) + " bones, numbered from 2",
                   path.string(), "give the rig it was made with");
     bone[value.label] = static_cast<int>(value.file_value) - kFirstBone;
   }
@@ -156,7 +171,8 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
   return result;
 }
 
-std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_chunks(VoxelSource& data, const TissueVoxels& tissue, const std::vector<std::uint16_t>& in_rig,
+std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_chunks(VoxelSource& data, const TissueVoxels& tissue,
+                                                                   const std::vector<std::uint16_t>& in_rig,
                                                                    const std::string& where) {
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   chunks.reserve(tissue.bricks().size());
@@ -170,41 +186,50 @@ std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_chunks(VoxelSource& 
   return chunks;
 }
 
-WeightsFile read_nrrd(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
+WeightsFile read_nrrd(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue,
+                      const Armature& armature) {
   const std::string where = path.string();
   const OpenedVolume opened = open_volume(path, no_progress(), Holding::Weights);
   const VolumeHeader& header = opened.header;
   const auto key = [&](const char* name) {
     const auto found = header.keys.find(name);
-    if (found == header.keys.end()) throw Error(std::string("the file holds no weights: it lacks the key ") + name, where, kMakeAnew);
+    if (found == header.keys.end())
+      throw Error(std::string("the file holds no weights: it lacks the key ") + name, where, kMakeAnew);
     return found->second;
   };
   const std::vector<std::uint16_t> in_rig = bones_in_rig(key(kWeightsKey), where, armature);
   if (header.voxel_type != VoxelType::UInt16)
-    throw Error("the weights are of type " + std::string(to_string(header.voxel_type)), where, "they should be unsigned short");
+    throw Error("the weights are of type " + std::string(to_string(header.voxel_type)), where,
+                "they should be unsigned short");
   if (header.big_endian) throw Error("the weights are not little-endian", where, kMakeAnew);
   const glm::ivec3& numbers = header.grid.size;
-  if (key("limber_size") != text_of(volume.grid.size) || numbers.x != 8 || numbers.y != tissue.size() || numbers.z != 1 ||
-      key("limber_tissue_sha256") != tissue_sha256(tissue))
-    throw Error("the weights belong to another volume", where, "give the volume they were made for, or " + std::string(kMakeAnew));
+  if (key("limber_size") != text_of(volume.grid.size) || numbers.x != 8 || numbers.y != tissue.size() ||
+      numbers.z != 1 || key("limber_tissue_sha256") != tissue_sha256(tissue))
+    throw Error("the weights belong to another volume", where,
+                "give the volume they were made for, or " + std::string(kMakeAnew));
   WeightsFile file{{names_of(armature), read_chunks(*opened.voxels, tissue, in_rig, where)}, header.warnings};
   if (const auto text = header.keys.find("limber_seams"); text != header.keys.end())
-    file.seams = text->second.empty() ? nullptr : std::make_shared<const Seams>(seams_of_text(text->second, volume.grid.size, where));
+    file.seams = text->second.empty()
+                     ? nullptr
+                     : std::make_shared<const Seams>(seams_of_text(text->second, volume.grid.size, where));
   return file;
 }
 }  // namespace
 
-WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature) {
+WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue,
+                         const Armature& armature) {
   std::error_code error;
   if (fs::is_directory(path, error)) return read_bender_series(path, volume, tissue, armature);
   const std::string extension = path.extension().string();
   if (extension == ".mha" || extension == ".mhd") return read_bender_map(path, volume, tissue, armature);
-  if (!fs::is_regular_file(path, error)) throw Error("there is no such file of weights", path.string(), "name a file on disk");
+  if (!fs::is_regular_file(path, error))
+    throw Error("there is no such file of weights", path.string(), "name a file on disk");
   return read_nrrd(path, volume, tissue, armature);
 }
 
 void check_weights_writable(const Path& path) {
-  if (path.extension() != ".nrrd") throw Error("weights are written as .nrrd", path.string(), "choose a name that ends in .nrrd");
+  if (path.extension() != ".nrrd")
+    throw Error("weights are written as .nrrd", path.string(), "choose a name that ends in .nrrd");
   check_place(path);
 }
 
@@ -218,7 +243,8 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
   }
   const nlohmann::json names = weights.bones();
   const std::string header = "NRRD0005\ntype: unsigned short\ndimension: 2\nsizes: 8 " + std::to_string(tissue.size()) +
-                             "\nendian: little\nencoding: raw\nlimber_bones:=" + nrrd_escaped(names.dump()) + "\nlimber_size:=" + text_of(volume.grid.size) +
+                             "\nendian: little\nencoding: raw\nlimber_bones:=" + nrrd_escaped(names.dump()) +
+                             "\nlimber_size:=" + text_of(volume.grid.size) +
                              "\nlimber_tissue_sha256:=" + tissue_sha256(tissue) + seam_line + "\n\n";
   write_atomically(path, [&](const Path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
@@ -232,7 +258,8 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
   });
 }
 
-void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& folder) {
+void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
+                          const Path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder)) throw Error("the folder cannot be made", folder.string(), "choose another place");
@@ -243,7 +270,8 @@ void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume,
     for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
       const auto& chunk = weights.chunk(b);
       tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        values[volume.grid.index(v)] = static_cast<float>(chunk[place - tissue.bricks()[b].first].of(static_cast<int>(bone)));
+        values[volume.grid.index(v)] =
+            static_cast<float>(chunk[place - tissue.bricks()[b].first].of(static_cast<int>(bone)));
       });
     }
     std::string number = std::to_string(bone);

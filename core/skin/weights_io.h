@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Weights from and to files.
-//   W.nrrd   unsigned short, sizes 8 N: bone0-3 then weight0-3 per tissue voxel in brick order; keys `limber_bones` (a JSON
+//   W.nrrd   unsigned short, sizes 8 N: bone0-3 then weight0-3 per tissue voxel in brick order; keys `limber_bones` (a
+//   JSON
 //            list of names), `limber_size` (x y z of the grid) and `limber_tissue_sha256` (of the brick masks), so that
 //            weights of another volume are refused. Written raw: 10 MB for the paper's arm, read in a few ms.
 //            `limber_seams` holds the seams that they were made with (seam_text.h); without it nobody knows.
@@ -28,7 +29,8 @@ struct WeightsFile {
 
 // Parsed by a process without rights, as volumes are (volume_reader.h).
 // Throws Error when the file is damaged, does not belong to this tissue or names a bone that the rig lacks.
-WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature);
+WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue,
+                         const Armature& armature);
 // Throws Error when no weights can be written under this name.
 void check_weights_writable(const Path& path);
 // Whether the seams of `tissue` are what the weights were made with, and are written.

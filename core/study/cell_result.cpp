@@ -15,19 +15,27 @@ template <class T>
 std::optional<T> optional_of(const Json& json, const char* key) {
   return json.contains(key) && json[key].is_number() ? std::optional(json[key].get<T>()) : std::nullopt;
 }
-glm::dvec3 vector_of(const Json& json) { return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()}; }
+glm::dvec3 vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
 
 void read_body(const Json& json, CellResult& result) {
   for (const Json& row : json.value("tissues", Json::array()))
-    result.tissues.push_back({row.at("label"), row.at("name"), row.at("voxels_before"), row.at("voxels_after"), optional_of<double>(row, "volume_change_percent"),
-                              optional_of<double>(row, "mass_change_percent"), row.at("components_before"), row.at("components_after"), row.value("overlap_voxels", std::int64_t{0})});
+    result.tissues.push_back({row.at("label"), row.at("name"), row.at("voxels_before"), row.at("voxels_after"),
+                              optional_of<double>(row, "volume_change_percent"),
+                              optional_of<double>(row, "mass_change_percent"), row.at("components_before"),
+                              row.at("components_after"), row.value("overlap_voxels", std::int64_t{0})});
   const Json& total = json.at("total");
   result.voxels_before = total.at("voxels_before");
   result.voxels_after = total.at("voxels_after");
   result.volume_percent = total.value("volume_change_percent", 0.0);
   result.mass_percent = total.value("mass_change_percent", 0.0);
-  for (const auto& [key, to] : {std::pair{"overlap_voxels", &result.overlap_voxels}, {"bone_overlap_voxels", &result.bone_overlap_voxels}, {"new_hole_voxels", &result.new_hole_voxels},
-                                {"dropped_voxels", &result.dropped_voxels}, {"trapped_air_voxels", &result.trapped_air_voxels}, {"mended_voxels", &result.mended_voxels}})
+  for (const auto& [key, to] : {std::pair{"overlap_voxels", &result.overlap_voxels},
+                                {"bone_overlap_voxels", &result.bone_overlap_voxels},
+                                {"new_hole_voxels", &result.new_hole_voxels},
+                                {"dropped_voxels", &result.dropped_voxels},
+                                {"trapped_air_voxels", &result.trapped_air_voxels},
+                                {"mended_voxels", &result.mended_voxels}})
     *to = total.value(key, std::int64_t{0});
   if (json.contains("mass_exact")) result.mass_exact_voxels = json["mass_exact"].at("changed_voxels");
   if (json.contains("skin")) {
@@ -35,7 +43,8 @@ void read_body(const Json& json, CellResult& result) {
     result.skin_share_after = json["skin"].at("surface_share_after");
   }
   for (const Json& bone : json.value("bones", Json::array()))
-    if (const double residual = bone.at("rigid_residual_mm"); !result.bone_residual_mm || residual > *result.bone_residual_mm) {
+    if (const double residual = bone.at("rigid_residual_mm");
+        !result.bone_residual_mm || residual > *result.bone_residual_mm) {
       result.bone_residual_mm = residual;
       result.worst_bone = bone.at("name");
     }
@@ -44,12 +53,18 @@ void read_body(const Json& json, CellResult& result) {
 void read_solve(const Json& json, CellResult& result) {
   if (json.contains("mesh")) {
     const Json& mesh = json["mesh"];
-    result.mesh = {mesh.at("tets"), mesh.at("nodes"), mesh.at("inverted"), mesh.at("min_det_f"), optional_of<std::int64_t>(mesh, "self_intersections"),
-                   optional_of<double>(mesh, "min_gap_mm"), optional_of<double>(mesh, "median_gap_mm")};
+    result.mesh = {mesh.at("tets"),
+                   mesh.at("nodes"),
+                   mesh.at("inverted"),
+                   mesh.at("min_det_f"),
+                   optional_of<std::int64_t>(mesh, "self_intersections"),
+                   optional_of<double>(mesh, "min_gap_mm"),
+                   optional_of<double>(mesh, "median_gap_mm")};
   }
   if (json.contains("solve")) {
     const Json& solve = json["solve"];
-    result.solve = {solve.at("converged"), solve.at("reached"), solve.value("blocked_by", ""), solve.at("iterations"), solve.at("residual")};
+    result.solve = {solve.at("converged"), solve.at("reached"), solve.value("blocked_by", ""), solve.at("iterations"),
+                    solve.at("residual")};
   }
 }
 }  // namespace
@@ -64,7 +79,8 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
   result.report = read_file(outcome.folder / "report.json");
   result.cell_json = read_file(outcome.folder / "cell.json");
   try {
-    const Json report = Json::parse(checked_json(result.report, outcome.folder.string())), cell = Json::parse(checked_json(result.cell_json, outcome.folder.string()));
+    const Json report = Json::parse(checked_json(result.report, outcome.folder.string())),
+               cell = Json::parse(checked_json(result.cell_json, outcome.folder.string()));
     result.cpu_seconds = cell.at("cpu_seconds");
     result.wall_seconds = cell.at("wall_seconds");
     result.machine = cell.at("machine");
@@ -73,12 +89,15 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
     read_body(report, result);
     read_solve(report, result);
     for (const Json& row : report.value("joints", Json::array()))
-      result.joints.push_back({row.at("bone"), row.at("degrees"), vector_of(row.at("axis")), vector_of(row.at("head")), vector_of(row.at("tail")), vector_of(row.at("parent_head")),
+      result.joints.push_back({row.at("bone"), row.at("degrees"), vector_of(row.at("axis")), vector_of(row.at("head")),
+                               vector_of(row.at("tail")), vector_of(row.at("parent_head")),
                                optional_of<double>(row, "excess_degrees")});
-    for (const Json& input : report.value("inputs", Json::array())) result.inputs[input.at("path")] = input.at("sha256");
+    for (const Json& input : report.value("inputs", Json::array()))
+      result.inputs[input.at("path")] = input.at("sha256");
     result.warnings = report.value("warnings", std::vector<std::string>{});
   } catch (const Json::exception& error) {
-    throw Error("a result of the study is damaged", outcome.folder.string(), std::string("delete the folder and run the same again (") + error.what() + ")");
+    throw Error("a result of the study is damaged", outcome.folder.string(),
+                std::string("delete the folder and run the same again (") + error.what() + ")");
   }
   result.gates = gates_of(result.report, study.gates);
   return result;

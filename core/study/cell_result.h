@@ -55,7 +55,8 @@ struct CellResult {
   std::vector<TissueFigures> tissues;
   std::int64_t voxels_before = 0, voxels_after = 0;
   double volume_percent = 0, mass_percent = 0;
-  std::int64_t overlap_voxels = 0, bone_overlap_voxels = 0, new_hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0, mended_voxels = 0;
+  std::int64_t overlap_voxels = 0, bone_overlap_voxels = 0, new_hole_voxels = 0, dropped_voxels = 0,
+               trapped_air_voxels = 0, mended_voxels = 0;
   std::optional<std::int64_t> mass_exact_voxels;  // that changed hands; none where masses were not made exact
   std::optional<double> skin_share_before, skin_share_after;
   std::string worst_bone;

@@ -6,15 +6,15 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
 namespace {
 
 constexpr glm::ivec2 kSliceSize{480, 360}, kBodySize{480, 420}, kCloseSize{360, 300};
-constexpr double kCloseUp_mm = 80;       // height
-constexpr double kTurn = 0.35;           // radians: bodies are seen a little from the side
+constexpr double kCloseUp_mm = 80;  // height
+constexpr double kTurn = 0.35;      // radians: bodies are seen a little from the side
 constexpr double kWithoutJoint_mm = 400;
 
 struct PosedBody {
@@ -27,7 +27,8 @@ PosedBody read_posed(const CellResult& cell, Progress& progress) {
   std::optional<TissueTable> user;
   // The cell's own table, where it had one.
   for (const auto& [path, hash] : cell.inputs)
-    if (const Path table = cell.folder / path; std::filesystem::exists(table) && is_tissue_table(table)) user = read_tissue_table(table);
+    if (const Path table = cell.folder / path; std::filesystem::exists(table) && is_tissue_table(table))
+      user = read_tissue_table(table);
   TissueTable tissues = merge_tissue_tables(file.tissues, user ? &*user : nullptr);
   return {std::make_shared<const LabelVolume>(std::move(file.volume)), std::move(tissues)};
 }
@@ -48,7 +49,8 @@ PictureFrame frame_of(const JointFigures& joint) {
   if (glm::length(up) < 1e-6) up = across({0, 1, 0});
   frame.up = glm::normalize(up);
   frame.right = glm::normalize(glm::cross(frame.up, joint.axis));
-  frame.height_mm = std::clamp(0.9 * std::max(glm::distance(joint.head, joint.parent_head), glm::distance(joint.head, joint.tail)), 40.0, 500.0);
+  frame.height_mm = std::clamp(
+      0.9 * std::max(glm::distance(joint.head, joint.parent_head), glm::distance(joint.head, joint.tail)), 40.0, 500.0);
   return frame;
 }
 
@@ -85,15 +87,19 @@ std::string finished(Picture picture, const PictureFrame& frame) {
 
 class Maker {
  public:
-  Maker(const Study& study, const std::vector<CellResult>& cells, const StartPictures& start, Progress& progress) : study_(study), progress_(progress) {
+  Maker(const Study& study, const std::vector<CellResult>& cells, const StartPictures& start, Progress& progress)
+      : study_(study),
+        progress_(progress) {
     choose(cells);
     start_drawing(start);
   }
 
   StudyFigures operator()() {
     const int techniques = static_cast<int>(study_.techniques.size());
-    for (PictureGrid* grid : {&figures_.bodies, &figures_.slices}) grid->png.assign(techniques, std::vector<std::string>(figures_.poses.size()));
-    for (PictureGrid* grid : {&figures_.ratios, &figures_.overlaps}) grid->png.assign(techniques, std::vector<std::string>(1));
+    for (PictureGrid* grid : {&figures_.bodies, &figures_.slices})
+      grid->png.assign(techniques, std::vector<std::string>(figures_.poses.size()));
+    for (PictureGrid* grid : {&figures_.ratios, &figures_.overlaps})
+      grid->png.assign(techniques, std::vector<std::string>(1));
     int done = 0;
     const auto each = [&](auto&& work) {
       for (const CellResult* cell : shown_) {
@@ -104,7 +110,8 @@ class Maker {
     each([&](const CellResult& cell) { draw_slices(cell); });
     frame_bodies();
     each([&](const CellResult& cell) { draw_bodies(cell); });
-    std::stable_sort(figures_.close_ups.begin(), figures_.close_ups.end(), [](const CloseUp& a, const CloseUp& b) { return a.region.voxels > b.region.voxels; });
+    std::stable_sort(figures_.close_ups.begin(), figures_.close_ups.end(),
+                     [](const CloseUp& a, const CloseUp& b) { return a.region.voxels > b.region.voxels; });
     progress_.update("pictures", 1);
     return std::move(figures_);
   }
@@ -112,13 +119,16 @@ class Maker {
  private:
   void choose(const std::vector<CellResult>& cells) {
     for (int s = 1; s < std::ssize(study_.spacings); ++s)
-      if (study_.spacings[s] && (!study_.spacings[figures_.spacing] || *study_.spacings[s] < *study_.spacings[figures_.spacing])) figures_.spacing = s;
+      if (study_.spacings[s] &&
+          (!study_.spacings[figures_.spacing] || *study_.spacings[s] < *study_.spacings[figures_.spacing]))
+        figures_.spacing = s;
     for (int p = 0; p < std::ssize(study_.poses) && p < kShownPoses; ++p) figures_.poses.push_back(p);
     const JointFigures* furthest = nullptr;
     for (const CellResult& cell : cells) {
       if (!cell.done() || cell.cell.spacing != figures_.spacing) continue;
       const JointFigures* joint = furthest_joint(cell);
-      if (joint && (!furthest || joint->degrees > furthest->degrees)) furthest = joint, figures_.largest_pose = cell.cell.pose;
+      if (joint && (!furthest || joint->degrees > furthest->degrees))
+        furthest = joint, figures_.largest_pose = cell.cell.pose;
       if (cell.cell.pose < kShownPoses || cell.cell.pose == figures_.largest_pose) shown_.push_back(&cell);
     }
     if (furthest) figures_.joint = furthest->bone, rest_frame_ = frame_of(*furthest);
@@ -149,7 +159,9 @@ class Maker {
     if (const JointFigures* joint = furthest_joint(cell)) return frame_of(*joint);
     if (rest_frame_) return *rest_frame_;
     const Grid& grid = volume.grid;
-    return {.centre = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0), .height_mm = kWithoutJoint_mm, .size = kSliceSize};
+    return {.centre = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0),
+            .height_mm = kWithoutJoint_mm,
+            .size = kSliceSize};
   }
   std::ptrdiff_t column_of(const CellResult& cell) const {
     const auto found = std::find(figures_.poses.begin(), figures_.poses.end(), cell.cell.pose);
@@ -161,14 +173,17 @@ class Maker {
     const PictureFrame frame = frame_of_cell(cell, *body.volume);
     const LabelColours colours = tissue_colours(body.tissues);
     const int technique = cell.cell.technique;
-    figures_.slices.width_mm = figures_.ratios.width_mm = figures_.overlaps.width_mm = frame.height_mm * frame.size.x / frame.size.y;
-    if (const auto column = column_of(cell); column >= 0) figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
+    figures_.slices.width_mm = figures_.ratios.width_mm = figures_.overlaps.width_mm =
+        frame.height_mm * frame.size.x / frame.size.y;
+    if (const auto column = column_of(cell); column >= 0)
+      figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
     box_.add(*body.volume, body_plane(frame));
 
     // Results of a session may lack either.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
     if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap))
-      figures_.overlaps.png[technique][0] = finished(marked_picture(*body.volume, read_values(overlap), colours, frame), frame);
+      figures_.overlaps.png[technique][0] =
+          finished(marked_picture(*body.volume, read_values(overlap), colours, frame), frame);
     if (!std::filesystem::exists(cell.folder / "ratio.nrrd")) return;
     const LabelVolume ratios = read_values(cell.folder / "ratio.nrrd");
     if (is_largest) figures_.ratios.png[technique][0] = finished(slice_picture(ratios, ratio_colours(), frame), frame);
@@ -176,17 +191,24 @@ class Maker {
   }
 
   // One for each technique: its worst pose. Masses made exact leave ratios as they were.
-  void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios, const LabelColours& colours, PictureFrame frame) {
+  void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios,
+                    const LabelColours& colours, PictureFrame frame) {
     const Technique technique = study_.techniques[cell.cell.technique];
-    if (is_mass_exact(technique) && std::count(study_.techniques.begin(), study_.techniques.end(), plain_of(technique))) return;
+    if (is_mass_exact(technique) && std::count(study_.techniques.begin(), study_.techniques.end(), plain_of(technique)))
+      return;
     const auto region = worst_region(ratios);
     if (!region) return;
-    const auto same = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(), [&](const CloseUp& one) { return one.cell->cell.technique == cell.cell.technique; });
+    const auto same = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(),
+                                   [&](const CloseUp& one) { return one.cell->cell.technique == cell.cell.technique; });
     if (same != figures_.close_ups.end() && same->region.voxels >= region->voxels) return;
     frame.centre = region->centre;
     frame.height_mm = kCloseUp_mm;
     frame.size = kCloseSize;
-    CloseUp close{&cell, *region, finished(slice_picture(volume, colours, frame), frame), finished(slice_picture(ratios, ratio_colours(), frame), frame), {}};
+    CloseUp close{&cell,
+                  *region,
+                  finished(slice_picture(volume, colours, frame), frame),
+                  finished(slice_picture(ratios, ratio_colours(), frame), frame),
+                  {}};
     if (same != figures_.close_ups.end()) *same = std::move(close);
     else figures_.close_ups.push_back(std::move(close));
   }
@@ -210,7 +232,8 @@ class Maker {
   }
 
   void draw_bodies(const CellResult& cell) {
-    const auto close = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(), [&](const CloseUp& one) { return one.cell == &cell; });
+    const auto close = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(),
+                                    [&](const CloseUp& one) { return one.cell == &cell; });
     const auto column = column_of(cell);
     if (!draw_body_ || (column < 0 && close == figures_.close_ups.end())) return;
     const PosedBody body = read_posed(cell, progress_);
@@ -242,7 +265,8 @@ class Maker {
 
 }  // namespace
 
-StudyFigures make_figures(const Study& study, const std::vector<CellResult>& cells, const StartPictures& start, Progress& progress) {
+StudyFigures make_figures(const Study& study, const std::vector<CellResult>& cells, const StartPictures& start,
+                          Progress& progress) {
   return Maker(study, cells, start, progress)();
 }
 

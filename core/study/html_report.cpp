@@ -18,10 +18,10 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostBars = 6;      // of a group; more become their mean
-constexpr std::size_t kMostPanels = 12;   // tissues with a chart of their own
-constexpr double kNarrow = 300;           // width of such a chart
-constexpr double kWide = 460;             // width of one of two side by side
+constexpr std::size_t kMostBars = 6;     // of a group; more become their mean
+constexpr std::size_t kMostPanels = 12;  // tissues with a chart of their own
+constexpr double kNarrow = 300;          // width of such a chart
+constexpr double kWide = 460;            // width of one of two side by side
 
 std::string base64(const std::string& bytes) {
   static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -29,7 +29,8 @@ std::string base64(const std::string& bytes) {
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0);
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0);
     for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
   }
   return text;
@@ -43,14 +44,20 @@ std::string picture(const std::string& png, const std::string& what) {
 class Page {
  public:
   Page(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts)
-      : study_(study), cells_(cells), figures_(figures), facts_(facts) {
+      : study_(study),
+        cells_(cells),
+        figures_(figures),
+        facts_(facts) {
     for (const CellResult& cell : cells)
       if (cell.done()) at_[{cell.cell.spacing, cell.cell.pose, cell.cell.technique}] = &cell;
   }
 
   std::string operator()() {
-    html_ = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-            "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" + escaped(study_.name) + "</title>\n<style>" + std::string(page_style()) + "</style>\n</head>\n<body>\n<main>\n";
+    html_ =
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+        "content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
+        escaped(study_.name) + "</title>\n<style>" + std::string(page_style()) + "</style>\n</head>\n<body>\n<main>\n";
     head();
     summary();
     time();
@@ -70,7 +77,9 @@ class Page {
     const auto found = at_.find({spacing, pose, technique});
     return found == at_.end() ? nullptr : found->second;
   }
-  std::string finest() const { return study_.spacings[figures_.spacing] ? spacing_text(study_.spacings[figures_.spacing]) : "its own spacing"; }
+  std::string finest() const {
+    return study_.spacings[figures_.spacing] ? spacing_text(study_.spacings[figures_.spacing]) : "its own spacing";
+  }
   int techniques() const { return static_cast<int>(study_.techniques.size()); }
   int poses() const { return static_cast<int>(study_.poses.size()); }
   int look(int technique) const { return static_cast<int>(study_.techniques[technique]); }  // colour and mark
@@ -82,35 +91,49 @@ class Page {
     return names;
   }
 
-  void section(const std::string& title, const std::string& id) { html_ += "<h2 id=\"" + id + "\">" + std::to_string(++sections_) + "&ensp;" + title + "</h2>\n"; }
+  void section(const std::string& title, const std::string& id) {
+    html_ += "<h2 id=\"" + id + "\">" + std::to_string(++sections_) + "&ensp;" + title + "</h2>\n";
+  }
   void figure(const std::string& inside, const std::string& caption, const std::string& style = "") {
-    html_ += "<figure" + (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "<figcaption><b>Figure " + std::to_string(++figures_shown_) + ".</b> " + caption + "</figcaption></figure>\n";
+    html_ += "<figure" + (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "<figcaption><b>Figure " +
+             std::to_string(++figures_shown_) + ".</b> " + caption + "</figcaption></figure>\n";
   }
   void table(const std::string& inside, const std::string& caption, const std::string& style = "") {
-    html_ += "<figure class=\"table" + (style.empty() ? "" : " " + style) + "\"><figcaption><b>Table " + std::to_string(++tables_) + ".</b> " + caption + "</figcaption><div class=\"wide\"><table" +
+    html_ += "<figure class=\"table" + (style.empty() ? "" : " " + style) + "\"><figcaption><b>Table " +
+             std::to_string(++tables_) + ".</b> " + caption + "</figcaption><div class=\"wide\"><table" +
              (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "</table></div></figure>\n";
   }
 
   // Studies count processor seconds; what was made one by one knows the clock.
   std::string seconds_word() const { return facts_.of_session ? "s" : "CPU s"; }
   std::string time_word() const { return facts_.of_session ? "time by the clock" : "processor time"; }
-  static std::string counted(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what + (count == 1 ? "" : "s"); }
+  static std::string counted(std::size_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+  }
 
   static bool passes(const CellResult& cell) {
-    return std::none_of(cell.gates.begin(), cell.gates.end(), [](const QualityGate& gate) { return gate.state == GateState::Failed; });
+    return std::none_of(cell.gates.begin(), cell.gates.end(),
+                        [](const QualityGate& gate) { return gate.state == GateState::Failed; });
   }
 
   void head() {
-    html_ += std::string("<header><p class=\"kind\">Limber ") + (facts_.of_session ? "results" : "study") + "</p><h1>" + escaped(study_.name) + "</h1><p class=\"lead\">";
+    html_ += std::string("<header><p class=\"kind\">Limber ") + (facts_.of_session ? "results" : "study") + "</p><h1>" +
+             escaped(study_.name) + "</h1><p class=\"lead\">";
     if (facts_.of_session) {
-      html_ += counted(cells_.size(), "result") + ": " + counted(poses(), "pose") + ", " + counted(techniques(), "technique") + ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
+      html_ += counted(cells_.size(), "result") + ": " + counted(poses(), "pose") + ", " +
+               counted(techniques(), "technique") + ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) +
+               ".</p></header>\n";
       return;
     }
     std::string spacings;
     for (const auto& spacing : study_.spacings) spacings += (spacings.empty() ? "" : ", ") + spacing_text(spacing);
-    html_ += std::to_string(study_.spacings.size()) + " spacing" + (study_.spacings.size() == 1 ? "" : "s") + " (" + escaped(spacings) + ") × " + std::to_string(poses()) + " pose" +
-             (poses() == 1 ? "" : "s") + " × " + std::to_string(techniques()) + " technique" + (techniques() == 1 ? "" : "s") + " = " + std::to_string(cells_.size()) + " cells. " +
-             (study_.phantom.empty() ? "Volume: " + escaped(study_.volume.filename().string()) : "Volume: the procedural " + study_.phantom) + ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
+    html_ += std::to_string(study_.spacings.size()) + " spacing" + (study_.spacings.size() == 1 ? "" : "s") + " (" +
+             escaped(spacings) + ") × " + std::to_string(poses()) + " pose" + (poses() == 1 ? "" : "s") + " × " +
+             std::to_string(techniques()) + " technique" + (techniques() == 1 ? "" : "s") + " = " +
+             std::to_string(cells_.size()) + " cells. " +
+             (study_.phantom.empty() ? "Volume: " + escaped(study_.volume.filename().string())
+                                     : "Volume: the procedural " + study_.phantom) +
+             ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
   }
 
   // The largest of something over a technique's poses, by size, at the finest spacing.
@@ -122,20 +145,35 @@ class Page {
       if (!cell || std::abs(candidate) > std::abs(value)) value = candidate, cell = of, tissue = in;
     }
   };
-  std::string pose_of(const Extreme& extreme) const { return extreme.cell ? escaped(study_.poses[extreme.cell->cell.pose].name) : ""; }
+  std::string pose_of(const Extreme& extreme) const {
+    return extreme.cell ? escaped(study_.poses[extreme.cell->cell.pose].name) : "";
+  }
 
   void summary() {
     section("Summary", "summary");
     std::size_t done = at_.size(), whole = 0;
     for (const auto& [key, one] : at_) whole += passes(*one);
-    if (facts_.of_session) html_ += "<p>" + std::to_string(whole) + " of " + counted(done, "result") + (whole == 1 ? " passes" : " pass") + " every gate that applies. ";
-    else html_ += "<p>" + std::to_string(done) + " of " + std::to_string(cells_.size()) + " cells are computed; " + std::to_string(whole) + " of them pass every gate that applies to them. ";
-    if (!figures_.joint.empty()) html_ += "The joint that turns the furthest is at the head of " + escaped(figures_.joint) + ". ";
-    html_ += "Changes are of volume, relative to the same tissue at rest at the same spacing; they can cancel in a total, so the tissue that changes most stands beside it.</p>\n";
+    if (facts_.of_session)
+      html_ += "<p>" + std::to_string(whole) + " of " + counted(done, "result") + (whole == 1 ? " passes" : " pass") +
+               " every gate that applies. ";
+    else
+      html_ += "<p>" + std::to_string(done) + " of " + std::to_string(cells_.size()) + " cells are computed; " +
+               std::to_string(whole) + " of them pass every gate that applies to them. ";
+    if (!figures_.joint.empty())
+      html_ += "The joint that turns the furthest is at the head of " + escaped(figures_.joint) + ". ";
+    html_ +=
+        "Changes are of volume, relative to the same tissue at rest at the same spacing; they can cancel in a total, "
+        "so the tissue that changes most stands beside it.</p>\n";
 
-    std::string rows = "<thead><tr><th rowspan=\"2\">Technique</th><th colspan=\"2\">Total volume</th><th colspan=\"3\">Tissue that changes most</th><th rowspan=\"2\">Overlap<small>voxels</small></th>"
-                       "<th rowspan=\"2\">Time<small>" + seconds_word() + ", mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">" + (facts_.of_session ? "Results that pass" : "Cells that pass<small>all spacings</small>") + "</th></tr>"
-                       "<tr><th>change, %</th><th class=\"word\">at</th><th>change, %</th><th class=\"word\">of</th><th class=\"word\">at</th></tr></thead><tbody>";
+    std::string rows =
+        "<thead><tr><th rowspan=\"2\">Technique</th><th colspan=\"2\">Total volume</th><th colspan=\"3\">Tissue that "
+        "changes most</th><th rowspan=\"2\">Overlap<small>voxels</small></th>"
+        "<th rowspan=\"2\">Time<small>" +
+        seconds_word() + ", mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">" +
+        (facts_.of_session ? "Results that pass" : "Cells that pass<small>all spacings</small>") +
+        "</th></tr>"
+        "<tr><th>change, %</th><th class=\"word\">at</th><th>change, %</th><th class=\"word\">of</th><th "
+        "class=\"word\">at</th></tr></thead><tbody>";
     for (int t = 0; t < techniques(); ++t) {
       Extreme total, tissue;
       double seconds = 0, memory = 0;
@@ -149,7 +187,8 @@ class Page {
           overlap = std::max(overlap, one->overlap_voxels);
           total.take(one->volume_percent, one);
           for (const TissueFigures& of : one->tissues)
-            if (of.voxels_before >= study_.gates.least_voxels && of.volume_percent) tissue.take(*of.volume_percent, one, &of);
+            if (of.voxels_before >= study_.gates.least_voxels && of.volume_percent)
+              tissue.take(*of.volume_percent, one, &of);
         }
       int pass = 0, all = 0;
       for (const auto& [key, one] : at_)
@@ -160,11 +199,19 @@ class Page {
         continue;
       }
       rows += "<td>" + signed_number(total.value, 2) + "</td><td class=\"word\">" + pose_of(total) + "</td>";
-      rows += tissue.cell ? "<td>" + signed_number(tissue.value, 2) + "</td><td class=\"word\">" + escaped(tissue.tissue->name) + "</td><td class=\"word\">" + pose_of(tissue) + "</td>" : "<td class=\"none\" colspan=\"3\">none is large enough</td>";
-      rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) + "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
+      rows += tissue.cell ? "<td>" + signed_number(tissue.value, 2) + "</td><td class=\"word\">" +
+                                escaped(tissue.tissue->name) + "</td><td class=\"word\">" + pose_of(tissue) + "</td>"
+                          : "<td class=\"none\" colspan=\"3\">none is large enough</td>";
+      rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) +
+              "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
     }
-    table(rows + "</tbody>", "Each technique at " + finest() + ": the largest change over all poses with the pose that has it, the most voxels that two places of the body claimed, "
-          "mean " + time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") + ". Tissues of fewer than " + grouped(study_.gates.least_voxels) + " voxels at rest are left out.");
+    table(rows + "</tbody>", "Each technique at " + finest() +
+                                 ": the largest change over all poses with the pose that has it, the most voxels that "
+                                 "two places of the body claimed, "
+                                 "mean " +
+                                 time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") +
+                                 ". Tissues of fewer than " + grouped(study_.gates.least_voxels) +
+                                 " voxels at rest are left out.");
   }
 
   void time() {
@@ -186,13 +233,19 @@ class Page {
       bars.groups.push_back(group);
     }
     bars.decimals = most < 20 ? 1 : 0;
-    figure(svg_of(bars), "Time by technique at " + finest() + ": " + time_word() + " of each " + (facts_.of_session ? "result" : "cell") + " from reading the volume to writing the result" +
-           std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") + (facts_.of_session ? "" : " Weights are computed once for each spacing and not counted" + weights_note() + "."));
+    figure(
+        svg_of(bars),
+        "Time by technique at " + finest() + ": " + time_word() + " of each " +
+            (facts_.of_session ? "result" : "cell") + " from reading the volume to writing the result" +
+            std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") +
+            (facts_.of_session ? ""
+                               : " Weights are computed once for each spacing and not counted" + weights_note() + "."));
 
     if (study_.spacings.size() > 1) {
       LineChart lines{.unit = "CPU s", .x_unit = "spacing", .logarithmic = true};
       for (const auto& spacing : study_.spacings) lines.places.push_back(spacing_text(spacing));
-      if (std::all_of(study_.spacings.begin(), study_.spacings.end(), [](const auto& spacing) { return spacing.has_value(); }))
+      if (std::all_of(study_.spacings.begin(), study_.spacings.end(),
+                      [](const auto& spacing) { return spacing.has_value(); }))
         for (const auto& spacing : study_.spacings) lines.positions.push_back(*spacing);
       for (int t = 0; t < techniques(); ++t) {
         Series series{technique_name(t), look(t), {}};
@@ -202,7 +255,10 @@ class Page {
       Series weights{"Weights, once", -1, {}};
       for (int s = 0; s < std::ssize(study_.spacings); ++s) weights.values.push_back(seconds_of_weights(s));
       lines.series.push_back(weights);
-      figure(svg_of(lines), "Time by resolution: mean processor time over the poses, against the edge of a voxel, on a logarithmic scale." + tets_note());
+      figure(svg_of(lines),
+             "Time by resolution: mean processor time over the poses, against the edge of a voxel, on a logarithmic "
+             "scale." +
+                 tets_note());
     }
   }
   std::optional<double> mean_seconds(int spacing, int technique) const {
@@ -219,7 +275,8 @@ class Page {
       std::int64_t tets = 0, meshes = 0;
       for (const auto& [key, one] : at_)
         if (one->cell.spacing == s && one->mesh) tets += one->mesh->tets, ++meshes;
-      if (meshes) note += (note.empty() ? "" : ", ") + grouped(tets / meshes) + " at " + spacing_text(study_.spacings[s]);
+      if (meshes)
+        note += (note.empty() ? "" : ", ") + grouped(tets / meshes) + " at " + spacing_text(study_.spacings[s]);
     }
     return note.empty() ? "" : " Finite elements take their time by their tets, on average " + note + ".";
   }
@@ -257,7 +314,8 @@ class Page {
         if (tissue.voxels_before >= study_.gates.least_voxels) tissues.push_back(&tissue);
       break;
     }
-    std::stable_sort(tissues.begin(), tissues.end(), [](auto a, auto b) { return a->voxels_before > b->voxels_before; });
+    std::stable_sort(tissues.begin(), tissues.end(),
+                     [](auto a, auto b) { return a->voxels_before > b->voxels_before; });
     return tissues;
   }
   static const TissueFigures* tissue_of(const CellResult& cell, double label) {
@@ -268,8 +326,12 @@ class Page {
 
   void volume() {
     section("Volume", "volume");
-    LineChart chart{.unit = "change of volume, %", .places = pose_names(), .series = changes([](const CellResult& one) { return std::optional(one.volume_percent); }), .is_signed = true};
-    figure(svg_of(chart), "Change of volume by technique, all tissues together, at " + finest() + ". Zero is what a body does that keeps its volume.");
+    LineChart chart{.unit = "change of volume, %",
+                    .places = pose_names(),
+                    .series = changes([](const CellResult& one) { return std::optional(one.volume_percent); }),
+                    .is_signed = true};
+    figure(svg_of(chart), "Change of volume by technique, all tissues together, at " + finest() +
+                              ". Zero is what a body does that keeps its volume.");
 
     std::vector<const TissueFigures*> tissues = large_tissues();
     const std::size_t left_out = tissues.size() > kMostPanels ? tissues.size() - kMostPanels : 0;
@@ -278,7 +340,13 @@ class Page {
     std::vector<LineChart> panels;
     double low = 0, high = 0;
     for (const TissueFigures* tissue : tissues) {
-      LineChart panel{.title = tissue->name + "  (" + grouped(tissue->voxels_before) + " voxels)", .unit = "%", .places = pose_names(), .is_signed = true, .names = false, .width = int(kNarrow), .height = 200};
+      LineChart panel{.title = tissue->name + "  (" + grouped(tissue->voxels_before) + " voxels)",
+                      .unit = "%",
+                      .places = pose_names(),
+                      .is_signed = true,
+                      .names = false,
+                      .width = int(kNarrow),
+                      .height = 200};
       panel.series = changes([&](const CellResult& one) {
         const TissueFigures* same = tissue_of(one, tissue->label);
         return same ? same->volume_percent : std::nullopt;
@@ -297,8 +365,11 @@ class Page {
       panel.high = nice_ceiling(*panel.high, high - low);
       inside += "<div>" + svg_of(panel) + "</div>";
     }
-    figure(inside + "</div>", "Change of volume by technique, tissue by tissue, at " + finest() + ", all on one scale. Tissues of " + grouped(study_.gates.least_voxels) +
-           " voxels or more at rest" + (left_out ? ", the " + std::to_string(kMostPanels) + " largest of them" : "") + "; figures are in Table " + std::to_string(tables_ + 1 + int(study_.spacings.size())) + " and after.");
+    figure(inside + "</div>",
+           "Change of volume by technique, tissue by tissue, at " + finest() + ", all on one scale. Tissues of " +
+               grouped(study_.gates.least_voxels) + " voxels or more at rest" +
+               (left_out ? ", the " + std::to_string(kMostPanels) + " largest of them" : "") +
+               "; figures are in Table " + std::to_string(tables_ + 1 + int(study_.spacings.size())) + " and after.");
   }
   static double nice_step(double range) {
     const double power = std::pow(10, std::floor(std::log10(std::max(range, 1e-3) / 5)));
@@ -306,8 +377,12 @@ class Page {
       if (nice * power >= range / 5) return nice * power;
     return 10 * power;
   }
-  static double nice_floor(double value, double range) { return nice_step(range) * std::floor(value / nice_step(range) + 1e-9); }
-  static double nice_ceiling(double value, double range) { return nice_step(range) * std::ceil(value / nice_step(range) - 1e-9); }
+  static double nice_floor(double value, double range) {
+    return nice_step(range) * std::floor(value / nice_step(range) + 1e-9);
+  }
+  static double nice_ceiling(double value, double range) {
+    return nice_step(range) * std::ceil(value / nice_step(range) - 1e-9);
+  }
 
   std::string legend() const {
     std::string text = "<p class=\"legend\">";
@@ -322,7 +397,10 @@ class Page {
     html += "</tr></thead><tbody>";
     for (int t = 0; t < techniques(); ++t) {
       html += "<tr><th class=\"row\"><span>" + marked_name(t) + "</span></th>";
-      for (std::size_t c = 0; c < columns.size(); ++c) html += "<td>" + picture(pictures.png[t][c], what + ", " + technique_name(t) + ", " + study_.poses[columns[c]].name) + "</td>";
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        html += "<td>" +
+                picture(pictures.png[t][c], what + ", " + technique_name(t) + ", " + study_.poses[columns[c]].name) +
+                "</td>";
       html += "</tr>";
     }
     return html + "</tbody></table>";
@@ -330,17 +408,36 @@ class Page {
 
   void pictures() {
     section("Pictures", "pictures");
-    const std::string shown = study_.poses.size() > figures_.poses.size() ? " The first " + std::to_string(figures_.poses.size()) + " of " + std::to_string(study_.poses.size()) + " poses." : "";
+    const std::string shown = study_.poses.size() > figures_.poses.size()
+                                  ? " The first " + std::to_string(figures_.poses.size()) + " of " +
+                                        std::to_string(study_.poses.size()) + " poses."
+                                  : "";
     if (figures_.no_bodies.empty())
-      figure(grid(figures_.bodies, figures_.poses, "Body"), "The posed volumes in 3D at " + finest() + ", technique by pose, all at one scale: each picture is " + fixed(figures_.bodies.width_mm, 0) + " mm wide, seen along the joint's axis, turned by 20°." + shown, "grid");
+      figure(grid(figures_.bodies, figures_.poses, "Body"),
+             "The posed volumes in 3D at " + finest() + ", technique by pose, all at one scale: each picture is " +
+                 fixed(figures_.bodies.width_mm, 0) + " mm wide, seen along the joint's axis, turned by 20°." + shown,
+             "grid");
     else
-      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " + (facts_.of_session ? "" : "Run the same again with a program that draws; the cells need not be computed again.") + "</p>\n";
-    figure(grid(figures_.slices, figures_.poses, "Slice"), "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) + " mm wide; the bar is 50 mm." + shown, "grid");
+      html_ +=
+          "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " +
+          (facts_.of_session ? ""
+                             : "Run the same again with a program that draws; the cells need not be computed again.") +
+          "</p>\n";
+    figure(grid(figures_.slices, figures_.poses, "Slice"),
+           "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) +
+               " mm wide; the bar is 50 mm." + shown,
+           "grid");
   }
-  std::string where() const { return figures_.joint.empty() ? "through the middle" : "through the head of " + escaped(figures_.joint) + ", across the axis that it turns about"; }
+  std::string where() const {
+    return figures_.joint.empty()
+               ? "through the middle"
+               : "through the head of " + escaped(figures_.joint) + ", across the axis that it turns about";
+  }
 
   void worst() {
-    const auto any = [](const PictureGrid& grid) { return std::any_of(grid.png.begin(), grid.png.end(), [](const auto& row) { return !row[0].empty(); }); };
+    const auto any = [](const PictureGrid& grid) {
+      return std::any_of(grid.png.begin(), grid.png.end(), [](const auto& row) { return !row[0].empty(); });
+    };
     if (figures_.largest_pose < 0 || (!any(figures_.ratios) && !any(figures_.overlaps))) return;
     section("Where it is worst", "worst");
     std::string html = "<table class=\"pictures maps\"><thead><tr><th></th>";
@@ -349,23 +446,46 @@ class Page {
     const std::string pose = study_.poses[figures_.largest_pose].name;
     for (const auto& [name, of] : {std::pair{"Volume ratio", &figures_.ratios}, {"Overlap", &figures_.overlaps}}) {
       html += std::string("<tr><th class=\"row\"><span>") + name + "</span></th>";
-      for (int t = 0; t < techniques(); ++t) html += "<td>" + picture(of->png[t][0], std::string(name) + ", " + technique_name(t) + ", " + pose) + overlap_words(of == &figures_.overlaps, t) + "</td>";
+      for (int t = 0; t < techniques(); ++t)
+        html += "<td>" + picture(of->png[t][0], std::string(name) + ", " + technique_name(t) + ", " + pose) +
+                overlap_words(of == &figures_.overlaps, t) + "</td>";
       html += "</tr>";
     }
-    html += "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: stretched</span><span class=\"gap\"><b class=\"twice\"></b> claimed by two places of the body</span><span><b class=\"bone\"></b> claimed by two bones</span></div>";
-    figure(html, "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() + ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; grey is 1). "
-           "Below: voxels that two places of the body claimed, over the tissues in dull colours; the number is of the whole volume.", "grid");
+    html +=
+        "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: "
+        "stretched</span><span class=\"gap\"><b class=\"twice\"></b> claimed by two places of the body</span><span><b "
+        "class=\"bone\"></b> claimed by two bones</span></div>";
+    figure(html,
+           "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() +
+               ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; "
+               "grey is 1). "
+               "Below: voxels that two places of the body claimed, over the tissues in dull colours; the number is of "
+               "the whole volume.",
+           "grid");
     if (figures_.close_ups.empty()) return;
 
-    html = "<table class=\"pictures\"><thead><tr><th></th><th>Cut open</th><th>Tissues</th><th>Volume ratio</th></tr></thead><tbody>";
+    html =
+        "<table class=\"pictures\"><thead><tr><th></th><th>Cut open</th><th>Tissues</th><th>Volume "
+        "ratio</th></tr></thead><tbody>";
     for (const CloseUp& close : figures_.close_ups) {
-      const std::string what = technique_name(close.cell->cell.technique) + ", " + study_.poses[close.cell->cell.pose].name;
-      html += "<tr><th class=\"row\"><span>" + marked_name(close.cell->cell.technique) + "<br>" + escaped(study_.poses[close.cell->cell.pose].name) + "<br><small>" + grouped(close.region.voxels) + " of " + grouped(close.region.of) +
-              " voxels<br>ratio " + fixed(close.region.least, 2) + " to " + fixed(close.region.most, 2) + "</small></span></th>";
-      html += "<td>" + (close.body.empty() ? "<span class=\"none\">not drawn</span>" : picture(close.body, "Close-up, " + what)) + "</td><td>" + picture(close.tissues, "Slice, " + what) + "</td><td>" + picture(close.ratio, "Ratio, " + what) + "</td></tr>";
+      const std::string what =
+          technique_name(close.cell->cell.technique) + ", " + study_.poses[close.cell->cell.pose].name;
+      html += "<tr><th class=\"row\"><span>" + marked_name(close.cell->cell.technique) + "<br>" +
+              escaped(study_.poses[close.cell->cell.pose].name) + "<br><small>" + grouped(close.region.voxels) +
+              " of " + grouped(close.region.of) + " voxels<br>ratio " + fixed(close.region.least, 2) + " to " +
+              fixed(close.region.most, 2) + "</small></span></th>";
+      html +=
+          "<td>" +
+          (close.body.empty() ? "<span class=\"none\">not drawn</span>" : picture(close.body, "Close-up, " + what)) +
+          "</td><td>" + picture(close.tissues, "Slice, " + what) + "</td><td>" +
+          picture(close.ratio, "Ratio, " + what) + "</td></tr>";
     }
-    figure(html + "</tbody></table>", "Close-ups of the worst region of each technique at " + finest() + ", worst first: the box of about 48 mm with most voxels whose surroundings are pressed to less than half or stretched to more than twice their volume "
-           "(their number, of all tissue there). Each picture is 96 mm wide, the bar is 10 mm.", "grid");
+    figure(html + "</tbody></table>",
+           "Close-ups of the worst region of each technique at " + finest() +
+               ", worst first: the box of about 48 mm with most voxels whose surroundings are pressed to less than "
+               "half or stretched to more than twice their volume "
+               "(their number, of all tissue there). Each picture is 96 mm wide, the bar is 10 mm.",
+           "grid");
   }
   std::string overlap_words(bool is_overlap, int technique) const {
     if (!is_overlap) return "";
@@ -381,8 +501,10 @@ class Page {
   }
   static std::string gate_cell(const QualityGate& gate) {
     if (gate.state == GateState::NotMeasured) return "<td class=\"gate na\"><span>–</span></td>";
-    const bool passed = gate.state == GateState::Passed, names_worst = !gate.worst.empty() && (!passed || gate.id == "tissues");
-    return std::string("<td class=\"gate ") + (passed ? "ok\"><span>✓</span>" : "bad\"><span>✗</span>") + "<small>" + escaped(typeset(gate.figure) + (names_worst ? " " + gate.worst : "")) + "</small></td>";
+    const bool passed = gate.state == GateState::Passed,
+               names_worst = !gate.worst.empty() && (!passed || gate.id == "tissues");
+    return std::string("<td class=\"gate ") + (passed ? "ok\"><span>✓</span>" : "bad\"><span>✗</span>") + "<small>" +
+           escaped(typeset(gate.figure) + (names_worst ? " " + gate.worst : "")) + "</small></td>";
   }
 
   void gates() {
@@ -391,7 +513,9 @@ class Page {
       html_ += "<p>No cell is computed yet.</p>\n";
       return;
     }
-    html_ += "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – there is nothing to judge. A failed gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
+    html_ +=
+        "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – there is nothing to judge. A failed "
+        "gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
     const std::vector<QualityGate> kinds = gates_of("", study_.gates);
     const std::size_t of_body = body_gates("").size();
     gate_tables("Gates of the body", kinds, 0, of_body);
@@ -410,12 +534,15 @@ class Page {
         rows += "<tbody>";
         for (int t = 0; t < techniques(); ++t) {
           rows += "<tr>";
-          if (t == 0) rows += "<th class=\"row pose\" rowspan=\"" + std::to_string(techniques()) + "\">" + escaped(study_.poses[p].name) + "</th>";
+          if (t == 0)
+            rows += "<th class=\"row pose\" rowspan=\"" + std::to_string(techniques()) + "\">" +
+                    escaped(study_.poses[p].name) + "</th>";
           rows += "<th class=\"row\">" + marked_name(t) + "</th>";
           if (const CellResult* one = cell(s, p, t))
             for (std::size_t g = first; g < end; ++g) rows += gate_cell(one->gates[g]);
           else
-            rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(kinds.size()) + "\">" + failure_of(s, p, t) + "</td>";
+            rows += "<td class=\"bad failed\" colspan=\"" + std::to_string(kinds.size()) + "\">" + failure_of(s, p, t) +
+                    "</td>";
           rows += "</tr>";
         }
         rows += "</tbody>";
@@ -425,13 +552,17 @@ class Page {
   }
   std::string failure_of(int spacing, int pose, int technique) const {
     for (const CellResult& one : cells_)
-      if (one.cell.spacing == spacing && one.cell.pose == pose && one.cell.technique == technique) return "✗ not computed: " + escaped(one.failure);
+      if (one.cell.spacing == spacing && one.cell.pose == pose && one.cell.technique == technique)
+        return "✗ not computed: " + escaped(one.failure);
     return "not computed";
   }
 
   void tissues() {
     section("Tissues", "tissues");
-    html_ += "<p>Change of volume in %, at " + finest() + ". Small tissues change by some percent where a rigid turn alone meets the voxel grid." + (facts_.of_session ? "" : " Every figure of every cell is in cells.csv and cells.json beside this page.") + "</p>\n";
+    html_ += "<p>Change of volume in %, at " + finest() +
+             ". Small tissues change by some percent where a rigid turn alone meets the voxel grid." +
+             (facts_.of_session ? "" : " Every figure of every cell is in cells.csv and cells.json beside this page.") +
+             "</p>\n";
     for (int p = 0; p < poses(); ++p) {
       const CellResult* any = nullptr;
       for (int t = 0; t < techniques() && !any; ++t) any = cell(figures_.spacing, p, t);
@@ -440,16 +571,19 @@ class Page {
       for (int t = 0; t < techniques(); ++t) rows += "<th>" + marked_name(t) + "<small>change, %</small></th>";
       rows += "</tr></thead><tbody>";
       for (const TissueFigures& tissue : any->tissues) {
-        rows += "<tr><th class=\"row\">" + escaped(tissue.name) + "</th><td>" + number(tissue.label) + "</td><td>" + grouped(tissue.voxels_before) + "</td>";
+        rows += "<tr><th class=\"row\">" + escaped(tissue.name) + "</th><td>" + number(tissue.label) + "</td><td>" +
+                grouped(tissue.voxels_before) + "</td>";
         for (int t = 0; t < techniques(); ++t) rows += change_cell(cell(figures_.spacing, p, t), tissue.label);
         rows += "</tr>";
       }
-      rows += "</tbody><tfoot><tr><th class=\"row\">All tissue</th><td></td><td>" + grouped(any->voxels_before) + "</td>";
+      rows +=
+          "</tbody><tfoot><tr><th class=\"row\">All tissue</th><td></td><td>" + grouped(any->voxels_before) + "</td>";
       for (int t = 0; t < techniques(); ++t) {
         const CellResult* one = cell(figures_.spacing, p, t);
         rows += one ? "<td>" + signed_number(one->volume_percent, 2) + "</td>" : "<td class=\"none\">–</td>";
       }
-      table(rows + "</tr>" + mass_exact_row(p) + "</tfoot>", escaped(study_.poses[p].name) + ", " + finest() + ".", "tissues");
+      table(rows + "</tr>" + mass_exact_row(p) + "</tfoot>", escaped(study_.poses[p].name) + ", " + finest() + ".",
+            "tissues");
     }
   }
   // How many voxels changed hands where masses were made exact, below a pose's tissues.
@@ -458,7 +592,8 @@ class Page {
     std::string row = "<tr><th class=\"row\">Voxels that mass-exact moved</th><td></td><td></td>";
     for (int t = 0; t < techniques(); ++t) {
       const CellResult* one = cell(figures_.spacing, pose, t);
-      row += one && one->mass_exact_voxels ? "<td>" + grouped(*one->mass_exact_voxels) + "</td>" : "<td class=\"none\">–</td>";
+      row += one && one->mass_exact_voxels ? "<td>" + grouped(*one->mass_exact_voxels) + "</td>"
+                                           : "<td class=\"none\">–</td>";
     }
     return row + "</tr>";
   }
@@ -471,31 +606,45 @@ class Page {
   void sar(const SarFigures& sar) {
     section("Absorption of radio waves", "sar");
     const SarFigures::Sphere& sphere = sar.sphere;
-    html_ += "<p>Specific absorption rate (SAR) of the posed bodies in a plane wave of " + number(sar.frequency_hz / 1e6) + " MHz and 1 W/m², polarized along " + escaped(sar.polarization) + " and going towards +" + escaped(sar.towards) +
-             ", computed by openEMS with cells of " + number(sar.cell_mm) + " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " + fixed(1e3 * sphere.absorbed, 2) + " mW, where Mie's exact solution has " +
-             fixed(1e3 * sphere.by_mie, 2) + ": " + signed_number(sphere.difference_percent, 1) + " %" + (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") + ".</p>\n";
+    html_ +=
+        "<p>Specific absorption rate (SAR) of the posed bodies in a plane wave of " + number(sar.frequency_hz / 1e6) +
+        " MHz and 1 W/m², polarized along " + escaped(sar.polarization) + " and going towards +" +
+        escaped(sar.towards) + ", computed by openEMS with cells of " + number(sar.cell_mm) +
+        " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " +
+        fixed(1e3 * sphere.absorbed, 2) + " mW, where Mie's exact solution has " + fixed(1e3 * sphere.by_mie, 2) +
+        ": " + signed_number(sphere.difference_percent, 1) + " %" +
+        (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") +
+        ".</p>\n";
     if (!sar.outdated.empty()) {
       std::string poses;
       for (const std::string& pose : sar.outdated) poses += (poses.empty() ? "" : ", ") + pose;
-      html_ += "<p class=\"note\"><b>Left out:</b> SAR of " + escaped(poses) + " was computed from cells that are others now. Run <code>sar_openems.py study</code> again.</p>\n";
+      html_ += "<p class=\"note\"><b>Left out:</b> SAR of " + escaped(poses) +
+               " was computed from cells that are others now. Run <code>sar_openems.py study</code> again.</p>\n";
     }
     if (sar.bodies.empty()) return;
     const CellResult& first = *sar.bodies.front().cell;
-    LineChart average{.title = "Average over all tissue", .unit = "mW/kg", .names = false, .width = int(kWide)}, peak{.title = "Largest average over 10 g", .unit = "mW/kg", .names = false, .width = int(kWide)};
+    LineChart average{.title = "Average over all tissue", .unit = "mW/kg", .names = false, .width = int(kWide)},
+        peak{.title = "Largest average over 10 g", .unit = "mW/kg", .names = false, .width = int(kWide)};
     Series averages{technique_name(first.cell.technique), look(first.cell.technique), {}}, peaks = averages;
-    std::string rows = "<thead><tr><th>Pose</th><th>Average<small>mW/kg</small></th><th>Peak over 10 g<small>mW/kg</small></th><th>Mass<small>kg</small></th><th>Cells of tissue</th><th>Time<small>s</small></th></tr></thead><tbody>";
+    std::string rows =
+        "<thead><tr><th>Pose</th><th>Average<small>mW/kg</small></th><th>Peak over 10 "
+        "g<small>mW/kg</small></th><th>Mass<small>kg</small></th><th>Cells of "
+        "tissue</th><th>Time<small>s</small></th></tr></thead><tbody>";
     for (const SarFigures::Body& body : sar.bodies) {
       const std::string& pose = study_.poses[body.cell->cell.pose].name;
       for (LineChart* chart : {&average, &peak}) chart->places.push_back(pose);
       averages.values.push_back(1000 * body.average);
       peaks.values.push_back(1000 * body.peak_10g);
-      rows += "<tr><th class=\"row\">" + escaped(pose) + "</th><td>" + fixed(1000 * body.average, 2) + "</td><td>" + fixed(1000 * body.peak_10g, 1) + "</td><td>" + fixed(body.mass_kg, 3) + "</td><td>" + grouped(body.cells) + "</td><td>" +
-              fixed(body.seconds, 0) + "</td></tr>";
+      rows += "<tr><th class=\"row\">" + escaped(pose) + "</th><td>" + fixed(1000 * body.average, 2) + "</td><td>" +
+              fixed(1000 * body.peak_10g, 1) + "</td><td>" + fixed(body.mass_kg, 3) + "</td><td>" +
+              grouped(body.cells) + "</td><td>" + fixed(body.seconds, 0) + "</td></tr>";
     }
     average.series = {averages};
     peak.series = {peaks};
-    figure("<div class=\"panels two\"><div>" + svg_of(average) + "</div><div>" + svg_of(peak) + "</div></div>", "SAR against pose, of the volumes posed by " + technique_name(first.cell.technique) + " at " + spacing_text(study_.spacings[first.cell.spacing]) +
-           ". Left: over the whole body. Right: the largest average over a cube of 10 g of tissue.");
+    figure("<div class=\"panels two\"><div>" + svg_of(average) + "</div><div>" + svg_of(peak) + "</div></div>",
+           "SAR against pose, of the volumes posed by " + technique_name(first.cell.technique) + " at " +
+               spacing_text(study_.spacings[first.cell.spacing]) +
+               ". Left: over the whole body. Right: the largest average over a cube of 10 g of tissue.");
     table(rows + "</tbody>", "SAR of each pose.");
   }
 
@@ -505,8 +654,11 @@ class Page {
     double seconds = 0;
     for (const auto& [key, one] : at_) machines.insert(one->machine), seconds += one->cpu_seconds;
     std::string list;
-    const auto fact = [&](const std::string& name, const std::string& value) { list += "<dt>" + name + "</dt><dd>" + value + "</dd>"; };
-    fact("Program", "Limber " LIMBER_VERSION ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
+    const auto fact = [&](const std::string& name, const std::string& value) {
+      list += "<dt>" + name + "</dt><dd>" + value + "</dd>";
+    };
+    fact("Program",
+         "Limber " LIMBER_VERSION ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
     if (!facts_.of_session) fact("Command", "<code>" + escaped(facts_.command) + "</code>");
     fact("Made on", escaped(facts_.date));
     if (!facts_.of_session) {
@@ -514,31 +666,42 @@ class Page {
       fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
       fact("Weights", escaped(study_.weights));
       fact("Finite elements", "quality " + escaped(study_.quality));
-      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another" : "as the rig has them, shifted where bones would enter each other");
+      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another"
+                                       : "as the rig has them, shifted where bones would enter each other");
       fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
     }
     html_ += "<dl>" + list + "</dl>\n";
 
     std::set<std::pair<std::string, std::string>> inputs;
     for (const auto& [key, one] : at_)
-      for (const auto& [path, hash] : one->inputs) inputs.emplace(path.starts_with("../../") ? path.substr(6) : path, hash);
+      for (const auto& [path, hash] : one->inputs)
+        inputs.emplace(path.starts_with("../../") ? path.substr(6) : path, hash);
     std::string rows = "<thead><tr><th>File</th><th>SHA-256</th></tr></thead><tbody>";
-    for (const auto& [path, hash] : inputs) rows += "<tr><th class=\"row\">" + escaped(path) + "</th><td class=\"hash\">" + hash + "</td></tr>";
-    table(rows + "</tbody>", facts_.of_session ? "What the results were made from, by content." : "What the cells read. Each cell's folder has the job that made it: <code>limber job cells/…/job.json</code> makes it again.", "inputs");
+    for (const auto& [path, hash] : inputs)
+      rows += "<tr><th class=\"row\">" + escaped(path) + "</th><td class=\"hash\">" + hash + "</td></tr>";
+    table(rows + "</tbody>",
+          facts_.of_session ? "What the results were made from, by content."
+                            : "What the cells read. Each cell's folder has the job that made it: <code>limber job "
+                              "cells/…/job.json</code> makes it again.",
+          "inputs");
     warnings();
     if (!facts_.of_session) html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
   }
   void warnings() {
     std::map<std::string, std::vector<std::string>> by_text;
     for (const auto& [key, one] : at_)
-      for (const std::string& warning : one->warnings) by_text[warning].push_back(facts_.of_session ? study_.poses[one->cell.pose].name + ", " + technique_name(one->cell.technique) : text_of(study_, one->cell));
+      for (const std::string& warning : one->warnings)
+        by_text[warning].push_back(facts_.of_session
+                                       ? study_.poses[one->cell.pose].name + ", " + technique_name(one->cell.technique)
+                                       : text_of(study_, one->cell));
     if (by_text.empty()) return;
     std::string list;
     for (const auto& [text, where] : by_text) {
       list += "<li>" + escaped(text) + " <small>(" + escaped(where.front());
       list += (where.size() > 1 ? " and " + std::to_string(where.size() - 1) + " more" : "") + ")</small></li>";
     }
-    html_ += "<h3>" + std::string(facts_.of_session ? "Warnings" : "What the cells warned of") + "</h3><ul>" + list + "</ul>\n";
+    html_ += "<h3>" + std::string(facts_.of_session ? "Warnings" : "What the cells warned of") + "</h3><ul>" + list +
+             "</ul>\n";
   }
 
   const Study& study_;
@@ -561,6 +724,9 @@ std::string date_text() {
   return text;
 }
 
-std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures, const ReportFacts& facts) { return Page(study, cells, figures, facts)(); }
+std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures,
+                        const ReportFacts& facts) {
+  return Page(study, cells, figures, facts)();
+}
 
 }  // namespace limber

@@ -25,7 +25,8 @@ std::string machine_text() {
   ::uname(&system);
   const double bytes = double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGESIZE));
   const unsigned cores = std::thread::hardware_concurrency();
-  return processor() + ", " + std::to_string(cores) + (cores == 1 ? " core, " : " cores, ") + std::to_string(std::lround(bytes / 1e9)) + " GB, " + system.sysname + " " + system.release;
+  return processor() + ", " + std::to_string(cores) + (cores == 1 ? " core, " : " cores, ") +
+         std::to_string(std::lround(bytes / 1e9)) + " GB, " + system.sysname + " " + system.release;
 }
 
 }  // namespace limber

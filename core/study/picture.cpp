@@ -17,8 +17,8 @@ namespace {
 constexpr glm::u8vec3 kBackground{0x25, 0x28, 0x2d};
 constexpr glm::u8vec3 kPressed{0x2c, 0x5c, 0xa6}, kAsAtRest{0xc9, 0xcd, 0xd4}, kStretched{0xc0, 0x57, 0x2f};
 constexpr glm::u8vec3 kTwice{0xff, 0x3e, 0xa5}, kBoneInBone{0xf3, 0xcf, 0x45};
-constexpr double kBlock_mm = 16;     // a third of the box of a worst region
-constexpr double kBeyond = 2;        // volume ratio, or its inverse
+constexpr double kBlock_mm = 16;  // a third of the box of a worst region
+constexpr double kBeyond = 2;     // volume ratio, or its inverse
 
 glm::u8vec3 mixed(const glm::u8vec3& a, const glm::u8vec3& b, double share) {
   return glm::u8vec3(glm::dvec3(a) + (glm::dvec3(b) - glm::dvec3(a)) * share + 0.5);
@@ -31,7 +31,8 @@ void for_each_pixel(const Grid& grid, const PictureFrame& frame, const Put& put)
   const double step = frame.height_mm / frame.size.y;
   for (int y = 0; y < frame.size.y; ++y)
     for (int x = 0; x < frame.size.x; ++x) {
-      const glm::dvec3 world = frame.centre + frame.right * ((x + 0.5 - frame.size.x / 2.0) * step) - frame.up * ((y + 0.5 - frame.size.y / 2.0) * step);
+      const glm::dvec3 world = frame.centre + frame.right * ((x + 0.5 - frame.size.x / 2.0) * step) -
+                               frame.up * ((y + 0.5 - frame.size.y / 2.0) * step);
       const glm::ivec3 voxel(glm::floor(to_voxel * world + 0.5));
       put(y * frame.size.x + x, grid.contains(voxel) ? grid.index(voxel) : std::int64_t{-1});
     }
@@ -89,14 +90,18 @@ LabelColours ratio_colours() {
 
 Picture slice_picture(const LabelVolume& volume, const LabelColours& colours, const PictureFrame& frame) {
   Picture picture{frame.size, std::vector<std::uint8_t>(std::size_t(frame.size.x) * frame.size.y * 3)};
-  for_each_pixel(volume.grid, frame, [&](int pixel, std::int64_t voxel) { put(picture, pixel, colours[voxel < 0 ? 0 : volume.voxels[voxel]]); });
+  for_each_pixel(volume.grid, frame, [&](int pixel, std::int64_t voxel) {
+    put(picture, pixel, colours[voxel < 0 ? 0 : volume.voxels[voxel]]);
+  });
   return picture;
 }
 
-Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, const LabelColours& colours, const PictureFrame& frame) {
+Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, const LabelColours& colours,
+                       const PictureFrame& frame) {
   LabelColours dull(colours);
   for (std::size_t label = 1; label < dull.size(); ++label) {
-    const auto grey = static_cast<std::uint8_t>(0.3 * colours[label].r + 0.59 * colours[label].g + 0.11 * colours[label].b);
+    const auto grey =
+        static_cast<std::uint8_t>(0.3 * colours[label].r + 0.59 * colours[label].g + 0.11 * colours[label].b);
     dull[label] = mixed(kBackground, mixed(colours[label], glm::u8vec3(grey), 0.75), 0.55);
   }
   Picture picture = slice_picture(volume, dull, frame);
@@ -108,17 +113,20 @@ Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, cons
 
 std::string png_of(const Picture& picture) {
   std::string packed;
-  Deflater deflater(Deflater::Wrap::Zlib, [&](const void* bytes, std::size_t size) { packed.append(static_cast<const char*>(bytes), size); });
+  Deflater deflater(Deflater::Wrap::Zlib,
+                    [&](const void* bytes, std::size_t size) { packed.append(static_cast<const char*>(bytes), size); });
   const std::size_t row = std::size_t(picture.size.x) * 3;
   std::string line(row + 1, '\0');
   for (int y = 0; y < picture.size.y; ++y) {
     // Each row as what it differs by from the one above.
     line[0] = 2;
-    for (std::size_t i = 0; i < row; ++i) line[i + 1] = static_cast<char>(picture.rgb[y * row + i] - (y ? picture.rgb[(y - 1) * row + i] : 0));
+    for (std::size_t i = 0; i < row; ++i)
+      line[i + 1] = static_cast<char>(picture.rgb[y * row + i] - (y ? picture.rgb[(y - 1) * row + i] : 0));
     deflater.write(line.data(), line.size());
   }
   deflater.end();
-  const std::string header = big_endian(picture.size.x) + big_endian(picture.size.y) + std::string("\x08\x02\0\0\0", 5);  // 8 bits, RGB
+  const std::string header =
+      big_endian(picture.size.x) + big_endian(picture.size.y) + std::string("\x08\x02\0\0\0", 5);  // 8 bits, RGB
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", packed) + chunk("IEND", "");
 }
 
@@ -143,7 +151,8 @@ std::optional<WorstRegion> worst_region(const LabelVolume& codes) {
         ++block.tissue;
         block.least = std::min(block.least, code);
         block.most = std::max(block.most, code);
-        if (const double ratio = ratio_of_code(code); ratio > kBeyond || ratio < 1 / kBeyond) ++block.beyond, block.sum += glm::dvec3(v);
+        if (const double ratio = ratio_of_code(code); ratio > kBeyond || ratio < 1 / kBeyond)
+          ++block.beyond, block.sum += glm::dvec3(v);
       }
   std::optional<WorstRegion> worst;
   for (const auto& [at, middle] : blocks) {
@@ -159,7 +168,8 @@ std::optional<WorstRegion> worst_region(const LabelVolume& codes) {
             all.least = std::min(all.least, one.least), all.most = std::max(all.most, one.most);
           }
     if (worst && all.beyond <= worst->voxels) continue;
-    worst = {world_from_voxel(grid) * (all.sum / double(all.beyond)), all.beyond, all.tissue, ratio_of_code(all.least), ratio_of_code(all.most)};
+    worst = {world_from_voxel(grid) * (all.sum / double(all.beyond)), all.beyond, all.tissue, ratio_of_code(all.least),
+             ratio_of_code(all.most)};
   }
   return worst;
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
@@ -16,7 +16,7 @@
 #include "core/study/computing_sources.h"
 #include "core/study/machine.h"
 #include "core/study/work_folder.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
@@ -87,7 +87,11 @@ class Pace {
 // A worker's progress as part of the study's.
 class CellProgress final : public Progress {
  public:
-  CellProgress(Progress& study, std::string name, double begin, double end) : study_(study), name_(std::move(name)), begin_(begin), end_(end) {}
+  CellProgress(Progress& study, std::string name, double begin, double end)
+      : study_(study),
+        name_(std::move(name)),
+        begin_(begin),
+        end_(end) {}
   bool cancelled() const override { return study_.cancelled() || Progress::cancelled(); }
 
  protected:
@@ -103,7 +107,11 @@ class CellProgress final : public Progress {
 
 class Runner {
  public:
-  Runner(const Study& study, const StudyRun& run, Progress& progress) : study_(study), run_(run), progress_(progress), cells_(cells_of(study)) {
+  Runner(const Study& study, const StudyRun& run, Progress& progress)
+      : study_(study),
+        run_(run),
+        progress_(progress),
+        cells_(cells_of(study)) {
     for (int i = run.shard; i < std::ssize(cells_); i += run.shards) mine_.push_back(cells_[i]);
   }
 
@@ -125,12 +133,14 @@ class Runner {
     std::string sha256;
   };
 
-  // A copy among the results, so that a job can be run again wherever they lie. A file that refers to others stays where it is.
+  // A copy among the results, so that a job can be run again wherever they lie. A file that refers to others stays
+  // where it is.
   Input take(const Path& file) {
     if (file.empty()) return {};
     Input input{fs::absolute(file), sha256_of_file(file)};
     if (file.extension() == ".gltf") return input;
-    const std::string name = plain(file.stem().string()) + "-" + input.sha256.substr(0, kHashLetters) + file.extension().string();
+    const std::string name =
+        plain(file.stem().string()) + "-" + input.sha256.substr(0, kHashLetters) + file.extension().string();
     if (const Path copy = run_.out / "inputs" / name; !fs::exists(copy)) write_file_atomically(copy, read_file(file));
     input.path = Path("../../inputs") / name;
     return input;
@@ -145,7 +155,10 @@ class Runner {
 
   Json body_description(int spacing) {
     const std::optional<double> mm = study_.spacings[spacing];
-    Json json{{"sources", computing_sources()}, {"made", "body/1"}, {"spacing_mm", mm ? Json(*mm) : Json()}, {"weights", study_.weights}};
+    Json json{{"sources", computing_sources()},
+              {"made", "body/1"},
+              {"spacing_mm", mm ? Json(*mm) : Json()},
+              {"weights", study_.weights}};
     if (!study_.phantom.empty()) {
       json["phantom"] = study_.phantom;
     } else {
@@ -215,7 +228,9 @@ class Runner {
       first = {{"command", "phantom"}, {"subject", study_.phantom}, {"output", "."}};
       if (study_.spacings[spacing]) first["spacing"] = *study_.spacings[spacing];
     } else {
-      first = {{"command", "prepare"}, {"volume", fs::absolute(from).string()}, {"output", "volume" + volume_ending(study_.volume)}};
+      first = {{"command", "prepare"},
+               {"volume", fs::absolute(from).string()},
+               {"output", "volume" + volume_ending(study_.volume)}};
       if (regrids) first["spacing"] = *study_.spacings[spacing];
     }
     work(folder, "volume-job.json", first, progress);
@@ -223,7 +238,9 @@ class Runner {
     Json job{{"command", "weights"}, {"method", study_.weights}, {"output", "weights.nrrd"}};
     add_body_words(job, "");
     work(folder, "weights-job.json", job, progress);
-    write_file_atomically(folder / "body.json", Json{{"cpu_seconds", {{"volume", made - before}, {"weights", children_cpu_seconds() - made}}}}.dump(1) + "\n");
+    write_file_atomically(
+        folder / "body.json",
+        Json{{"cpu_seconds", {{"volume", made - before}, {"weights", children_cpu_seconds() - made}}}}.dump(1) + "\n");
   }
 
   Json cell_job(const StudyCell& cell, const Body& body) const {
@@ -249,24 +266,36 @@ class Runner {
     if (is_mass_exact(study_.techniques[cell.technique])) job["mass-exact"] = true;
     if (study_.fit_joints) job["fit-joints"] = true;
     if (study_.nearest) job["nearest"] = true;
-    job.update({{"output", "posed.nrrd"}, {"report", "report.json"}, {"jacobian", "jacobian.nrrd"}, {"overlap", "overlap.nrrd"}});
+    job.update({{"output", "posed.nrrd"},
+                {"report", "report.json"},
+                {"jacobian", "jacobian.nrrd"},
+                {"overlap", "overlap.nrrd"}});
     return job;
   }
 
   std::string cell_key(const StudyCell& cell, const Body& body, const Json& job) const {
     const auto& [pose, motion, map] = poses_[cell.pose];
-    return hash_of({{"sources", computing_sources()}, {"made", "cell/1"}, {"body", body.key}, {"job", job}, {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
+    return hash_of({{"sources", computing_sources()},
+                    {"made", "cell/1"},
+                    {"body", body.key},
+                    {"job", job},
+                    {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
   }
 
   // Whole, and of this very cell.
   static bool is_done(const Path& folder, const std::string& key) {
     if (!fs::exists(folder / "cell.json")) return false;
     const Json json = Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false);
-    return json.is_object() && json.value("key", "") == key && fs::exists(folder / "report.json") && fs::exists(folder / "posed.nrrd");
+    return json.is_object() && json.value("key", "") == key && fs::exists(folder / "report.json") &&
+           fs::exists(folder / "posed.nrrd");
   }
-  static bool is_rest(const StudyPose& pose) { return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty(); }
+  static bool is_rest(const StudyPose& pose) {
+    return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty();
+  }
   // At rest every technique takes as long as a blend.
-  int kind_of(const StudyCell& cell) const { return is_rest(study_.poses[cell.pose]) ? 0 : static_cast<int>(study_.techniques[cell.technique]); }
+  int kind_of(const StudyCell& cell) const {
+    return is_rest(study_.poses[cell.pose]) ? 0 : static_cast<int>(study_.techniques[cell.technique]);
+  }
   static double wall_seconds_of(const Path& folder) {
     return Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false).value("wall_seconds", 0.0);
   }
@@ -274,12 +303,15 @@ class Runner {
   CellOutcome compute(const StudyCell& cell) {
     const int number = ++started_;
     const double of = double(mine_.size());
-    CellProgress progress(progress_, std::to_string(number) + " of " + std::to_string(mine_.size()) + ", " + text_of(study_, cell), (number - 1) / of, number / of);
+    CellProgress progress(progress_,
+                          std::to_string(number) + " of " + std::to_string(mine_.size()) + ", " + text_of(study_, cell),
+                          (number - 1) / of, number / of);
     const Body& of_body = body(cell.spacing, progress);
     const Json job = cell_job(cell, of_body);
     const std::string key = cell_key(cell, of_body, job);
-    const std::string name = plain(spacing_text(study_.spacings[cell.spacing])) + "-" + plain(study_.poses[cell.pose].name) + "-" +
-                             word_of(study_.techniques[cell.technique]) + "-" + key.substr(0, kHashLetters);
+    const std::string name = plain(spacing_text(study_.spacings[cell.spacing])) + "-" +
+                             plain(study_.poses[cell.pose].name) + "-" + word_of(study_.techniques[cell.technique]) +
+                             "-" + key.substr(0, kHashLetters);
     CellOutcome outcome{cell, run_.out / "cells" / name, {}};
     bool was_there = true;
     if (fs::exists(outcome.folder) && !is_done(outcome.folder, key)) fs::remove_all(outcome.folder);  // damaged
@@ -288,28 +320,42 @@ class Runner {
       was_there = folder.made();
       if (!was_there) outcome.failure = compute_into(folder, cell, key, job, progress);
     }
-    if (outcome.failure.empty() && !is_rest(study_.poses[cell.pose])) pace_.took(kind_of(cell), wall_seconds_of(outcome.folder));
+    if (outcome.failure.empty() && !is_rest(study_.poses[cell.pose]))
+      pace_.took(kind_of(cell), wall_seconds_of(outcome.folder));
     tell(outcome, number, was_there);
     return outcome;
   }
 
   // Why it failed, or empty. What stands in the way of every cell is thrown.
-  std::string compute_into(WorkFolder& folder, const StudyCell& cell, const std::string& key, const Json& job, Progress& progress) const {
+  std::string compute_into(WorkFolder& folder, const StudyCell& cell, const std::string& key, const Json& job,
+                           Progress& progress) const {
     const Stopwatch wall;
     const double before = children_cpu_seconds();
     bool reached = true;
     try {
       reached = work(folder, "job.json", job, progress).pose_reached;
     } catch (const Error& error) {
-      if (!folder.has_room()) throw Error("the results cannot be written", run_.out.string(), "make room on the disk, then run the same again");
+      if (!folder.has_room())
+        throw Error("the results cannot be written", run_.out.string(),
+                    "make room on the disk, then run the same again");
       return error.what();
     }
     const double cpu = children_cpu_seconds() - before, seconds = wall.seconds();
     code_ratios(folder);
-    write_file_atomically(folder / "cell.json",
-                          Json{{"schema", "limber-cell/1"}, {"key", key}, {"spacing_mm", study_.spacings[cell.spacing] ? Json(*study_.spacings[cell.spacing]) : Json()},
-                               {"pose", study_.poses[cell.pose].name}, {"method", word_of(study_.techniques[cell.technique])}, {"pose_reached", reached},
-                               {"cpu_seconds", cpu}, {"wall_seconds", seconds}, {"machine", machine_text()}, {"sources", computing_sources()}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_file_atomically(
+        folder / "cell.json",
+        Json{{"schema", "limber-cell/1"},
+             {"key", key},
+             {"spacing_mm", study_.spacings[cell.spacing] ? Json(*study_.spacings[cell.spacing]) : Json()},
+             {"pose", study_.poses[cell.pose].name},
+             {"method", word_of(study_.techniques[cell.technique])},
+             {"pose_reached", reached},
+             {"cpu_seconds", cpu},
+             {"wall_seconds", seconds},
+             {"machine", machine_text()},
+             {"sources", computing_sources()}}
+                .dump(1, ' ', false, Json::error_handler_t::replace) +
+            "\n");
     folder.commit();
     return {};
   }
@@ -317,7 +363,8 @@ class Runner {
   static void code_ratios(const WorkFolder& folder) {
     const GreyVolume ratios = read_grey_volume(folder / "jacobian.nrrd");
     LabelVolume codes{ratios.grid, ZeroedVector<Label>(ratios.voxels.size())};
-    for (size_t i = 0; i < ratios.voxels.size(); ++i) codes.voxels[i] = ratios.voxels[i] == 0 ? 0 : code_of_ratio(ratios.voxels[i]);
+    for (size_t i = 0; i < ratios.voxels.size(); ++i)
+      codes.voxels[i] = ratios.voxels[i] == 0 ? 0 : code_of_ratio(ratios.voxels[i]);
     write_volume(codes, folder / "ratio.nrrd", {}, {"NRRD", "uint8", true});
     fs::remove(folder / "jacobian.nrrd");
   }
@@ -355,7 +402,8 @@ std::vector<StudyCell> cells_of(const Study& study) {
 }
 
 std::string text_of(const Study& study, const StudyCell& cell) {
-  return spacing_text(study.spacings[cell.spacing]) + ", " + study.poses[cell.pose].name + ", " + name_of(study.techniques[cell.technique]);
+  return spacing_text(study.spacings[cell.spacing]) + ", " + study.poses[cell.pose].name + ", " +
+         name_of(study.techniques[cell.technique]);
 }
 
 std::uint8_t code_of_ratio(double ratio) {
@@ -364,6 +412,8 @@ std::uint8_t code_of_ratio(double ratio) {
 }
 double ratio_of_code(int code) { return std::exp2((code - kCodeOfOne) / kStepsOfDoubling); }
 
-std::vector<CellOutcome> run_study(const Study& study, const StudyRun& run, Progress& progress) { return Runner(study, run, progress)(); }
+std::vector<CellOutcome> run_study(const Study& study, const StudyRun& run, Progress& progress) {
+  return Runner(study, run, progress)();
+}
 
 }  // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the cells of a study into a folder, each by a worker that runs `limber job` on a file that stays with the result:
-// what the command line would do, with a process's own memory and processor time. Done cells are kept under a hash of all
-// that they depend on, the program's own sources included, and never computed again:
+// Computes the cells of a study into a folder, each by a worker that runs `limber job` on a file that stays with the
+// result: what the command line would do, with a process's own memory and processor time. Done cells are kept under a
+// hash of all that they depend on, the program's own sources included, and never computed again:
 //   inputs/   rig, tissues, poses: copies that the jobs refer to
 //   bodies/   volume and weights at each spacing
 //   cells/    job.json, report.json (limber-report/1), posed.nrrd, ratio.nrrd, overlap.nrrd, cell.json
@@ -32,7 +32,8 @@ struct CellOutcome {
   std::string failure;  // why there is none; empty otherwise
 };
 
-// What ratio.nrrd holds: volume per volume at rest, a byte for each posed voxel, in steps of 1/16 of a doubling about 128; 0 in air.
+// What ratio.nrrd holds: volume per volume at rest, a byte for each posed voxel, in steps of 1/16 of a doubling about
+// 128; 0 in air.
 std::uint8_t code_of_ratio(double ratio);
 double ratio_of_code(int code);
 

@@ -16,26 +16,39 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kLargest = 1 << 20;
 
 SarFigures::Body body_of(const Json& row) {
-  return {.average = row.at("sar_average_w_per_kg"), .peak_10g = row.at("sar_peak_10g_w_per_kg"), .mass_kg = row.at("mass_kg"), .seconds = row.at("seconds"), .cells = row.at("cells")};
+  return {.average = row.at("sar_average_w_per_kg"),
+          .peak_10g = row.at("sar_peak_10g_w_per_kg"),
+          .mass_kg = row.at("mass_kg"),
+          .seconds = row.at("seconds"),
+          .cells = row.at("cells")};
 }
 
 SarFigures figures_of(const Json& json, const Study& study, const std::vector<CellResult>& cells) {
-  SarFigures sar{.frequency_hz = json.at("frequency_hz"), .cell_mm = json.at("cell_mm"), .polarization = json.at("polarization"), .towards = json.at("towards")};
+  SarFigures sar{.frequency_hz = json.at("frequency_hz"),
+                 .cell_mm = json.at("cell_mm"),
+                 .polarization = json.at("polarization"),
+                 .towards = json.at("towards")};
   const Json& sphere = json.at("sphere");
-  sar.sphere = {sphere.at("cell_mm"), sphere.at("absorbed_w"), sphere.at("absorbed_by_mie_w"), sphere.at("difference_percent")};
+  sar.sphere = {sphere.at("cell_mm"), sphere.at("absorbed_w"), sphere.at("absorbed_by_mie_w"),
+                sphere.at("difference_percent")};
   for (const Json& row : json.at("poses")) {
-    const auto same = std::find_if(cells.begin(), cells.end(), [&](const CellResult& cell) { return cell.done() && Json::parse(cell.cell_json).at("key") == row.at("key"); });
+    const auto same = std::find_if(cells.begin(), cells.end(), [&](const CellResult& cell) {
+      return cell.done() && Json::parse(cell.cell_json).at("key") == row.at("key");
+    });
     SarFigures::Body body = body_of(row);
     if (same == cells.end()) {
       sar.outdated.push_back(row.at("pose"));
       continue;
     }
     body.cell = &*same;
-    if (!sar.bodies.empty() && (body.cell->cell.spacing != sar.bodies.front().cell->cell.spacing || body.cell->cell.technique != sar.bodies.front().cell->cell.technique))
-      throw Error("SAR is told for bodies of one spacing and technique", "sar.json, " + text_of(study, body.cell->cell), "let sar_openems.py study write it again");
+    if (!sar.bodies.empty() && (body.cell->cell.spacing != sar.bodies.front().cell->cell.spacing ||
+                                body.cell->cell.technique != sar.bodies.front().cell->cell.technique))
+      throw Error("SAR is told for bodies of one spacing and technique", "sar.json, " + text_of(study, body.cell->cell),
+                  "let sar_openems.py study write it again");
     sar.bodies.push_back(body);
   }
-  std::sort(sar.bodies.begin(), sar.bodies.end(), [](const auto& a, const auto& b) { return a.cell->cell.pose < b.cell->cell.pose; });
+  std::sort(sar.bodies.begin(), sar.bodies.end(),
+            [](const auto& a, const auto& b) { return a.cell->cell.pose < b.cell->cell.pose; });
   return sar;
 }
 }  // namespace
@@ -44,11 +57,14 @@ std::optional<SarFigures> read_sar(const Path& out, const Study& study, const st
   const Path path = out / "sar.json";
   if (!std::filesystem::exists(path)) return {};
   const Json json = Json::parse(checked_json(read_file(path, kLargest), path.string()), nullptr, false);
-  if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2") throw Error("this is no SAR of a study, or that of an older version", path.string(), "delete it, or let sar_openems.py study write it again");
+  if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2")
+    throw Error("this is no SAR of a study, or that of an older version", path.string(),
+                "delete it, or let sar_openems.py study write it again");
   try {
     return figures_of(json, study, cells);
   } catch (const Json::exception& error) {
-    throw Error("the SAR of the study is damaged", path.string(), std::string("delete it, or let sar_openems.py study write it again (") + error.what() + ")");
+    throw Error("the SAR of the study is damaged", path.string(),
+                std::string("delete it, or let sar_openems.py study write it again (") + error.what() + ")");
   }
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a simulation found of a study's posed bodies: OUT/sar.json, which `assets/examples/sar_openems.py study OUT` writes there:
+// What a simulation found of a study's posed bodies: OUT/sar.json, which `assets/examples/sar_openems.py study OUT`
+// writes there:
 //   {"schema": "limber-sar/2", "frequency_hz", "cell_mm", "polarization", "towards", "spacing_mm", "method",
-//    "poses": [{"pose", "key", "sar_average_w_per_kg", "sar_peak_10g_w_per_kg", "mass_kg", "cells", "seconds", and how the
+//    "poses": [{"pose", "key", "sar_average_w_per_kg", "sar_peak_10g_w_per_kg", "mass_kg", "cells", "seconds", and how
+//    the
 //               peak was found: "sar_peak_found", "cells_valid", "cells_used", "cells_unused", "cells_without",
 //               "cells_heavier_than_10g"}],
 //    "sphere": {"cell_mm", "absorbed_w", "absorbed_by_mie_w", "difference_percent"}}
@@ -29,7 +31,7 @@ struct SarFigures {
   };
   double frequency_hz = 0, cell_mm = 0;
   std::string polarization, towards;
-  std::vector<Body> bodies;          // by pose, all of one spacing and technique
+  std::vector<Body> bodies;           // by pose, all of one spacing and technique
   std::vector<std::string> outdated;  // poses whose cells are others now: not among the bodies
   Sphere sphere;
 };

@@ -13,7 +13,7 @@
 #include "core/report/fem_measures.h"
 #include "core/report/report.h"
 #include "core/study/html_report.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber {
 
@@ -45,7 +45,8 @@ LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     const std::int32_t tet = tets[static_cast<std::size_t>(place)];
-    const float value = tet < 0 || std::isnan(ratio[static_cast<std::size_t>(tet)]) ? 1 : ratio[static_cast<std::size_t>(tet)];
+    const float value =
+        tet < 0 || std::isnan(ratio[static_cast<std::size_t>(tet)]) ? 1 : ratio[static_cast<std::size_t>(tet)];
     codes.voxels[static_cast<std::size_t>((std::int64_t{v.z} * size.y + v.y) * size.x + v.x)] = code_of_ratio(value);
   });
   return codes;
@@ -58,11 +59,15 @@ void write_cell(const SessionResult& one, const TissueTable& tissues, const Path
   const TissueTable& table = result.from_tissues ? *result.from_tissues : tissues;
   write_volume(*result.volume, folder / "posed.nrrd", table, {"NRRD", "uint16", false});
   write_tissue_table(table, folder / "tissues.json");
-  if (result.overlap) write_volume(volume_of(*result.overlap, result.volume->grid), folder / "overlap.nrrd", {}, {"NRRD", "uint8", false});
-  if (result.solved) write_volume(ratios_of(*result.solved, *result.volume), folder / "ratio.nrrd", {}, {"NRRD", "uint8", false});
+  if (result.overlap)
+    write_volume(volume_of(*result.overlap, result.volume->grid), folder / "overlap.nrrd", {},
+                 {"NRRD", "uint8", false});
+  if (result.solved)
+    write_volume(ratios_of(*result.solved, *result.volume), folder / "ratio.nrrd", {}, {"NRRD", "uint8", false});
   write_file_atomically(folder / "report.json", result.report);
   const double seconds = method_seconds(result.report);
-  write_file_atomically(folder / "cell.json", Json{{"cpu_seconds", seconds}, {"wall_seconds", seconds}, {"machine", ""}}.dump());
+  write_file_atomically(folder / "cell.json",
+                        Json{{"cpu_seconds", seconds}, {"wall_seconds", seconds}, {"machine", ""}}.dump());
 }
 
 template <class T>
@@ -75,7 +80,8 @@ int index_of(std::vector<T>& all, const T& one) {
 
 }  // namespace
 
-std::string session_page(const SessionPage& session, const Path& scratch, const StartPictures& start, Progress& progress) {
+std::string session_page(const SessionPage& session, const Path& scratch, const StartPictures& start,
+                         Progress& progress) {
   Study study{.name = session.name, .volume = session.name, .spacings = {std::nullopt}};
   std::vector<std::string> poses;
   std::vector<CellOutcome> outcomes;
@@ -86,7 +92,8 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
     const int technique = index_of(study.techniques, technique_of(*one.result, report));
     // Two of a pose by one technique: by other settings, or of another rig.
     int pose = index_of(poses, one.pose);
-    for (int again = 2; !taken.insert({pose, technique}).second; ++again) pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");
+    for (int again = 2; !taken.insert({pose, technique}).second; ++again)
+      pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");
     const Path folder = scratch / std::to_string(outcomes.size());
     write_cell(one, *session.tissues, folder);
     outcomes.push_back({{0, pose, technique}, folder, ""});

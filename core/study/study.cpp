@@ -23,10 +23,16 @@ constexpr std::size_t kMostCells = 100000;
 constexpr std::size_t kLongestName = 60;
 
 constexpr std::array<std::pair<const char*, const char*>, kPlainTechniques> kNames = {
-    {{"lbs", "Linear blend"}, {"dqs", "Dual quaternions"}, {"fem", "FEM"}, {"fem-contact", "FEM with contact"}, {"mix", "Mixed blend"}}};
+    {{"lbs", "Linear blend"},
+     {"dqs", "Dual quaternions"},
+     {"fem", "FEM"},
+     {"fem-contact", "FEM with contact"},
+     {"mix", "Mixed blend"}}};
 
 // What a study compares where it names none.
-std::vector<Technique> usual_techniques() { return {Technique::LinearBlend, Technique::DualQuaternion, Technique::Fem, Technique::FemContact}; }
+std::vector<Technique> usual_techniques() {
+  return {Technique::LinearBlend, Technique::DualQuaternion, Technique::Fem, Technique::FemContact};
+}
 
 // Reads a value of the description, and says which key is wrong.
 class Reader {
@@ -45,10 +51,12 @@ class Reader {
       }
   }
   std::string text(const Json& value, const std::string& key) const {
-    if (!value.is_string() || value.get<std::string>().empty()) refuse("this should be text", key, "write \"" + key + "\": \"...\"");
+    if (!value.is_string() || value.get<std::string>().empty())
+      refuse("this should be text", key, "write \"" + key + "\": \"...\"");
     return value.get<std::string>();
   }
-  std::string text(const Json& object, const std::string& key, const std::string& otherwise, const std::set<std::string>& words = {}) const {
+  std::string text(const Json& object, const std::string& key, const std::string& otherwise,
+                   const std::set<std::string>& words = {}) const {
     if (!object.contains(key)) return otherwise;
     const std::string word = text(object[key], key);
     if (!words.empty() && !words.contains(word)) {
@@ -62,7 +70,8 @@ class Reader {
     const std::string name = text(object, key, "");
     if (name.empty()) return {};
     const Path file = path_.parent_path() / name;
-    if (!std::filesystem::exists(file)) refuse("the file does not exist", key + ": " + file.string(), "paths are relative to the description");
+    if (!std::filesystem::exists(file))
+      refuse("the file does not exist", key + ": " + file.string(), "paths are relative to the description");
     return file;
   }
   double number(const Json& value, const std::string& key, double least, double most) const {
@@ -78,7 +87,8 @@ class Reader {
     return object[key].get<bool>();
   }
   const Json& list(const Json& value, const std::string& key) const {
-    if (!value.is_array() || value.empty()) refuse("this should be a list with something in it", key, "write \"" + key + "\": [...]");
+    if (!value.is_array() || value.empty())
+      refuse("this should be a list with something in it", key, "write \"" + key + "\": [...]");
     return value;
   }
 
@@ -96,7 +106,8 @@ class Reader {
     PoseRequest request{text(value, "pose_name", ""), texts(value, "joints", where)};
     if (!request.name.empty()) require_body_pose(request.name, path_.string() + ", " + where + ", pose_name");
     JointAngles angles;
-    for (const std::string& joint : request.joints) add_joint_request(angles, joint, path_.string() + ", " + where + ", joints");
+    for (const std::string& joint : request.joints)
+      add_joint_request(angles, joint, path_.string() + ", " + where + ", joints");
     return request;
   }
 
@@ -104,9 +115,11 @@ class Reader {
     const std::string where = "poses, number " + std::to_string(number + 1);
     if (!value.is_object()) refuse("a pose is an object", where, R"(write {"name": "+45", "flex": ["Forearm=45"]})");
     check_keys(value, where, {"name", "flex", "pose_name", "joints", "pose", "motion", "map", "frame", "up"});
-    if (!value.contains("name")) refuse("a pose needs a name", where, R"(write {"name": "+45", "flex": ["Forearm=45"]})");
+    if (!value.contains("name"))
+      refuse("a pose needs a name", where, R"(write {"name": "+45", "flex": ["Forearm=45"]})");
     StudyPose pose{.name = text(value["name"], "name")};
-    if (pose.name.size() > kLongestName) refuse("the name is too long", where + ", name", "write " + std::to_string(kLongestName) + " letters at most");
+    if (pose.name.size() > kLongestName)
+      refuse("the name is too long", where + ", name", "write " + std::to_string(kLongestName) + " letters at most");
     pose.flex = texts(value, "flex", where);
     for (const std::string& request : pose.flex) parse_flex_request(request, path_.string() + ", " + where + ", flex");
     pose.body = body_request(value, where);
@@ -115,20 +128,28 @@ class Reader {
     pose.map = file(value, "map");
     pose.up = text(value, "up", "", {"y", "z", "auto"});
     if (value.contains("frame")) pose.frame = static_cast<int>(number_of_frame(value["frame"], where));
-    if (!pose.body.name.empty() && !(pose.pose.empty() && pose.motion.empty())) refuse("a pose comes by its name or from a file", where, "leave \"pose_name\" or the file out");
-    if (!pose.pose.empty() && !pose.motion.empty()) refuse("a pose comes from a file or from a motion", where, "leave \"pose\" or \"motion\" out");
-    if (pose.motion.empty() && (pose.frame || !pose.map.empty() || !pose.up.empty())) refuse("frame, map and up are of a motion", where, "add \"motion\": FILE");
+    if (!pose.body.name.empty() && !(pose.pose.empty() && pose.motion.empty()))
+      refuse("a pose comes by its name or from a file", where, "leave \"pose_name\" or the file out");
+    if (!pose.pose.empty() && !pose.motion.empty())
+      refuse("a pose comes from a file or from a motion", where, "leave \"pose\" or \"motion\" out");
+    if (pose.motion.empty() && (pose.frame || !pose.map.empty() || !pose.up.empty()))
+      refuse("frame, map and up are of a motion", where, "add \"motion\": FILE");
     return pose;
   }
 
-  std::vector<Technique> techniques(const std::vector<std::string>& words) const { return techniques_of(words, path_.string() + ", methods"); }
+  std::vector<Technique> techniques(const std::vector<std::string>& words) const {
+    return techniques_of(words, path_.string() + ", methods");
+  }
 
   QualityLimits gates(const Json& value) const {
     QualityLimits limits;
     if (!value.is_object()) refuse("this should be an object", "gates", R"(write "gates": {"tissue_percent": 1})");
-    check_keys(value, "gates", {"tissue_percent", "least_voxels", "bone_residual_mm", "skin_share_percent", "joint_excess_degrees"});
+    check_keys(value, "gates",
+               {"tissue_percent", "least_voxels", "bone_residual_mm", "skin_share_percent", "joint_excess_degrees"});
     const auto take = [&](const char* key, auto& limit) {
-      if (value.contains(key)) limit = static_cast<std::remove_reference_t<decltype(limit)>>(number(value[key], std::string("gates, ") + key, 0, 1e9));
+      if (value.contains(key))
+        limit = static_cast<std::remove_reference_t<decltype(limit)>>(
+            number(value[key], std::string("gates, ") + key, 0, 1e9));
     };
     take("tissue_percent", limits.tissue_percent);
     take("least_voxels", limits.least_voxels);
@@ -151,7 +172,8 @@ void read_body(const Reader& read, const Json& json, Study& study) {
   study.volume = read.file(json, "volume");
   study.rig = read.file(json, "rig");
   study.tissues = read.file(json, "tissues");
-  if (study.phantom.empty() == study.volume.empty()) read.refuse("a study is of one body", "", "give \"volume\": FILE, or \"phantom\": \"arm\"");
+  if (study.phantom.empty() == study.volume.empty())
+    read.refuse("a study is of one body", "", "give \"volume\": FILE, or \"phantom\": \"arm\"");
   if (!study.phantom.empty() && (!study.rig.empty() || !study.tissues.empty() || json.contains("bones")))
     read.refuse("a phantom has its own rig and tissues", "phantom", "leave \"rig\", \"tissues\" and \"bones\" out");
   if (!study.volume.empty() && study.rig.empty()) read.refuse("a volume needs a rig", "rig", "add \"rig\": FILE");
@@ -163,10 +185,12 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
   const bool is_phantom = !study.phantom.empty();
   if (json.contains("spacings_mm"))
     for (const Json& one : read.list(json["spacings_mm"], "spacings_mm"))
-      study.spacings.push_back(one.is_null() ? std::optional<double>() : read.number(one, "spacings_mm", is_phantom ? 0.5 : 1e-3, is_phantom ? 10 : 1e3));
-  else
-    study.spacings = {std::nullopt};
-  if (!json.contains("poses")) read.refuse("the study has no poses", "", R"(add "poses": [{"name": "+45", "flex": ["Forearm=45"]}])");
+      study.spacings.push_back(one.is_null()
+                                   ? std::optional<double>()
+                                   : read.number(one, "spacings_mm", is_phantom ? 0.5 : 1e-3, is_phantom ? 10 : 1e3));
+  else study.spacings = {std::nullopt};
+  if (!json.contains("poses"))
+    read.refuse("the study has no poses", "", R"(add "poses": [{"name": "+45", "flex": ["Forearm=45"]}])");
   for (const Json& one : read.list(json["poses"], "poses")) study.poses.push_back(read.pose(one, study.poses.size()));
   if (json.contains("methods")) {
     std::vector<std::string> words;
@@ -178,13 +202,15 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
 
   const auto check_distinct = [&](auto values, const char* key) {
     std::sort(values.begin(), values.end());
-    if (std::adjacent_find(values.begin(), values.end()) != values.end()) read.refuse("something stands there twice", key, "name each once");
+    if (std::adjacent_find(values.begin(), values.end()) != values.end())
+      read.refuse("something stands there twice", key, "name each once");
   };
   check_distinct(study.spacings, "spacings_mm");
   std::vector<std::string> names;
   for (const StudyPose& pose : study.poses) names.push_back(pose.name);
   check_distinct(names, "poses, name");
-  if (study.spacings.size() * study.poses.size() * study.techniques.size() > kMostCells) read.refuse("the study has too many cells", "", "split it into several studies");
+  if (study.spacings.size() * study.poses.size() * study.techniques.size() > kMostCells)
+    read.refuse("the study has too many cells", "", "split it into several studies");
 }
 
 // The volumes man-arm-2mm.mha, man-arm-3mm.nrrd ... of a folder, by spacing.
@@ -196,23 +222,33 @@ std::map<double, Path> real_arms(const Path& folder) {
     int end = 0;
     if (std::sscanf(name.c_str(), "man-arm-%lfmm.%n", &spacing, &end) != 1 || end == 0 || !(spacing > 0)) continue;
     const std::string ending = name.substr(end);
-    if (ending == "mha" || ending == "mhd" || ending == "nrrd" || ending == "nii" || ending == "nii.gz") arms.emplace(spacing, entry.path());
+    if (ending == "mha" || ending == "mhd" || ending == "nrrd" || ending == "nii" || ending == "nii.gz")
+      arms.emplace(spacing, entry.path());
   }
   return arms;
 }
 
 }  // namespace
 
-std::string word_of(Technique technique) { return kNames[static_cast<int>(plain_of(technique))].first + std::string(is_mass_exact(technique) ? "-mass-exact" : ""); }
-std::string name_of(Technique technique) { return kNames[static_cast<int>(plain_of(technique))].second + std::string(is_mass_exact(technique) ? ", mass-exact" : ""); }
+std::string word_of(Technique technique) {
+  return kNames[static_cast<int>(plain_of(technique))].first +
+         std::string(is_mass_exact(technique) ? "-mass-exact" : "");
+}
+std::string name_of(Technique technique) {
+  return kNames[static_cast<int>(plain_of(technique))].second +
+         std::string(is_mass_exact(technique) ? ", mass-exact" : "");
+}
 
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where) {
   std::vector<Technique> techniques;
   for (const std::string& word : words) {
     int t = 0;
     while (t < kTechniques && word_of(static_cast<Technique>(t)) != word) ++t;
-    if (t == kTechniques) throw Error("there is no such method: " + word, where, "use lbs, dqs, mix, fem, fem-contact, or one of them with -mass-exact behind it");
-    if (std::count(techniques.begin(), techniques.end(), static_cast<Technique>(t))) throw Error("something stands there twice", where, "name each once");
+    if (t == kTechniques)
+      throw Error("there is no such method: " + word, where,
+                  "use lbs, dqs, mix, fem, fem-contact, or one of them with -mass-exact behind it");
+    if (std::count(techniques.begin(), techniques.end(), static_cast<Technique>(t)))
+      throw Error("something stands there twice", where, "name each once");
     techniques.push_back(static_cast<Technique>(t));
   }
   return techniques;
@@ -228,8 +264,12 @@ std::string spacing_text(const std::optional<double>& spacing) {
 Study read_study(const Path& path) {
   const Reader read(path);
   const Json json = Json::parse(checked_json(read_file(path, kLargestDescription), path.string()), nullptr, false);
-  if (!json.is_object()) read.refuse("this is no description of a study", "", R"(write a JSON object: {"volume": FILE, "rig": FILE, "poses": [...]})");
-  read.check_keys(json, "", {"name", "volume", "phantom", "rig", "tissues", "bones", "weights", "spacings_mm", "poses", "methods", "quality", "fit_joints", "nearest", "gates"});
+  if (!json.is_object())
+    read.refuse("this is no description of a study", "",
+                R"(write a JSON object: {"volume": FILE, "rig": FILE, "poses": [...]})");
+  read.check_keys(json, "",
+                  {"name", "volume", "phantom", "rig", "tissues", "bones", "weights", "spacings_mm", "poses", "methods",
+                   "quality", "fit_joints", "nearest", "gates"});
   Study study{.name = read.text(json, "name", path.stem().string()), .description = path};
   read_body(read, json, study);
   read_cells(read, json, study);
@@ -238,7 +278,8 @@ Study read_study(const Path& path) {
   study.fit_joints = read.flag(json, "fit_joints");
   study.nearest = read.flag(json, "nearest");
   if (study.nearest && std::any_of(study.techniques.begin(), study.techniques.end(), is_mass_exact))
-    read.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest", "leave one of the two out");
+    read.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
+                "leave one of the two out");
   if (json.contains("gates")) study.gates = read.gates(json["gates"]);
   return study;
 }
@@ -249,19 +290,26 @@ Study paper_study(const Path& folder) {
     study.phantom = "arm";
   } else {
     std::error_code error;
-    if (!std::filesystem::is_directory(folder, error)) throw Error("the folder does not exist", folder.string(), "name the folder with man-arm-2mm.mha, or none for the procedural arm");
+    if (!std::filesystem::is_directory(folder, error))
+      throw Error("the folder does not exist", folder.string(),
+                  "name the folder with man-arm-2mm.mha, or none for the procedural arm");
     study.ready = real_arms(folder);
-    if (study.ready.empty()) throw Error("there is no arm in the folder", folder.string(), "put man-arm-2mm.mha there, or name no folder for the procedural arm");
+    if (study.ready.empty())
+      throw Error("there is no arm in the folder", folder.string(),
+                  "put man-arm-2mm.mha there, or name no folder for the procedural arm");
     study.volume = study.ready.begin()->second;  // the finest
     for (const char* rig : {"man-arm-2mm-armature.vtk", "Arm-armature.vtk"})
       if (study.rig.empty() && std::filesystem::exists(folder / rig)) study.rig = folder / rig;
-    if (study.rig.empty()) throw Error("the arm has no armature", folder.string(), "put man-arm-2mm-armature.vtk beside it");
+    if (study.rig.empty())
+      throw Error("the arm has no armature", folder.string(), "put man-arm-2mm-armature.vtk beside it");
     study.name = "Elbow flexion of the Visible Human arm";
     study.fit_joints = true;  // about the rig's own joint bone would enter bone
   }
   for (const int degrees : {0, 45, 60, 90}) {
     const std::string text = "+" + std::to_string(degrees);
-    study.poses.push_back({.name = text + "°", .flex = degrees ? std::vector<std::string>{"Forearm=" + std::to_string(degrees)} : std::vector<std::string>{}});
+    study.poses.push_back({.name = text + "°",
+                           .flex = degrees ? std::vector<std::string>{"Forearm=" + std::to_string(degrees)}
+                                           : std::vector<std::string>{}});
   }
   study.techniques = usual_techniques();
   return study;
@@ -294,8 +342,11 @@ std::string to_json(const Study& study) {
   json["quality"] = study.quality;
   json["fit_joints"] = study.fit_joints;
   json["nearest"] = study.nearest;
-  json["gates"] = {{"tissue_percent", study.gates.tissue_percent}, {"least_voxels", study.gates.least_voxels}, {"bone_residual_mm", study.gates.bone_residual_mm},
-                   {"skin_share_percent", study.gates.skin_share_percent}, {"joint_excess_degrees", study.gates.joint_excess_degrees}};
+  json["gates"] = {{"tissue_percent", study.gates.tissue_percent},
+                   {"least_voxels", study.gates.least_voxels},
+                   {"bone_residual_mm", study.gates.bone_residual_mm},
+                   {"skin_share_percent", study.gates.skin_share_percent},
+                   {"joint_excess_degrees", study.gates.joint_excess_degrees}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

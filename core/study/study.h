@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A study: one body at some spacings, in some poses, by some techniques. Each combination is a cell, which is one
 // `limber resample`. Described in JSON; paths are relative to the description:
-//   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json", "bones"?: [111, 209],
-//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
-//    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"},
+//   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json",
+//   "bones"?: [111, 209],
+//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact",
+//    "fem-mass-exact"...], "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh",
+//    "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"},
 //              {"name": "seated", "pose_name": "sit", "joints": ["left elbow flexion=30"]}],
 //    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"tissue_percent": 1, ...}}
-// Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig and tissues.
+// Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig
+// and tissues.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +26,25 @@ namespace limber {
 
 // A method, and each again with masses made exact afterwards: a row of its own, never silently part of the method's.
 enum class Technique {
-  LinearBlend, DualQuaternion, Fem, FemContact, MixedBlend,
-  LinearBlendMassExact, DualQuaternionMassExact, FemMassExact, FemContactMassExact, MixedBlendMassExact,
+  LinearBlend,
+  DualQuaternion,
+  Fem,
+  FemContact,
+  MixedBlend,
+  LinearBlendMassExact,
+  DualQuaternionMassExact,
+  FemMassExact,
+  FemContactMassExact,
+  MixedBlendMassExact,
 };
 constexpr int kTechniques = 10, kPlainTechniques = 5;
 constexpr bool is_mass_exact(Technique technique) { return static_cast<int>(technique) >= kPlainTechniques; }
-constexpr Technique plain_of(Technique technique) { return static_cast<Technique>(static_cast<int>(technique) % kPlainTechniques); }
-constexpr bool is_fem(Technique technique) { return plain_of(technique) == Technique::Fem || plain_of(technique) == Technique::FemContact; }
+constexpr Technique plain_of(Technique technique) {
+  return static_cast<Technique>(static_cast<int>(technique) % kPlainTechniques);
+}
+constexpr bool is_fem(Technique technique) {
+  return plain_of(technique) == Technique::Fem || plain_of(technique) == Technique::FemContact;
+}
 std::string word_of(Technique technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
 std::string name_of(Technique technique);  // "FEM with contact", "FEM, mass-exact"
 // Of words. Throws Error naming `where` for one that is none, or stands there twice.
@@ -46,10 +61,10 @@ struct StudyPose {
 
 struct Study {
   std::string name = "Study";
-  Path description;                    // the file it was read from, or empty
-  std::string phantom;                 // "arm", "body", or empty: `volume`
+  Path description;     // the file it was read from, or empty
+  std::string phantom;  // "arm", "body", or empty: `volume`
   Path volume, rig, tissues;
-  std::map<double, Path> ready;        // volumes that exist at a spacing; others are made from `volume`
+  std::map<double, Path> ready;  // volumes that exist at a spacing; others are made from `volume`
   std::vector<double> bones;
   std::string weights = "heat", quality = "normal";
   bool fit_joints = false, nearest = false;

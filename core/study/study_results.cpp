@@ -6,7 +6,8 @@
 
 namespace limber {
 
-void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out, const std::string& command, const StartPictures& start, Progress& progress) {
+void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out,
+                   const std::string& command, const StartPictures& start, Progress& progress) {
   std::vector<CellResult> cells;
   for (const CellOutcome& outcome : outcomes) cells.push_back(read_result(study, outcome));
   write_file_atomically(out / "cells.csv", cells_csv(study, cells));

@@ -11,6 +11,7 @@ namespace limber {
 //   command  as it was called, for the report
 //   start    draws bodies in 3D, or none
 //   throws Error where they cannot be written; each file is whole or as before
-void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out, const std::string& command, const StartPictures& start, Progress& progress);
+void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out,
+                   const std::string& command, const StartPictures& start, Progress& progress);
 
 }  // namespace limber

@@ -16,7 +16,8 @@ Json gates_json(const CellResult& cell) {
   Json rows = Json::array();
   for (const QualityGate& gate : cell.gates) {
     Json row{{"id", gate.id}, {"name", gate.name}};
-    if (gate.state != GateState::NotMeasured) row.update({{"passed", gate.state == GateState::Passed}, {"figure", gate.figure}});
+    if (gate.state != GateState::NotMeasured)
+      row.update({{"passed", gate.state == GateState::Passed}, {"figure", gate.figure}});
     if (!gate.worst.empty()) row["worst"] = gate.worst;
     rows.push_back(row);
   }
@@ -25,7 +26,9 @@ Json gates_json(const CellResult& cell) {
 
 Json cell_json(const Study& study, const CellResult& cell) {
   const auto& spacing = study.spacings[cell.cell.spacing];
-  Json row{{"spacing_mm", spacing ? Json(*spacing) : Json()}, {"pose", study.poses[cell.cell.pose].name}, {"method", word_of(study.techniques[cell.cell.technique])}};
+  Json row{{"spacing_mm", spacing ? Json(*spacing) : Json()},
+           {"pose", study.poses[cell.cell.pose].name},
+           {"method", word_of(study.techniques[cell.cell.technique])}};
   if (!cell.done()) {
     row["failure"] = cell.failure;
     return row;
@@ -63,10 +66,14 @@ void flatten(const Json& value, const std::string& name, std::vector<std::string
       if (is_named) {
         std::string key = inner.contains("label") ? inner["label"].dump() : "";
         for (const char* by : {"name", "bone", "path"})
-          if (inner.contains(by) && inner[by].is_string()) { key = inner[by].get<std::string>(); break; }
+          if (inner.contains(by) && inner[by].is_string()) {
+            key = inner[by].get<std::string>();
+            break;
+          }
         if (!seen.insert(key).second && inner.contains("label")) key += " (" + inner["label"].dump() + ")";
         for (const auto& [inner_key, figure] : inner.items())
-          if (inner_key != "name" && inner_key != "bone" && inner_key != "path") flatten(figure, name + "." + key + "." + inner_key, order, row);
+          if (inner_key != "name" && inner_key != "bone" && inner_key != "path")
+            flatten(figure, name + "." + key + "." + inner_key, order, row);
       } else {
         joined += (joined.empty() ? "" : "; ") + (inner.is_string() ? inner.get<std::string>() : inner.dump());
       }
@@ -80,7 +87,10 @@ void flatten(const Json& value, const std::string& name, std::vector<std::string
 }  // namespace
 
 std::string cells_json(const Study& study, const std::vector<CellResult>& cells) {
-  Json json{{"schema", "limber-study/1"}, {"version", LIMBER_VERSION}, {"study", Json::parse(to_json(study))}, {"cells", Json::array()}};
+  Json json{{"schema", "limber-study/1"},
+            {"version", LIMBER_VERSION},
+            {"study", Json::parse(to_json(study))},
+            {"cells", Json::array()}};
   for (const CellResult& cell : cells) json["cells"].push_back(cell_json(study, cell));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

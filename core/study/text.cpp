@@ -52,7 +52,8 @@ std::string escaped(const std::string& text) {
       case '<': result += "&lt;"; break;
       case '>': result += "&gt;"; break;
       case '"': result += "&quot;"; break;
-      default: if (static_cast<unsigned char>(c) >= ' ' || c == '\n') result += c;
+      default:
+        if (static_cast<unsigned char>(c) >= ' ' || c == '\n') result += c;
     }
   }
   return result;

@@ -17,7 +17,9 @@ namespace limber {
 
 namespace fs = std::filesystem;
 
-WorkFolder::WorkFolder(const Path& place, Progress& progress) : place_(place), working_(place.parent_path() / ("." + place.filename().string() + ".working")) {
+WorkFolder::WorkFolder(const Path& place, Progress& progress)
+    : place_(place),
+      working_(place.parent_path() / ("." + place.filename().string() + ".working")) {
   while (!made_ && !claim()) {
     if (progress.cancelled()) throw Cancelled();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -27,13 +29,17 @@ WorkFolder::WorkFolder(const Path& place, Progress& progress) : place_(place), w
 // Locked by its descriptor, so that the lock of a killed program is free at once. False: another program has it.
 bool WorkFolder::claim() {
   if (fs::exists(place_)) return made_ = true;
-  if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST) throw Error("the folder cannot be written", working_.parent_path().string(), std::strerror(errno));
+  if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST)
+    throw Error("the folder cannot be written", working_.parent_path().string(), std::strerror(errno));
   descriptor_ = ::open(working_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 && errno != ENOENT) throw Error("the folder cannot be opened", working_.string(), std::strerror(errno));
+  if (descriptor_ < 0 && errno != ENOENT)
+    throw Error("the folder cannot be opened", working_.string(), std::strerror(errno));
   const bool locked = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
   // The other may have renamed it just before.
-  struct stat mine {}, there {};
-  if (!locked || ::fstat(descriptor_, &mine) != 0 || ::stat(working_.c_str(), &there) != 0 || mine.st_ino != there.st_ino) {
+  struct stat mine {
+  }, there{};
+  if (!locked || ::fstat(descriptor_, &mine) != 0 || ::stat(working_.c_str(), &there) != 0 ||
+      mine.st_ino != there.st_ino) {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
     return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A folder whole or not at all: filled under another name beside its place, then renamed. Two programs that would fill the
-// same one do not disturb each other: the second waits, and takes what the first has made.
+// A folder whole or not at all: filled under another name beside its place, then renamed. Two programs that would fill
+// the same one do not disturb each other: the second waits, and takes what the first has made.
 #pragma once
 
 #include "core/base/file.h"
@@ -10,7 +10,8 @@ namespace limber {
 
 class WorkFolder {
  public:
-  // Empty, or what a killed program left there is cleared. When `place` came to be meanwhile, made() is true and there is nothing to do.
+  // Empty, or what a killed program left there is cleared. When `place` came to be meanwhile, made() is true and there
+  // is nothing to do.
   //   throws Error where it cannot be made, Cancelled while another program works on it
   WorkFolder(const Path& place, Progress& progress);
   // Without commit() everything in it goes.

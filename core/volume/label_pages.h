@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Large pages under a fresh label volume. Every page of a limb is soon read or written, air too, and one fault for 2 MB
-// costs far less than 512. The air of a large body takes no memory while it is only read, and large pages would take it.
+// costs far less than 512. The air of a large body takes no memory while it is only read, and large pages would take
+// it.
 #pragma once
 
-#include "core/base/pages.h"
+#include "core/base/memory_pages.h"
 #include "core/volume/label_volume.h"
 
 namespace limber {

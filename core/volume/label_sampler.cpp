@@ -77,18 +77,20 @@ struct LabelSampler::Neighbours {
 };
 
 LabelSampler::LabelSampler(const LabelVolume& volume)
-    : volume_(&volume), row_(volume.grid.size.x), slice_(std::int64_t{volume.grid.size.x} * volume.grid.size.y) {}
+    : volume_(&volume),
+      row_(volume.grid.size.x),
+      slice_(std::int64_t{volume.grid.size.x} * volume.grid.size.y) {}
 
 // False when the point is so far outside the grid (or not a number) that all eight are air.
 inline bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
   const glm::ivec3 size = volume_->grid.size;
-  const bool near_grid = point.x >= -1 && point.y >= -1 && point.z >= -1 && point.x < size.x && point.y < size.y &&
-                         point.z < size.z;
+  const bool near_grid =
+      point.x >= -1 && point.y >= -1 && point.z >= -1 && point.x < size.x && point.y < size.y && point.z < size.z;
   if (!near_grid) return false;
   const glm::ivec3 low(round_down(point.x), round_down(point.y), round_down(point.z));
   out.low = low;
-  const bool inside = low.x >= 0 && low.y >= 0 && low.z >= 0 && low.x + 1 < size.x && low.y + 1 < size.y &&
-                      low.z + 1 < size.z;
+  const bool inside =
+      low.x >= 0 && low.y >= 0 && low.z >= 0 && low.x + 1 < size.x && low.y + 1 < size.y && low.z + 1 < size.z;
   if (inside) {
     const Label* at = volume_->voxels.data() + volume_->grid.index(low);
     const Label* above = at + slice_;

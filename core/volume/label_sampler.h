@@ -14,8 +14,8 @@
 // Catmull-Rom 0.9299/0.9703, this 0.9334/0.9723 (without the mask 0.9342/0.9729, but vessels lose half as much again).
 #pragma once
 
-#include <cstdint>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/volume/label_volume.h"
@@ -49,8 +49,8 @@ class LabelSampler {
   // there is none.
   Label nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
-  // The allowed tissue with most voxels about the point, up to two voxels further than the nearest one: what lies around
-  // a bone, and not the thin layer that clings to it. The smaller label on a tie; 0 when none is within `reach`.
+  // The allowed tissue with most voxels about the point, up to two voxels further than the nearest one: what lies
+  // around a bone, and not the thin layer that clings to it. The smaller label on a tie; 0 when none is within `reach`.
   Label prevailing(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
  private:

@@ -30,7 +30,10 @@ std::pair<glm::ivec3, glm::ivec3> box_of_tissue(const LabelVolume& volume) {
 // Fills stretches of air along x, one at a time.
 class AirFlood {
  public:
-  explicit AirFlood(const LabelVolume& volume) : volume_(volume), size_(volume.grid.size), outside_(volume.voxels.size(), 0) {}
+  explicit AirFlood(const LabelVolume& volume)
+      : volume_(volume),
+        size_(volume.grid.size),
+        outside_(volume.voxels.size(), 0) {}
 
   // From all that lies beyond the box of the tissue: each such slab of air holds four edges of the volume's box.
   void start_around_tissue() {
@@ -50,8 +53,8 @@ class AirFlood {
     // The box's sides that the air beyond them touches.
     for (int z = lowest.z; z <= highest.z; ++z)
       for (int y = lowest.y; y <= highest.y; ++y) {
-        const bool is_side = (y == lowest.y && y > 0) || (y == highest.y && y + 1 < size_.y) || (z == lowest.z && z > 0) ||
-                             (z == highest.z && z + 1 < size_.z);
+        const bool is_side = (y == lowest.y && y > 0) || (y == highest.y && y + 1 < size_.y) ||
+                             (z == lowest.z && z > 0) || (z == highest.z && z + 1 < size_.z);
         if (is_side) add_row(lowest.x, highest.x + 1, y, z);
         if (lowest.x > 0) add({lowest.x, y, z});
         if (highest.x + 1 < size_.x) add({highest.x, y, z});
@@ -93,7 +96,8 @@ class AirFlood {
       while (begin > 0 && is_new(row + begin - 1)) --begin;
       while (end < size_.x && is_new(row + end)) ++end;
       std::fill(outside_.begin() + row + begin, outside_.begin() + row + end, std::uint8_t{1});
-      for (const auto& [y, z] : {std::pair(v.y - 1, v.z), std::pair(v.y + 1, v.z), std::pair(v.y, v.z - 1), std::pair(v.y, v.z + 1)})
+      for (const auto& [y, z] :
+           {std::pair(v.y - 1, v.z), std::pair(v.y + 1, v.z), std::pair(v.y, v.z - 1), std::pair(v.y, v.z + 1)})
         if (y >= 0 && z >= 0 && y < size_.y && z < size_.z) add_row(begin, end, y, z);
     }
   }

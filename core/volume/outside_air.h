@@ -9,9 +9,9 @@
 
 namespace limber {
 
-// A byte per voxel of the grid, not 0 for air that faces of air join to one of the twelve edges of the volume's box. Where a
-// body is cut by a side of the box, a windpipe opens into that side but reaches no edge: its air is the body's. Where tissue
-// fills all the edges, air that is joined to a side counts.
+// A byte per voxel of the grid, not 0 for air that faces of air join to one of the twelve edges of the volume's box.
+// Where a body is cut by a side of the box, a windpipe opens into that side but reaches no edge: its air is the body's.
+// Where tissue fills all the edges, air that is joined to a side counts.
 std::vector<std::uint8_t> outside_air(const LabelVolume& volume);
 
 }  // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams as one line of text, for headers of other files: the numbers of their faces, 3 * place of the lower voxel + axis, in
-// rising order, each as its distance from the one before, in bytes of seven bits (the eighth: more follow), lowest first, in
-// two hexadecimal digits each.
+// Seams as one line of text, for headers of other files: the numbers of their faces, 3 * place of the lower voxel +
+// axis, in rising order, each as its distance from the one before, in bytes of seven bits (the eighth: more follow),
+// lowest first, in two hexadecimal digits each.
 #pragma once
 
 #include <string>

@@ -54,7 +54,8 @@ std::vector<TissueVoxels::Brick> bricks_of_layer(const LabelVolume& volume, int 
     for (int bx = 0; bx < std::ssize(masks); ++bx) {
       if (masks[bx] == std::array<std::uint64_t, kBrick>{}) continue;
       TissueVoxels::Brick brick{glm::ivec3(bx, by, bz) * kBrick, 0, masks[bx]};
-      for (int z = 1; z < kBrick; ++z) brick.below[z] = static_cast<std::uint16_t>(brick.below[z - 1] + std::popcount(brick.mask[z - 1]));
+      for (int z = 1; z < kBrick; ++z)
+        brick.below[z] = static_cast<std::uint16_t>(brick.below[z - 1] + std::popcount(brick.mask[z - 1]));
       bricks.push_back(brick);
     }
   }
@@ -80,12 +81,13 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
       const glm::ivec3 cell = brick.corner / kBrick;
       brick.first = size_;
       size_ += brick.below[kBrick - 1] + std::popcount(brick.mask[kBrick - 1]);
-      brick_of_[cell.x + std::int64_t{brick_grid_.x} * (cell.y + std::int64_t{brick_grid_.y} * cell.z)] = static_cast<std::int32_t>(bricks_.size());
+      brick_of_[cell.x + std::int64_t{brick_grid_.x} * (cell.y + std::int64_t{brick_grid_.y} * cell.z)] =
+          static_cast<std::int32_t>(bricks_.size());
       bricks_.push_back(brick);
     }
   if (size_ > kMostPlaces)
-    throw Error("the volume has " + std::to_string(size_) + " tissue voxels", "of " + std::to_string(kMostPlaces) + " at most",
-                "crop it, or choose a coarser spacing");
+    throw Error("the volume has " + std::to_string(size_) + " tissue voxels",
+                "of " + std::to_string(kMostPlaces) + " at most", "crop it, or choose a coarser spacing");
 }
 
 RowSet TissueVoxels::rows() const {
@@ -93,7 +95,8 @@ RowSet TissueVoxels::rows() const {
   for (const Brick& brick : bricks_)
     for (int z = 0; z < kBrick; ++z)
       for (int y = 0; y < kBrick; ++y)
-        if (brick.mask[z] >> (8 * y) & 0xff) rows[brick.corner.y + y + std::int64_t{grid_size_.y} * (brick.corner.z + z)] = 1;
+        if (brick.mask[z] >> (8 * y) & 0xff)
+          rows[brick.corner.y + y + std::int64_t{grid_size_.y} * (brick.corner.z + z)] = 1;
   return rows;
 }
 

@@ -23,9 +23,9 @@ class TissueVoxels {
   static constexpr int kBrick = 8;
 
   struct Brick {
-    glm::ivec3 corner;                  // lowest voxel
-    std::int64_t first;                 // place of its first tissue voxel in the list
-    std::array<std::uint64_t, 8> mask;  // one word a z slice: bit x + 8 y
+    glm::ivec3 corner;                     // lowest voxel
+    std::int64_t first;                    // place of its first tissue voxel in the list
+    std::array<std::uint64_t, 8> mask;     // one word a z slice: bit x + 8 y
     std::array<std::uint16_t, 8> below{};  // tissue voxels in the slices before each
     int count() const {
       int bits = 0;
@@ -43,7 +43,8 @@ class TissueVoxels {
   const std::vector<Brick>& bricks() const { return bricks_; }  // only bricks with tissue, in brick order
   // Position in bricks() of the brick that holds voxel v, -1 if it has no tissue.
   int brick_at(const glm::ivec3& v) const {
-    return brick_of_[(v.x >> 3) + std::int64_t{brick_grid_.x} * ((v.y >> 3) + std::int64_t{brick_grid_.y} * (v.z >> 3))];
+    return brick_of_[(v.x >> 3) +
+                     std::int64_t{brick_grid_.x} * ((v.y >> 3) + std::int64_t{brick_grid_.y} * (v.z >> 3))];
   }
 
   // Place of voxel v in the list, -1 for air. v must lie inside the grid.
@@ -90,8 +91,8 @@ class TissueVoxels {
   }
 
  private:
-  // Sums of 2, 4 and 8 neighbouring bits, then of the bytes: std::popcount is a call where the processor's own instruction
-  // may not be assumed.
+  // Sums of 2, 4 and 8 neighbouring bits, then of the bytes: std::popcount is a call where the processor's own
+  // instruction may not be assumed.
   static int bits_in(std::uint64_t word) {
     word -= word >> 1 & 0x5555555555555555;
     word = (word & 0x3333333333333333) + (word >> 2 & 0x3333333333333333);

@@ -71,8 +71,9 @@ void check_gl(const char* where) {
   if (error == GL_NO_ERROR) return;
   while (glGetError() != GL_NO_ERROR) {
   }
-  throw Error(std::string("the graphics driver reports ") + text_of(error), where,
-              error == GL_OUT_OF_MEMORY ? "close other programs, or use a coarser volume" : "update the graphics driver");
+  throw Error(
+      std::string("the graphics driver reports ") + text_of(error), where,
+      error == GL_OUT_OF_MEMORY ? "close other programs, or use a coarser volume" : "update the graphics driver");
 }
 
 }  // namespace limber::render::gl

@@ -30,7 +30,8 @@ class Shader {
   log.push_back('\0');
   std::string text(log.data());
   if (text.size() > 400) text.resize(400);
-  throw Error("the graphics driver cannot " + std::string(step) + " a shader", name + " (" + text + ")", "update the graphics driver");
+  throw Error("the graphics driver cannot " + std::string(step) + " a shader", name + " (" + text + ")",
+              "update the graphics driver");
 }
 
 void compile(const Shader& shader, const std::string& name, const std::string& source) {
@@ -82,13 +83,27 @@ int Program::location(const char* uniform) {
 void Program::set(const char* uniform, int value) { glUniform1i(location(uniform), value); }
 void Program::set(const char* uniform, unsigned value) { glUniform1ui(location(uniform), value); }
 void Program::set(const char* uniform, float value) { glUniform1f(location(uniform), value); }
-void Program::set(const char* uniform, const glm::ivec2& value) { glUniform2iv(location(uniform), 1, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::ivec3& value) { glUniform3iv(location(uniform), 1, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::vec2& value) { glUniform2fv(location(uniform), 1, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::vec3& value) { glUniform3fv(location(uniform), 1, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::vec4& value) { glUniform4fv(location(uniform), 1, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::mat3& value) { glUniformMatrix3fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value)); }
-void Program::set(const char* uniform, const glm::mat4& value) { glUniformMatrix4fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value)); }
+void Program::set(const char* uniform, const glm::ivec2& value) {
+  glUniform2iv(location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::ivec3& value) {
+  glUniform3iv(location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::vec2& value) {
+  glUniform2fv(location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::vec3& value) {
+  glUniform3fv(location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::vec4& value) {
+  glUniform4fv(location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::mat3& value) {
+  glUniformMatrix3fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void Program::set(const char* uniform, const glm::mat4& value) {
+  glUniformMatrix4fv(location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
 
 void Program::set_texture(const char* sampler, int unit, unsigned target, unsigned texture) {
   glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));

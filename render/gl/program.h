@@ -18,8 +18,8 @@ std::string define(const std::string& name, const std::string& value);
 
 class Program {
  public:
-  // Compiles and links two files ("march.frag"). `defines`, lines made by define(), stand before both. Throws Error with the
-  // compiler's first lines.
+  // Compiles and links two files ("march.frag"). `defines`, lines made by define(), stand before both. Throws Error
+  // with the compiler's first lines.
   Program(const std::string& vertex_file, const std::string& fragment_file, const std::string& defines = "");
 
   void use() const;

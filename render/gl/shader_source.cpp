@@ -24,8 +24,7 @@ void append_file(std::string& source, std::string_view name) {
     const std::string_view line = text.substr(0, end);
     if (line.starts_with(kInclude))
       append_file(source, line.substr(kInclude.size(), line.rfind('"') - kInclude.size()));
-    else
-      source += line;
+    else source += line;
     text.remove_prefix(end);
   }
 }

@@ -15,8 +15,8 @@ struct ShaderFile {
 // All of them, by name. Made by the build (render/gl/embed_shaders.cmake).
 const std::vector<ShaderFile>& shader_files();
 
-// What the driver compiles: the version of GLSL, `defines`, and the text of the file, in which each line `#include "other.glsl"`
-// is replaced by that file's text. Throws std::logic_error when there is no such file.
+// What the driver compiles: the version of GLSL, `defines`, and the text of the file, in which each line `#include
+// "other.glsl"` is replaced by that file's text. Throws std::logic_error when there is no such file.
 std::string shader_source(std::string_view file, const std::string& defines = "");
 
 }  // namespace limber::render::gl

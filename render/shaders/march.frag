@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Follows the ray of each pixel to the surface of the visible tissue.
-// Lengths of s are voxels of the axis along which the ray moves fastest, so that no step of 1 passes over a voxel layer.
+// Lengths of s are voxels of the axis along which the ray moves fastest, so that no step of 1 passes over a voxel
+// layer.
 #include "rays.glsl"
 #include "atlases.glsl"
 #ifdef POSED
@@ -27,7 +28,8 @@ layout(location = 3) out uvec4 out_place;
 uniform usampler3D u_near_cubes;   // of the map, where they lead near the set
 uniform ivec3 u_blocks;
 const float kStretch = 3.0;         // nodes
-const float kNodeTap = 0.5 / 1.4;  // nodes for u_tap: half a node, so that directions go over smoothly from cube to cube
+const float kNodeTap =
+    0.5 / 1.4;  // nodes for u_tap: half a node, so that directions go over smoothly from cube to cube
 #endif
 
 uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
@@ -57,7 +59,8 @@ Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 // Of a ray: where it meets the surface, if it does, the value read there and the last one before.
 struct Meeting { float s, value, s_before, value_before; };
 
-// From s to s_end along what is a line at rest, base + d s, of which a voxel is 1 / rate; moves s on. Not before s_start.
+// From s to s_end along what is a line at rest, base + d s, of which a voxel is 1 / rate; moves s on. Not before
+// s_start.
 void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
   float voxel = 1.0 / rate;
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
@@ -85,8 +88,8 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
       s = max(s, s_leave);
     }
     if (value < kBand) break;
-    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel, which gives
-    // the step; it is short enough not to pass over a thread. The apron reaches far enough.
+    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel,
+    // which gives the step; it is short enough not to pass over a thread. The apron reaches far enough.
     float s_near = max(s - 0.5 * voxel, s_start), s_far = min(s + 1.5 * voxel, s_end);
     found.value_before = 0.0;
     found.s_before = s_near - 0.5 * voxel;
@@ -152,7 +155,8 @@ void main() {
     float s_far = s + kStretch / u_node_scale;
     sheet = sheet_at(low + 0.5 * size, cube);
     vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);
-    vec3 far = rest_on(sheet, node_base + node_d * s_far), middle = rest_on(sheet, node_base + node_d * (0.5 * (s + s_far)));
+    vec3 far = rest_on(sheet, node_base + node_d * s_far),
+         middle = rest_on(sheet, node_base + node_d * (0.5 * (s + s_far)));
     bool straight = cube < kBordered && s_far > s_leave && all(lessThan(abs(from + far - 2.0 * middle), vec3(0.1)));
     if (straight) { to = far; s_leave = s_far; }
     rest_d = (to - from) / (s_leave - s);
@@ -161,7 +165,8 @@ void main() {
     float rate = max(max(max(rest_speed.x, rest_speed.y), rest_speed.z), 0.1);
     float s_to = min(s_leave, s_end);
     if (cube >= kBordered) {  // only what is within the border
-      float first = apart_on(sheet, node_base + node_d * s), last = apart_on(sheet, node_base + node_d * s_leave), at = s + (s_leave - s) * first / (first - last);
+      float first = apart_on(sheet, node_base + node_d * s), last = apart_on(sheet, node_base + node_d * s_leave),
+            at = s + (s_leave - s) * first / (first - last);
       if (last < 0.0) s_to = first < 0.0 ? s : min(s_to, at);
       else if (first < 0.0) s = at;
     }
@@ -182,7 +187,9 @@ void main() {
   }
   bool cap = cut && found == s_start;
   // The secant.
-  if (!cap) found = mix(max(met.s_before, s_start), found, clamp((kSurface - met.value_before) / max(met.value - met.value_before, 1e-3), 0.0, 1.0));
+  if (!cap)
+    found = mix(max(met.s_before, s_start), found,
+                clamp((kSurface - met.value_before) / max(met.value - met.value_before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
@@ -190,8 +197,10 @@ void main() {
   // A mirrored sheet is known in the cube on the other side of its node: at that cube's corners.
   vec3 node = node_of(p);
   if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
-  vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap), at_c = rest_on(sheet, node + c * kNodeTap), at_e = rest_on(sheet, node + e * kNodeTap);
-  mat3 rest_from_posed = mat3(at_a - at_b - at_c + at_e, at_c + at_e - at_a - at_b, at_b + at_e - at_a - at_c) * (u_node_scale / (4.0 * u_tap * kNodeTap));
+  vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap),
+       at_c = rest_on(sheet, node + c * kNodeTap), at_e = rest_on(sheet, node + e * kNodeTap);
+  mat3 rest_from_posed = mat3(at_a - at_b - at_c + at_e, at_c + at_e - at_a - at_b, at_b + at_e - at_a - at_c) *
+                         (u_node_scale / (4.0 * u_tap * kNodeTap));
   bool torn = any(greaterThan(abs(rest_from_posed[0]) + abs(rest_from_posed[1]) + abs(rest_from_posed[2]), vec3(8.0)));
   if (torn) rest_from_posed = mat3(1.0);
   p = clamp(rest_base + rest_d * found, vec3(0.0), vec3(u_blocks * BLOCK) - 1e-3);
@@ -201,7 +210,8 @@ void main() {
 
   // Differences along the four corners of a tetrahedron.
   vec3 at = p + vec3(slot.offset);
-  vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) + c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
+  vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) +
+                  c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
   vec3 steepness = abs(gradient);
   float steepest = max(max(steepness.x, steepness.y), steepness.z);
   vec3 inward = steepest < 1e-4 || cap ? d : gradient / steepest;
@@ -216,8 +226,9 @@ void main() {
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
 
-  // The first label of the set, from a little outside the surface inward: first through air, then through hidden tissue.
-  // A step from air over an edge or a corner is not taken past the voxels beside it: a skin one voxel thick has no gaps.
+  // The first label of the set, from a little outside the surface inward: first through air, then through hidden
+  // tissue. A step from air over an edge or a corner is not taken past the voxels beside it: a skin one voxel thick has
+  // no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = label_at(slot.atlas, ivec3(inside));
@@ -229,7 +240,8 @@ void main() {
     ivec3 to = ivec3(inside);
     label = label_at(slot.atlas, to);
     if (label != 0u && abs(to.x - from.x) + abs(to.y - from.y) + abs(to.z - from.z) > 1) {
-      ivec3 beside[6] = ivec3[6](ivec3(to.x, from.yz), ivec3(from.x, to.y, from.z), ivec3(from.xy, to.z), ivec3(from.x, to.yz), ivec3(to.x, from.y, to.z), ivec3(to.xy, from.z));
+      ivec3 beside[6] = ivec3[6](ivec3(to.x, from.yz), ivec3(from.x, to.y, from.z), ivec3(from.xy, to.z),
+                                 ivec3(from.x, to.yz), ivec3(to.x, from.y, to.z), ivec3(to.xy, from.z));
       uint first = 0u;
       for (int i = 0; i < 6 && first == 0u; ++i) first = label_at(slot.atlas, beside[i]);
       if (first != 0u) label = first;

@@ -6,7 +6,9 @@ uniform uint u_outlined;
 uniform vec2 u_scale;       // buffer pixels a picture pixel
 uniform float u_line;       // picture pixels a line's pixel
 layout(location = 0) out vec4 colour;
-bool shows(vec2 pixel) { return texelFetch(u_label, clamp(ivec2(pixel * u_scale), ivec2(0), textureSize(u_label, 0) - 1), 0).r == u_outlined; }
+bool shows(vec2 pixel) {
+  return texelFetch(u_label, clamp(ivec2(pixel * u_scale), ivec2(0), textureSize(u_label, 0) - 1), 0).r == u_outlined;
+}
 void main() {
   vec2 at = gl_FragCoord.xy;
   float share = 0.0;

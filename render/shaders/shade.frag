@@ -44,7 +44,8 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
   float rim = (1.0 - toward) * (1.0 - toward);
   // Light that leaves flesh again is warmer in the shade.
   vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
-  vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open * (0.72 + 0.28 * toward);
+  vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open *
+               (0.72 + 0.28 * toward);
   return albedo * (light + 0.06 * rim * sky) + 0.04 * gloss * open;
 }
 
@@ -52,11 +53,14 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
 uniform sampler2D u_weight;
 uniform usampler2D u_place;
 uniform int u_lines;      // 0 none, 1 between ranges of the weight, 2 between colours
-uniform vec2 u_joined;    // steps of the place that pixels side by side on one surface are apart, at most: so many, and so many by their size
+uniform vec2 u_joined;    // steps of the place that pixels side by side on one surface are apart, at most: so many, and
+                          // so many by their size
 const float kLine = 0.55;
 
 // Whether a line may run between what the two show.
-bool differs(vec4 weight, vec4 other) { return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb); }
+bool differs(vec4 weight, vec4 other) {
+  return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb);
+}
 
 // Whether the pixels lie on one surface.
 bool joined(ivec2 at, ivec2 beside) {
@@ -68,7 +72,8 @@ bool joined(ivec2 at, ivec2 beside) {
 vec3 colour_of(ivec2 at, vec3 tissue) {
   vec4 weight = texelFetch(u_weight, at, 0);
   ivec2 last = textureSize(u_weight, 0) - 1, right = min(at + ivec2(1, 0), last), above = min(at + ivec2(0, 1), last);
-  bool to_right = differs(weight, texelFetch(u_weight, right, 0)), to_above = differs(weight, texelFetch(u_weight, above, 0));
+  bool to_right = differs(weight, texelFetch(u_weight, right, 0)),
+       to_above = differs(weight, texelFetch(u_weight, above, 0));
   bool line = u_lines != 0 && ((to_right && joined(at, right)) || (to_above && joined(at, above)));
   return weight.a == 0.0 ? tissue : weight.rgb * (line ? kLine : 1.0);
 }
@@ -93,7 +98,9 @@ void main() {
 #else
   alpha *= float(look.a >> 3) / 255.0;
   vec3 n = normalize(normal.xyz * 2.0 - 1.0);
-  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n)), 0.0, 1.0));
+  vec3 rgb = cap ? srgb
+                 : sqrt(clamp(lit(srgb * srgb, n, normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n)),
+                              0.0, 1.0));
 #endif
   colour = vec4(rgb * alpha, alpha);
 }

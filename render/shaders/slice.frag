@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The label index stays with the field that rays use, since only it says which blocks are there; a slice needs every block.
+// The label index stays with the field that rays use, since only it says which blocks are there; a slice needs every
+// block.
 #include "atlases.glsl"
 #ifdef POSED
 #include "posed.glsl"
@@ -84,6 +85,9 @@ void main() {
     }
   }
 #endif
-  if (u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined)) { rgb = vec3(1.0, 0.624, 0.18); alpha = 1.0; }
+  if (u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined)) {
+    rgb = vec3(1.0, 0.624, 0.18);
+    alpha = 1.0;
+  }
   colour = vec4(rgb * alpha, alpha);
 }

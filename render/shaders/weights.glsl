@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the skin weights as they are shown. RAMP: the weight of the active bone by a colour ramp; FILTERED: filtered colours;
-// VOXELS: the colour of each voxel. The weights lie in ATLASES textures (atlases.glsl).
+// Reads the skin weights as they are shown. RAMP: the weight of the active bone by a colour ramp; FILTERED: filtered
+// colours; VOXELS: the colour of each voxel. The weights lie in ATLASES textures (atlases.glsl).
 uniform sampler3D u_weights0;
 #if ATLASES > 1
 uniform sampler3D u_weights1;
@@ -43,7 +43,7 @@ vec4 weights_fetched(uint atlas, ivec3 at) {
 }
 
 const int kRampSteps = 6;
-const vec3 kRamp[kRampSteps + 1] = vec3[kRampSteps + 1](RAMP_COLOURS);  // render/weight_colours.h
+const vec3 kRamp[kRampSteps + 1] = vec3[kRampSteps + 1](RAMP_COLOURS);  // render/scene/weight_colormap.h
 
 vec3 weight_ramp(float weight) {
   float at = clamp(weight, 0.0, 1.0) * float(kRampSteps);
@@ -56,7 +56,8 @@ vec3 weight_ramp(float weight) {
 vec4 weights_at(vec3 p) {
   ivec3 block = clamp(ivec3(floor(p / float(BLOCK))), ivec3(0), u_weight_blocks - 1);
   uvec4 entry = texelFetch(u_weight_index, block, 0);
-  vec3 at = clamp(p - vec3(block) * float(BLOCK), vec3(0.0), vec3(float(BLOCK)) - 1e-3) + vec3(entry.xyz) * float(SLOT) + float(APRON);
+  vec3 at = clamp(p - vec3(block) * float(BLOCK), vec3(0.0), vec3(float(BLOCK)) - 1e-3) +
+            vec3(entry.xyz) * float(SLOT) + float(APRON);
 #ifdef VOXELS
   vec4 texel = weights_fetched(entry.w, ivec3(at));
 #else
@@ -75,6 +76,7 @@ vec4 weight_colour(vec4 texel) {
   vec3 colour = read;
   const float range = 1.0;
 #endif
-  if (u_weight_region != 0 && texel.a > 0.75) colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // outside of it
+  if (u_weight_region != 0 && texel.a > 0.75)
+    colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // outside of it
   return texel.a < 0.004 ? vec4(0.0) : vec4(colour, range / 255.0);
 }

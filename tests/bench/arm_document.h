@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the benches of the editor's frames open: the paper's arm where LIMBER_SHARED names it, else the procedural one, with
-// geodesic weights.
+// What the benches of the editor's frames open: the paper's arm where LIMBER_SHARED names it, else the procedural one,
+// with geodesic weights.
 #pragma once
 
 #include <cstdio>
@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "core/base/file.h"
-#include "core/project/document.h"
-#include "core/rig/armature_io.h"
+#include "core/binding/geodesic.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/geodesic.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/project/document.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::bench {
 
@@ -36,7 +36,8 @@ inline Document arm_document() {
   }
   const TissueVoxels tissue(volume);
   Document document;
-  document.weights = std::make_shared<const SkinWeights>(bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
+  document.weights = std::make_shared<const SkinWeights>(
+      bind_geodesic(volume, tissue, armature, split_bones(volume, tissue, tissues, armature)));
   document.volume = std::make_shared<const LabelVolume>(std::move(volume));
   document.tissues = std::make_shared<const TissueTable>(std::move(tissues));
   document.volume_type = std::make_shared<FileType>();

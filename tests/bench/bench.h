@@ -24,7 +24,8 @@ double run_whole_process(benchmark::State& state, const std::vector<std::string>
 // rate, higher is better / seconds, lower is better
 inline void against_peer_rate(benchmark::State& state, double items_per_iteration, double peer_rate, double goal) {
   state.counters["rate"] = benchmark::Counter(items_per_iteration, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["ahead"] = benchmark::Counter(items_per_iteration / peer_rate, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["ahead"] =
+      benchmark::Counter(items_per_iteration / peer_rate, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["peer"] = peer_rate;
   state.counters["goal"] = goal;
 }

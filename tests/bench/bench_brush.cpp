@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One dab of a weight brush on the paper's arm (or the procedural one) and on a body of 43 Mvoxel (or the procedural one at
-// 4 mm): which voxels it reaches, and a whole dab, in which it also changes their weights. Dabs run along the bones, through
-// the middle of limbs and trunk, where the ball holds most tissue. And a whole stroke of 200 dabs up and down a leg: what it
-// takes while it is painted (stroke_mb), of that without the bricks that become the document's (own_mb), what the history
-// keeps for its undo (undo_mb), and how long the undo takes.
+// One dab of a weight brush on the paper's arm (or the procedural one) and on a body of 43 Mvoxel (or the procedural
+// one at 4 mm): which voxels it reaches, and a whole dab, in which it also changes their weights. Dabs run along the
+// bones, through the middle of limbs and trunk, where the ball holds most tissue. And a whole stroke of 200 dabs up and
+// down a leg: what it takes while it is painted (stroke_mb), of that without the bricks that become the document's
+// (own_mb), what the history keeps for its undo (undo_mb), and how long the undo takes.
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
-#include "core/project/history.h"
-#include "core/rig/armature_io.h"
+#include "core/binding/geodesic.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/geodesic.h"
-#include "core/skin/stroke.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/paint/stroke.h"
+#include "core/phantom/phantom.h"
+#include "core/project/history.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/bench/bench.h"
 
 namespace limber::bench {
@@ -97,8 +97,10 @@ void brush_reach(benchmark::State& state, const Body& (*of)(), BrushDistance dis
 }
 
 // Strokes of 40 dabs along one bone after the other, painting that bone; bone tissue stays as it is.
-//   seen  the weights are looked at after every dab, which paints what the dab covered; else once, at the end of the stroke
-void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, BrushDistance distance, double voxels, double goal_ms, BrushDepth depth, bool seen) {
+//   seen  the weights are looked at after every dab, which paints what the dab covered; else once, at the end of the
+//   stroke
+void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, BrushDistance distance, double voxels,
+               double goal_ms, BrushDepth depth, bool seen) {
   const Body& body = of();
   StrokeSettings settings;
   settings.brush.kind = kind;
@@ -115,7 +117,7 @@ void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, Bru
       state.PauseTiming();
       if (stroke) memory = std::max(memory, stroke->memory_bytes());
       settings.bones = {static_cast<int>(next / 40)};
-      stroke.emplace(StrokeBody{body.volume, body.tissue, body.tissues, body.armature}, body.weights, settings);
+      stroke.emplace(WeightedBody{body.volume, body.tissue, body.tissues, body.armature}, body.weights, settings);
       state.ResumeTiming();
     }
     stroke->dab(body.path[next]);
@@ -131,7 +133,8 @@ void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
   // A leg, from the first thigh on.
   std::vector<int> limb;
   for (int b = 0; b < std::ssize(body.armature.bones); ++b) {
-    const bool begins = limb.empty() && body.armature.bones[b].name.find("high") != std::string::npos && body.armature.bones[b].parent >= 0;
+    const bool begins = limb.empty() && body.armature.bones[b].name.find("high") != std::string::npos &&
+                        body.armature.bones[b].parent >= 0;
     if (begins || (!limb.empty() && body.armature.bones[b].parent == limb.back())) limb.push_back(b);
   }
   StrokeSettings settings;
@@ -142,7 +145,7 @@ void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
     Document first;
     first.weights = body.weights;
     History history(first);
-    Stroke stroke(StrokeBody{body.volume, body.tissue, body.tissues, body.armature}, body.weights, settings);
+    Stroke stroke(WeightedBody{body.volume, body.tissue, body.tissues, body.armature}, body.weights, settings);
     for (int round = 0; stroke.dab_count() < 200; ++round)
       for (std::size_t i = 0; i < limb.size(); ++i) {
         const Bone& bone = body.armature.bones[limb[round % 2 ? limb.size() - 1 - i : i]];
@@ -176,17 +179,39 @@ void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
 BENCHMARK_CAPTURE(brush_reach, arm_euclidean_16, arm, BrushDistance::Euclidean, 16, 0.12)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_reach, arm_geodesic_16, arm, BrushDistance::Geodesic, 16, 0.6)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_reach, arm_geodesic_32, arm, BrushDistance::Geodesic, 32, 4)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_euclidean_16, arm, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_euclidean_16_seen, arm, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12, BrushDepth::Through, true)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_16_seen, arm, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6, BrushDepth::Through, true)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_16, arm, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_32, arm, BrushKind::Add, BrushDistance::Geodesic, 32, 4, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_add_to_depth_32, arm, BrushKind::Add, BrushDistance::Geodesic, 32, 4, BrushDepth::ToDepth, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, arm_smooth_geodesic_16, arm, BrushKind::Smooth, BrushDistance::Geodesic, 16, 0.6, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, body_add_euclidean_16, whole_body, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_16, whole_body, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_32, whole_body, BrushKind::Add, BrushDistance::Geodesic, 32, 4, BrushDepth::Through, false)->Apply(five_times);
-BENCHMARK_CAPTURE(brush_dab, body_add_euclidean_16_seen, whole_body, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12, BrushDepth::Through, true)->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_euclidean_16, arm, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_euclidean_16_seen, arm, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12,
+                  BrushDepth::Through, true)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_16_seen, arm, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6,
+                  BrushDepth::Through, true)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_16, arm, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_geodesic_32, arm, BrushKind::Add, BrushDistance::Geodesic, 32, 4,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_add_to_depth_32, arm, BrushKind::Add, BrushDistance::Geodesic, 32, 4,
+                  BrushDepth::ToDepth, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, arm_smooth_geodesic_16, arm, BrushKind::Smooth, BrushDistance::Geodesic, 16, 0.6,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, body_add_euclidean_16, whole_body, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_16, whole_body, BrushKind::Add, BrushDistance::Geodesic, 16, 0.6,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, body_add_geodesic_32, whole_body, BrushKind::Add, BrushDistance::Geodesic, 32, 4,
+                  BrushDepth::Through, false)
+    ->Apply(five_times);
+BENCHMARK_CAPTURE(brush_dab, body_add_euclidean_16_seen, whole_body, BrushKind::Add, BrushDistance::Euclidean, 16, 0.12,
+                  BrushDepth::Through, true)
+    ->Apply(five_times);
 BENCHMARK_CAPTURE(brush_stroke, body_leg_16, whole_body, 16)->UseManualTime()->Iterations(1)->Apply(five_times);
 BENCHMARK_CAPTURE(brush_stroke, body_leg_32, whole_body, 32)->UseManualTime()->Iterations(1)->Apply(five_times);
 

@@ -26,7 +26,8 @@ struct Tet {
 // A block, bent along its length.
 glm::dvec3 bent(const glm::dvec3& p) {
   const double angle = p.z / 200;
-  return {30 + p.x * std::cos(angle) + 10 * std::sin(angle), 40 + p.y + 4 * std::sin(p.z / 20), 60 + p.z - 0.2 * p.x * std::sin(angle)};
+  return {30 + p.x * std::cos(angle) + 10 * std::sin(angle), 40 + p.y + 4 * std::sin(p.z / 20),
+          60 + p.z - 0.2 * p.x * std::sin(angle)};
 }
 
 std::vector<Tet> make_tets() {

@@ -22,7 +22,8 @@ Crowd make_crowd(std::int64_t count) {
   Crowd crowd;
   std::vector<RigidTransform> posed;
   for (int i = 0; i < 20; ++i)
-    posed.push_back(rotation_about({0, 0, 20.0 * i}, glm::angleAxis(0.1 * i, glm::normalize(glm::dvec3(1, 0.3, 0.1 * i)))));
+    posed.push_back(
+        rotation_about({0, 0, 20.0 * i}, glm::angleAxis(0.1 * i, glm::normalize(glm::dvec3(1, 0.3, 0.1 * i)))));
   crowd.bones = skin_transforms(posed);
   for (std::int64_t i = 0; i < count; ++i) {
     const double along = 18.99 * static_cast<double>(i) / static_cast<double>(count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whole processes: weights and resampling of the paper's 2 mm arm, and how the cost grows with the number of tissue
-// voxels. Peer: Bender's ComputeArmatureWeight (17 CPU s, 213 MB) and PoseLabelmap (8.4 CPU s, 1244 MB) on the same arm.
-// Where the real volumes are absent the rows run on the procedural arm.
+// voxels. Peer: Bender's ComputeArmatureWeight (17 CPU s, 213 MB) and PoseLabelmap (8.4 CPU s, 1244 MB) on the same
+// arm. Where the real volumes are absent the rows run on the procedural arm.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -65,7 +65,8 @@ std::string weights_of(const Subject& subject) {
 
 void weights(benchmark::State& state) {
   const Subject subject = arm();
-  const auto arguments = words({"weights", subject.volume, "--rig", subject.rig, "-o", scratch() / "w.nrrd"}, subject.tissues);
+  const auto arguments =
+      words({"weights", subject.volume, "--rig", subject.rig, "-o", scratch() / "w.nrrd"}, subject.tissues);
   for (auto _ : state) against_peer_seconds(state, run_whole_process(state, arguments), 17, 10);
 }
 
@@ -87,9 +88,11 @@ std::int64_t tissue_voxels_of(const Subject& subject) {
 
 void weights_by_spacing(benchmark::State& state, const std::string& spacing) {
   const Subject subject = shoulder(spacing);
-  const auto arguments = words({"weights", subject.volume, "--rig", subject.rig, "-o", scratch() / "w.nrrd"}, subject.tissues);
+  const auto arguments =
+      words({"weights", subject.volume, "--rig", subject.rig, "-o", scratch() / "w.nrrd"}, subject.tissues);
   for (auto _ : state)
-    state.counters["us_per_voxel"] = 1e6 * run_whole_process(state, arguments) / static_cast<double>(tissue_voxels_of(subject));
+    state.counters["us_per_voxel"] =
+        1e6 * run_whole_process(state, arguments) / static_cast<double>(tissue_voxels_of(subject));
   state.counters["tissue_voxels"] = static_cast<double>(tissue_voxels_of(subject));
 }
 
@@ -97,7 +100,8 @@ void resample_by_spacing(benchmark::State& state, const std::string& spacing) {
   const Subject subject = shoulder(spacing);
   const auto arguments = resample_arguments(subject, "dqs");
   for (auto _ : state)
-    state.counters["us_per_voxel"] = 1e6 * run_whole_process(state, arguments) / static_cast<double>(tissue_voxels_of(subject));
+    state.counters["us_per_voxel"] =
+        1e6 * run_whole_process(state, arguments) / static_cast<double>(tissue_voxels_of(subject));
   state.counters["tissue_voxels"] = static_cast<double>(tissue_voxels_of(subject));
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // editor_opening VOLUME...
-// How long the editor takes to show a volume that it is started with: the real editor, in a window of 1280x720 that is a
-// picture in memory, five times for each volume, each in a process of its own. Prints as JSON the medians of
-//   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts, shaders
-//   first_picture_cpu_seconds  from the first frame, which is the window, to the first frame that shows the volume
-//   first_picture_seconds      the same divided by two: how long it takes on two cores that are otherwise idle
+// How long the editor takes to show a volume that it is started with: the real editor, in a window of 1280x720 that is
+// a picture in memory, five times for each volume, each in a process of its own. Prints as JSON the medians of
+//   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts,
+//   shaders first_picture_cpu_seconds  from the first frame, which is the window, to the first frame that shows the
+//   volume first_picture_seconds      the same divided by two: how long it takes on two cores that are otherwise idle
 //   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame until then
 //   complete_cpu_seconds       from the first frame until the picture is at full resolution
 //   frames_with_progress       how many frames in between showed the job's progress
@@ -19,16 +19,16 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "editor/editor.h"
-#include "editor/offscreen.h"
-#include "editor/sitting.h"
+#include "editor/app/editor_session.h"
+#include "editor/app/headless_window.h"
+#include "editor/context/editor.h"
 
 namespace {
 
 using namespace limber;
 using namespace limber::editor;
 
-constexpr double kFrame = 1.0 / 60;     // s
+constexpr double kFrame = 1.0 / 60;    // s
 constexpr double kWhileJobsRun = 0.1;  // s between frames
 constexpr double kLongestWait = 300;   // s
 
@@ -42,7 +42,9 @@ double seconds(clockid_t clock) {
 bool shows_volume(const Editor& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
 
 constexpr int kRuns = 5;
-constexpr std::array<const char*, 6> kNames = {"window_cpu_seconds", "first_picture_cpu_seconds", "first_picture_seconds", "longest_frame_cpu_seconds", "complete_cpu_seconds", "frames_with_progress"};
+constexpr std::array<const char*, 6> kNames = {"window_cpu_seconds",    "first_picture_cpu_seconds",
+                                               "first_picture_seconds", "longest_frame_cpu_seconds",
+                                               "complete_cpu_seconds",  "frames_with_progress"};
 using Figures = std::array<double, kNames.size()>;
 
 Figures open_once(const Path& volume) {
@@ -54,8 +56,10 @@ Figures open_once(const Path& volume) {
   editor.frame(0);
   const double window = seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (!shows_volume(editor) || editor.rest() == 0) {
-    if (!editor.messages.errors.empty()) throw Error(editor.messages.errors.front().what, volume.string(), "choose another file");
-    if (seconds(CLOCK_MONOTONIC) - begin > kLongestWait) throw Error("no picture comes", volume.string(), "open it in the editor and look");
+    if (!editor.messages.errors.empty())
+      throw Error(editor.messages.errors.front().what, volume.string(), "choose another file");
+    if (seconds(CLOCK_MONOTONIC) - begin > kLongestWait)
+      throw Error("no picture comes", volume.string(), "open it in the editor and look");
     const double before = seconds(CLOCK_THREAD_CPUTIME_ID);
     editor.frame(seconds(CLOCK_MONOTONIC) - begin);
     host->picture();
@@ -65,7 +69,8 @@ Figures open_once(const Path& volume) {
       if (shows_volume(editor)) first_picture = seconds(CLOCK_PROCESS_CPUTIME_ID) - window;
       else progress += editor.jobs.busy();
     }
-    std::this_thread::sleep_for(std::chrono::duration<double>(editor.rest() == 0 ? kFrame : std::min(editor.rest(), kWhileJobsRun)));
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(editor.rest() == 0 ? kFrame : std::min(editor.rest(), kWhileJobsRun)));
   }
   return {window, first_picture, first_picture / 2, longest, seconds(CLOCK_PROCESS_CPUTIME_ID) - window, progress};
 }
@@ -92,7 +97,8 @@ Figures open_in_new_process(const Path& volume) {
   ::close(ends[0]);
   int status = 0;
   ::waitpid(child, &status, 0);
-  if (!read || status != 0) throw Error("the editor could not show it", volume.string(), "open it in the editor and look");
+  if (!read || status != 0)
+    throw Error("the editor could not show it", volume.string(), "open it in the editor and look");
   return figures;
 }
 

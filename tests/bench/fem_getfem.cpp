@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A Newton iteration beside GetFEM's with MUMPS, on a real arm's mesh, where python3-getfem is installed. Called as
 //   limber_fem_getfem VOLUME RIG [SPACING_MM [DEGREES]]
-// Both take the exact Newton step of flesh and springs, without contact, from the shape at an angle towards 7.5 degrees on, and find
-// the same. CPU seconds of one thread.
+// Both take the exact Newton step of flesh and springs, without contact, from the shape at an angle towards 7.5 degrees
+// on, and find the same. CPU seconds of one thread.
 #include <cstdio>
 #include <cstdlib>
 
@@ -78,7 +78,8 @@ int main(int count, char** arguments) try {
   energy.newton_step(flesh.moved, Curvature::Projected, step, slope);
   const FemSeconds second = energy.seconds();
   const double ours = second.assembly - first.assembly + second.factorization - first.factorization;
-  std::printf("h %g mm at %g degrees: %ld tets, %ld unknowns\n", spacing, degrees, long(flesh.T.rows()), 3 * long(energy.matrix().node_count()));
+  std::printf("h %g mm at %g degrees: %ld tets, %ld unknowns\n", spacing, degrees, long(flesh.T.rows()),
+              3 * long(energy.matrix().node_count()));
   std::printf("limber: assembly %.2f s, factorization and solve %.2f s; an iteration of a solve, all told, %.2f s\n",
               second.assembly - first.assembly, second.factorization - first.factorization, whole);
 
@@ -91,9 +92,12 @@ int main(int count, char** arguments) try {
   }
   for (const char* which : {"patches", "tets"}) {
     const auto number = [&](const char* what) { return theirs.number.at(std::string(which) + what); };
-    std::printf("GetFEM, %s: %.0f unknowns, assembly %.2f s, MUMPS LU %.2f s, iteration with the symmetric MUMPS %.2f s: limber's step is %.1f times as fast, an iteration, all told, %.1f times (goal 3)\n",
-                which[0] == 'p' ? "the same problem" : "tets without patches", number("_unknowns"), number("_assembly_seconds"), number("_lu_seconds"),
-                number("_iteration_seconds"), number("_iteration_seconds") / ours, number("_iteration_seconds") / whole);
+    std::printf(
+        "GetFEM, %s: %.0f unknowns, assembly %.2f s, MUMPS LU %.2f s, iteration with the symmetric MUMPS %.2f s: "
+        "limber's step is %.1f times as fast, an iteration, all told, %.1f times (goal 3)\n",
+        which[0] == 'p' ? "the same problem" : "tets without patches", number("_unknowns"), number("_assembly_seconds"),
+        number("_lu_seconds"), number("_iteration_seconds"), number("_iteration_seconds") / ours,
+        number("_iteration_seconds") / whole);
   }
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

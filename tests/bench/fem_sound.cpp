@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whether what finite elements make of a real arm is sound: at every iteration of the way and at its end, by the mesh and by voxels,
-// beside a baseline as Bender's (one Poisson ratio of 0.3, linear tets, no contact). Called as
+// Whether what finite elements make of a real arm is sound: at every iteration of the way and at its end, by the mesh
+// and by voxels, beside a baseline as Bender's (one Poisson ratio of 0.3, linear tets, no contact). Called as
 //   limber_fem_sound VOLUME RIG [SPACING_MM [DEGREES...]]
 // Crossings are found by CGAL as well, where it was there to build with.
 #include <cmath>
@@ -70,48 +70,70 @@ Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, c
   return result;
 }
 
-// The same mesh in the same steps with Young's modulus kept, a Poisson ratio of 0.3, which leaves no patches, and no contact.
+// The same mesh in the same steps with Young's modulus kept, a Poisson ratio of 0.3, which leaves no patches, and no
+// contact.
 SolvedPose as_bender(const test::BentArm& arm, FemModel model) {
   for (TetMaterial& each : model.material) each = {each.shear_modulus * (1 + each.poisson_ratio) / 1.3, 0.3};
-  return solve_pose(model, [&](double t) { return arm.motions(t); }, largest_angle_degrees(arm.pose));
+  return solve_pose(
+      model, [&](double t) { return arm.motions(t); }, largest_angle_degrees(arm.pose));
 }
 
 void show(test::BentArm& arm, double spacing, double degrees) {
   arm.bend(degrees);
   Path path;
-  const Posed posed = arm.posed(Fem{.contact = true, .spacing_mm = spacing,
-                                    .on_mesh = [&](const TissueModel& model) { path.model = model, path.border = boundary_of(model.fem.mesh.T); },
-                                    .on_step = [&](const SolveStep& step) { path.see(step.V); }});
+  const Posed posed = arm.posed(
+      Fem{.contact = true,
+          .spacing_mm = spacing,
+          .on_mesh = [&](const TissueModel& model) { path.model = model, path.border = boundary_of(model.fem.mesh.T); },
+          .on_step = [&](const SolveStep& step) { path.see(step.V); }});
   const DeformReport& report = posed.report;
   const MeshReport& mesh = *report.mesh;
-  std::printf("+%g degrees, h %g mm: %s; %d steps, %d iterations\n", degrees, spacing, report.solve->converged ? "reached" : report.solve->blocked_by.c_str(), report.solve->steps,
+  std::printf("+%g degrees, h %g mm: %s; %d steps, %d iterations\n", degrees, spacing,
+              report.solve->converged ? "reached" : report.solve->blocked_by.c_str(), report.solve->steps,
               report.solve->iterations);
-  std::printf("  at the end: inverted %lld, det F of flesh at least %.3f, %.3f %% below 0.2, crossing pairs %lld, by CGAL %lld\n", static_cast<long long>(mesh.inverted), mesh.min_det_f,
-              100 * mesh.share_below_fifth, static_cast<long long>(mesh.self_intersections.value_or(-1)), crossings_by_cgal(posed.shape->V, path.border));
-  std::printf("  at each of %lld iterations: inverted %lld, det F of flesh at least %.3f, crossing pairs by CGAL %lld\n", path.seen, path.inverted, path.smallest, path.crossings);
-  std::printf("  air between what touches: least %.2f, median %.2f mm at %lld nodes; voxels covered twice %lld, torn open %lld\n", mesh.min_gap_mm.value_or(NAN), mesh.median_gap_mm.value_or(NAN),
-              static_cast<long long>(mesh.contact_nodes),              static_cast<long long>(report.overlap_voxels), static_cast<long long>(report.new_hole_voxels));
+  std::printf(
+      "  at the end: inverted %lld, det F of flesh at least %.3f, %.3f %% below 0.2, crossing pairs %lld, by CGAL "
+      "%lld\n",
+      static_cast<long long>(mesh.inverted), mesh.min_det_f, 100 * mesh.share_below_fifth,
+      static_cast<long long>(mesh.self_intersections.value_or(-1)), crossings_by_cgal(posed.shape->V, path.border));
+  std::printf(
+      "  at each of %lld iterations: inverted %lld, det F of flesh at least %.3f, crossing pairs by CGAL %lld\n",
+      path.seen, path.inverted, path.smallest, path.crossings);
+  std::printf(
+      "  air between what touches: least %.2f, median %.2f mm at %lld nodes; voxels covered twice %lld, torn open "
+      "%lld\n",
+      mesh.min_gap_mm.value_or(NAN), mesh.median_gap_mm.value_or(NAN), static_cast<long long>(mesh.contact_nodes),
+      static_cast<long long>(report.overlap_voxels), static_cast<long long>(report.new_hole_voxels));
 
   const VolumeMetrics voxels = compare(arm.volume, posed.volume, arm.tissues);
-  std::printf("  by voxels: all tissue %+.3f %%, skin on %.3f %% of the surface (rest %.3f %%), air trapped %lld voxels\n", voxels.volume_change_percent, 100 * voxels.skin_share_after,
-              100 * voxels.skin_share_before, static_cast<long long>(voxels.trapped_air_voxels));
+  std::printf(
+      "  by voxels: all tissue %+.3f %%, skin on %.3f %% of the surface (rest %.3f %%), air trapped %lld voxels\n",
+      voxels.volume_change_percent, 100 * voxels.skin_share_after, 100 * voxels.skin_share_before,
+      static_cast<long long>(voxels.trapped_air_voxels));
   const SolvedPose bender = as_bender(arm, path.model.fem);
   const auto bender_change = volume_change_percent(path.model, bender.V);
-  std::printf("  as Bender: %s at %.0f %%, det F at least %.3f, crossing pairs %zu\n", bender.converged ? "reached" : bender.blocked_by.c_str(), 100 * bender.reached, bender.min_det_f,
+  std::printf("  as Bender: %s at %.0f %%, det F at least %.3f, crossing pairs %zu\n",
+              bender.converged ? "reached" : bender.blocked_by.c_str(), 100 * bender.reached, bender.min_det_f,
               crossing_pairs(bender.V, path.border).size());
   std::printf("  %-24s %10s %10s %10s %10s %12s\n", "tissue", "voxels", "mesh %", "Bender %", "voxels %", "parts");
   for (const TissueChange& each : voxels.tissues) {
     const auto at = mesh.volume_change_percent.find(each.label), was = bender_change.find(each.label);
     if (each.voxels_before >= kLarge)
-      std::printf("  %-24s %10lld %+10.3f %+10.3f %+10.3f %5d > %d%s\n", (each.name.empty() ? std::to_string(int(each.file_value)) : each.name).c_str(),
-                  static_cast<long long>(each.voxels_before), at == mesh.volume_change_percent.end() ? 0 : at->second, was == bender_change.end() ? 0 : was->second,
-                  each.volume_change_percent, each.components_before, each.components_after, arm.is_bone[each.label] ? "  bone" : "");
+      std::printf("  %-24s %10lld %+10.3f %+10.3f %+10.3f %5d > %d%s\n",
+                  (each.name.empty() ? std::to_string(int(each.file_value)) : each.name).c_str(),
+                  static_cast<long long>(each.voxels_before), at == mesh.volume_change_percent.end() ? 0 : at->second,
+                  was == bender_change.end() ? 0 : was->second, each.volume_change_percent, each.components_before,
+                  each.components_after, arm.is_bone[each.label] ? "  bone" : "");
     else if (each.components_before != each.components_after)
-      std::printf("  %-24g %10lld %10s %10s %+10.3f %5d > %d\n", each.file_value, static_cast<long long>(each.voxels_before), "", "", each.volume_change_percent, each.components_before, each.components_after);
+      std::printf("  %-24g %10lld %10s %10s %+10.3f %5d > %d\n", each.file_value,
+                  static_cast<long long>(each.voxels_before), "", "", each.volume_change_percent,
+                  each.components_before, each.components_after);
   }
   const Losses ours = losses(arm, mesh.volume_change_percent, voxels), theirs = losses(arm, bender_change, voxels);
-  std::printf("  soft tissue by mesh: all %+.4f %%, as Bender %+.4f %% (%.0f times); worst %.4f %%, as Bender %.4f %% (%.0f times; goal 20)\n", ours.sum, theirs.sum,
-              std::abs(theirs.sum / ours.sum), ours.worst, theirs.worst, theirs.worst / ours.worst);
+  std::printf(
+      "  soft tissue by mesh: all %+.4f %%, as Bender %+.4f %% (%.0f times); worst %.4f %%, as Bender %.4f %% (%.0f "
+      "times; goal 20)\n",
+      ours.sum, theirs.sum, std::abs(theirs.sum / ours.sum), ours.worst, theirs.worst, theirs.worst / ours.worst);
   std::fflush(stdout);
 }
 }  // namespace

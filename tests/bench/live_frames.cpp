@@ -2,8 +2,9 @@
 // live_frames
 // How long the frames of the editor take while the procedural arm at 2 mm follows the pose live: the real editor, in a
 // window of 1280x720 that is a picture in memory, its elbow turned by the mouse, then left to rest while the picture is
-// refined tile by tile, then a clip scrubbed on the ruler. Prints as JSON, for each of the three, the number of frames and,
-// in milliseconds of CPU of the interface's own thread, what a frame takes: the median, the 95th percentile and the longest.
+// refined tile by tile, then a clip scrubbed on the ruler. Prints as JSON, for each of the three, the number of frames
+// and, in milliseconds of CPU of the interface's own thread, what a frame takes: the median, the 95th percentile and
+// the longest.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,15 +16,15 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/pose/clip.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
-#include "editor/editor.h"
-#include "editor/offscreen.h"
-#include "editor/project.h"
-#include "editor/recording.h"
-#include "editor/timeline.h"
-#include "editor/tools/timeline_tools.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/motion/clip.h"
+#include "core/phantom/phantom.h"
+#include "editor/app/headless_window.h"
+#include "editor/app/script_player.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/editor.h"
+#include "editor/motion/timeline.h"
+#include "editor/motion/timeline_tool.h"
 
 namespace {
 
@@ -42,7 +43,8 @@ double seconds(clockid_t clock) {
 Document arm_document() {
   Phantom phantom = make_arm_phantom(2);
   Document document;
-  document.weights = std::make_shared<const SkinWeights>(diffuse_heat(phantom.volume, phantom.tissues, phantom.armature));
+  document.weights =
+      std::make_shared<const SkinWeights>(diffuse_heat(phantom.volume, phantom.tissues, phantom.armature));
   document.volume = std::make_shared<const LabelVolume>(std::move(phantom.volume));
   document.tissues = std::make_shared<const TissueTable>(phantom.tissues);
   document.volume_type = std::make_shared<FileType>();
@@ -81,7 +83,9 @@ class ArmAtWork {
     report("refined at rest");
   }
   void scrub() {
-    const auto on_ruler = [&](int frame) { return glm::vec2(x_of(*editor_.timeline, frame), editor_.timeline->ruler.centre().y); };
+    const auto on_ruler = [&](int frame) {
+      return glm::vec2(x_of(*editor_.timeline, frame), editor_.timeline->ruler.centre().y);
+    };
     const int last = editor_.document().shown_clip()->end();
     move(on_ruler(0));
     push(ButtonChanged{MouseButton::Left, true});
@@ -112,8 +116,11 @@ class ArmAtWork {
   void report(const char* what) {
     std::vector<double> all = std::exchange(milliseconds_, {});
     std::sort(all.begin(), all.end());
-    std::printf("%s{\"frames\": \"%s\", \"count\": %zu, \"with_a_posed_volume\": %d, \"median_cpu_ms\": %.1f, \"p95_cpu_ms\": %.1f, \"longest_cpu_ms\": %.1f}",
-                is_first_ ? "" : ",\n ", what, all.size(), std::exchange(posed_, 0), all[all.size() / 2], all[all.size() * 95 / 100], all.back());
+    std::printf(
+        "%s{\"frames\": \"%s\", \"count\": %zu, \"with_a_posed_volume\": %d, \"median_cpu_ms\": %.1f, \"p95_cpu_ms\": "
+        "%.1f, \"longest_cpu_ms\": %.1f}",
+        is_first_ ? "" : ",\n ", what, all.size(), std::exchange(posed_, 0), all[all.size() / 2],
+        all[all.size() * 95 / 100], all.back());
     is_first_ = false;
   }
 

@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/bones/bone_parts.h"
+#include "core/bones/guess_bone_labels.h"
 #include "core/mesh/improve.h"
 #include "core/mesh/mesh_quality.h"
 #include "core/mesh/mesh_tissue.h"
-#include "core/rig/armature_io.h"
-#include "core/bones/bone_parts.h"
-#include "core/bones/guess_bone_labels.h"
-#include "core/volume/tissue_table_io.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/tissue_table_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/bench/cpu_seconds.h"
 
 namespace {
@@ -29,11 +29,13 @@ using bench::cpu_seconds;
 struct Case {
   const char *name, *volume, *rig, *table;  // without a rig each label of bone is a region
 };
-constexpr Case kCases[] = {{"arm", "bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", nullptr},
-                           {"arm and shoulder", "bp3d/arm_shoulder_1mm_tissue.mha", "bp3d/arm_shoulder.armature.json", "bp3d/tissue.labels.json"},
-                           {"knee atlas", "spl/knee_seg.nrrd", nullptr, "spl/knee.ctbl"},
-                           {"makehuman", "makehuman/body_4mm.nrrd", "makehuman/body.armature.json", "bp3d/tissue.labels.json"},
-                           {"body", "bp3d/body_2mm_tissue.mha", "bp3d/body.armature.json", "bp3d/tissue.labels.json"}};
+constexpr Case kCases[] = {
+    {"arm", "bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", nullptr},
+    {"arm and shoulder", "bp3d/arm_shoulder_1mm_tissue.mha", "bp3d/arm_shoulder.armature.json",
+     "bp3d/tissue.labels.json"},
+    {"knee atlas", "spl/knee_seg.nrrd", nullptr, "spl/knee.ctbl"},
+    {"makehuman", "makehuman/body_4mm.nrrd", "makehuman/body.armature.json", "bp3d/tissue.labels.json"},
+    {"body", "bp3d/body_2mm_tissue.mha", "bp3d/body.armature.json", "bp3d/tissue.labels.json"}};
 
 void measure(const std::filesystem::path& data, const Case& each, double spacing) {
   if (!std::filesystem::exists(data / each.volume)) {
@@ -50,7 +52,8 @@ void measure(const std::filesystem::path& data, const Case& each, double spacing
   std::vector<std::uint16_t> region(tissue.size(), TetMesh::kSoft);
   if (each.rig) {
     const Armature rig = read_armature_file(data / each.rig).armature;
-    if (const auto guess = guess_bone_tissue(file.volume, tissues, rig)) tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
+    if (const auto guess = guess_bone_tissue(file.volume, tissues, rig))
+      tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
     const BoneParts parts = split_bones(file.volume, tissue, tissues, rig);
     for (std::int64_t place = 0; place < tissue.size(); ++place)
       if (parts.part_of[place] > 0) region[place] = 1 + parts.parts[parts.part_of[place] - 1].bone;
@@ -75,9 +78,11 @@ void measure(const std::filesystem::path& data, const Case& each, double spacing
   long inverted = 0;
   for (const auto& tet : net.mesh.T.rowwise()) inverted += signed_volume(net.mesh.V, tet) <= 0;
   const double tets = double(net.mesh.T.rows());
-  std::printf("%-17s %5g %9lld %8ld %8.4f %6.2f %8.4f %5ld %7.2f %6.2f %8.2f %6.2f %8.2f %8.1f  %s\n", each.name, spacing, static_cast<long long>(tissue.size()), long(tets),
-              100 * quality.covered, quality.min_dihedral_degrees, 100 * quality.share_below_5_degrees, inverted, end - start, netted - start, improved - netted,
-              checked - improved, end - checked, 1e6 * (end - start) / tets, fault.empty() ? "sound" : fault.c_str());
+  std::printf("%-17s %5g %9lld %8ld %8.4f %6.2f %8.4f %5ld %7.2f %6.2f %8.2f %6.2f %8.2f %8.1f  %s\n", each.name,
+              spacing, static_cast<long long>(tissue.size()), long(tets), 100 * quality.covered,
+              quality.min_dihedral_degrees, 100 * quality.share_below_5_degrees, inverted, end - start, netted - start,
+              improved - netted, checked - improved, end - checked, 1e6 * (end - start) / tets,
+              fault.empty() ? "sound" : fault.c_str());
   std::fflush(stdout);
 }
 }  // namespace
@@ -88,10 +93,12 @@ int main(int count, char** arguments) try {
     return 2;
   }
   const ThreadCount one(1);
-  std::printf("%-17s %5s %9s %8s %8s %6s %8s %5s %7s %6s %8s %6s %8s %8s\n", "body", "h mm", "voxels", "tets", "cover %", "angle", "<5 deg %", "inv.", "CPU s", "net", "improve", "check", "quality", "us/tet");
+  std::printf("%-17s %5s %9s %8s %8s %6s %8s %5s %7s %6s %8s %6s %8s %8s\n", "body", "h mm", "voxels", "tets",
+              "cover %", "angle", "<5 deg %", "inv.", "CPU s", "net", "improve", "check", "quality", "us/tet");
   const std::vector<std::string> asked(arguments + std::min(count, 3), arguments + count);
   for (const Case& each : kCases)
-    if (asked.empty() || std::find(asked.begin(), asked.end(), each.name) != asked.end()) measure(arguments[1], each, count > 2 ? std::atof(arguments[2]) : 8);
+    if (asked.empty() || std::find(asked.begin(), asked.end(), each.name) != asked.end())
+      measure(arguments[1], each, count > 2 ? std::atof(arguments[2]) : 8);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

@@ -14,14 +14,14 @@
 #include <CGAL/make_mesh_3.h>
 
 #include "core/base/parallel.h"
-#include "core/mesh/mesh_quality.h"
-#include "core/mesh/mesh_tissue.h"
-#include "core/rig/armature_io.h"
 #include "core/bones/bone_parts.h"
 #include "core/bones/guess_bone_labels.h"
-#include "core/volume/phantom.h"
-#include "core/volume/tissue_table_io.h"
-#include "core/volume/volume_io.h"
+#include "core/mesh/mesh_quality.h"
+#include "core/mesh/mesh_tissue.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/tissue_table_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/bench/cpu_seconds.h"
 
 using namespace limber;
@@ -37,23 +37,30 @@ using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 void print(const char* who, const TetMesh& mesh, const VoxelRegions& voxels, double seconds) {
   const MeshQuality quality = quality_of(mesh, voxels.grid, voxels.tissue);
-  std::printf("%-28s %8ld tets %7.2f s CPU %7.2f us/tet  smallest angle %5.2f  below 5 degrees %.4f %%  covered %.3f %%\n", who, long(mesh.T.rows()), seconds,
-              1e6 * seconds / double(mesh.T.rows()), quality.min_dihedral_degrees, 100 * quality.share_below_5_degrees, 100 * quality.covered);
+  std::printf(
+      "%-28s %8ld tets %7.2f s CPU %7.2f us/tet  smallest angle %5.2f  below 5 degrees %.4f %%  covered %.3f %%\n", who,
+      long(mesh.T.rows()), seconds, 1e6 * seconds / double(mesh.T.rows()), quality.min_dihedral_degrees,
+      100 * quality.share_below_5_degrees, 100 * quality.covered);
 }
 
 template <class Perturb, class Exude>
-TetMesh mesh_by_cgal(const LabelVolume& regions, double spacing, const Perturb& perturb, const Exude& exude, double& seconds) {
+TetMesh mesh_by_cgal(const LabelVolume& regions, double spacing, const Perturb& perturb, const Exude& exude,
+                     double& seconds) {
   const double start = cpu_seconds();
   const AffineTransform to_voxel = voxel_from_world(regions.grid), to_world = world_from_voxel(regions.grid);
   CGAL::Bbox_3 box;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p = to_world * (glm::dvec3(regions.grid.size) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    const glm::dvec3 p =
+        to_world * (glm::dvec3(regions.grid.size) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
     box += CGAL::Bbox_3(p.x - 1, p.y - 1, p.z - 1, p.x + 1, p.y + 1, p.z + 1);
   }
-  const auto region_at = [&](const Kernel::Point_3& p) { return int(regions.at_or_air(glm::ivec3(glm::floor(to_voxel * glm::dvec3(p.x(), p.y(), p.z()) + 0.5)))); };
+  const auto region_at = [&](const Kernel::Point_3& p) {
+    return int(regions.at_or_air(glm::ivec3(glm::floor(to_voxel * glm::dvec3(p.x(), p.y(), p.z()) + 0.5))));
+  };
   const Domain domain(CGAL::parameters::function = region_at, CGAL::parameters::bounding_object = box);
   using namespace CGAL::parameters;
-  const Criteria criteria(facet_angle = 25, facet_size = spacing, facet_distance = 1.5, cell_radius_edge_ratio = 2, cell_size = spacing);
+  const Criteria criteria(facet_angle = 25, facet_size = spacing, facet_distance = 1.5, cell_radius_edge_ratio = 2,
+                          cell_size = spacing);
   const Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, perturb, exude, no_lloyd(), no_odt());
   seconds = cpu_seconds() - start;
 
@@ -111,6 +118,8 @@ int main(int argc, char** argv) {
   mesh = mesh_by_cgal(regions, spacing, CGAL::parameters::perturb(), CGAL::parameters::exude(), theirs);
   print("Mesh_3, perturbed, exuded", mesh, voxels, theirs);
   const double each = seconds / double(ours.mesh.T.rows());
-  std::printf("limber is %.2f times as fast per tet as Mesh_3 refined only, %.2f times as Mesh_3 with its optimizers (goal 2)\n", refined / each,
-              theirs / double(mesh.T.rows()) / each);
+  std::printf(
+      "limber is %.2f times as fast per tet as Mesh_3 refined only, %.2f times as Mesh_3 with its optimizers (goal "
+      "2)\n",
+      refined / each, theirs / double(mesh.T.rows()) / each);
 }

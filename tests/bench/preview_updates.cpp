@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // preview_updates
-// What it costs until a new pose can be drawn (vertices, cells, the map on the card, the hull that rays start from) on the
-// procedural arm and body, and what a picture of it costs beside one of the volume at rest, as JSON. CPU seconds of the
-// whole process, medians; on two cores an update takes half of them.
+// What it costs until a new pose can be drawn (vertices, cells, the map on the card, the hull that rays start from) on
+// the procedural arm and body, and what a picture of it costs beside one of the volume at rest, as JSON. CPU seconds of
+// the whole process, medians; on two cores an update takes half of them.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "core/binding/heat_diffusion.h"
 #include "core/deform/preview_map.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
-#include "render/headless.h"
-#include "render/looks.h"
+#include "core/phantom/phantom.h"
+#include "render/gl/egl_context.h"
+#include "render/scene/tissue_appearance.h"
 #include "render/view.h"
 
 namespace {
@@ -45,8 +45,8 @@ struct Subject {
 };
 
 // pose_at(i) is the i-th pose of a drag.
-void measure(const Subject& subject, const char* drag, LivePreview& preview, Renderer& renderer, const Scene& rest, Blend blend,
-             const std::function<Pose(int)>& pose_at, bool& is_first) {
+void measure(const Subject& subject, const char* drag, LivePreview& preview, Renderer& renderer, const Scene& rest,
+             Blend blend, const std::function<Pose(int)>& pose_at, bool& is_first) {
   const glm::ivec2 small(16, 12), large(640, 480);
   const AffineTransform to_world = world_from_voxel(rest.volume->grid);
   const glm::dvec3 a = to_world * glm::dvec3(-0.5), b = to_world * (glm::dvec3(rest.volume->grid.size) - 0.5);
@@ -72,10 +72,13 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     posed.push_back(picture(scene, large));
     unposed.push_back(picture(rest, large));
   }
-  std::printf("%s{\"subject\": \"%s\", \"step\": %d, \"drag\": \"%s\", \"blend\": \"%s\", \"map_cpu_ms\": %.3f, \"upload_cpu_ms\": %.3f, "
-              "\"update_ms_on_two_cores\": %.3f, \"picture_cpu_ms\": %.1f, \"picture_at_rest_cpu_ms\": %.1f}",
-              is_first ? "" : ",\n ", subject.name.c_str(), subject.step, drag, blend == Blend::Linear ? "linear" : "dual quaternion", 1e3 * median(map),
-              1e3 * median(card), 500 * (median(map) + median(card)), 1e3 * median(posed), 1e3 * median(unposed));
+  std::printf(
+      "%s{\"subject\": \"%s\", \"step\": %d, \"drag\": \"%s\", \"blend\": \"%s\", \"map_cpu_ms\": %.3f, "
+      "\"upload_cpu_ms\": %.3f, "
+      "\"update_ms_on_two_cores\": %.3f, \"picture_cpu_ms\": %.1f, \"picture_at_rest_cpu_ms\": %.1f}",
+      is_first ? "" : ",\n ", subject.name.c_str(), subject.step, drag,
+      blend == Blend::Linear ? "linear" : "dual quaternion", 1e3 * median(map), 1e3 * median(card),
+      500 * (median(map) + median(card)), 1e3 * median(posed), 1e3 * median(unposed));
   is_first = false;
 }
 
@@ -101,7 +104,8 @@ int main() {
     Renderer renderer;
     bool is_first = true;
     std::printf("[");
-    for (Subject& subject : std::vector<Subject>{{"arm 2 mm", make_arm_phantom(2), 4}, {"body 2.5 mm", make_body_phantom(2.5), 8}}) {
+    for (Subject& subject :
+         std::vector<Subject>{{"arm 2 mm", make_arm_phantom(2), 4}, {"body 2.5 mm", make_body_phantom(2.5), 8}}) {
       const Armature& rig = subject.phantom.armature;
       const std::string bone = subject.step == 4 ? "Forearm" : "LeftForearm";
       const SkinWeights weights = diffuse_heat(subject.phantom.volume, subject.phantom.tissues, rig);
@@ -112,8 +116,11 @@ int main() {
       scene.grid = false;
       LivePreview preview(scene.volume, subject.phantom.tissues, tissue, weights, subject.step);
       for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
-        measure(subject, "one elbow", preview, renderer, scene, blend, [&](int i) { return turned(rig, bone, 20 + i); }, is_first);
-        measure(subject, "every bone", preview, renderer, scene, blend, [&](int i) { return new_pose(rig, i); }, is_first);
+        measure(
+            subject, "one elbow", preview, renderer, scene, blend, [&](int i) { return turned(rig, bone, 20 + i); },
+            is_first);
+        measure(
+            subject, "every bone", preview, renderer, scene, blend, [&](int i) { return new_pose(rig, i); }, is_first);
       }
     }
     std::printf("]\n");

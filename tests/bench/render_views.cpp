@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // render_views VOLUME [OUT-PNG-PREFIX | --turning]
 // Draws the volume from far and close, at two sizes, solid and in X-ray, turning the camera before each picture, and
-// prints as JSON what each picture cost (CPU seconds of the whole process, median of five) with the cameras used, so that
-// another program can be measured on the same ones. Then how fast it turns at 1280x720: at fixed resolutions (frames a second
-// of two cores, from CPU seconds, whatever else runs), and when the resolution is its own choice. --turning: that alone.
+// prints as JSON what each picture cost (CPU seconds of the whole process, median of five) with the cameras used, so
+// that another program can be measured on the same ones. Then how fast it turns at 1280x720: at fixed resolutions
+// (frames a second of two cores, from CPU seconds, whatever else runs), and when the resolution is its own choice.
+// --turning: that alone.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -11,13 +12,13 @@
 #include <cstdio>
 #include <memory>
 #include <numbers>
-#include <utility>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/volume/volume_io.h"
-#include "render/headless.h"
-#include "render/looks.h"
+#include "core/volume_io/volume_io.h"
+#include "render/gl/egl_context.h"
+#include "render/scene/tissue_appearance.h"
 #include "render/view.h"
 
 namespace {
@@ -34,7 +35,9 @@ double cpu_seconds() {
   const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -43,14 +46,17 @@ double median(std::vector<double> values) {
 
 Camera turned(const Camera& camera, double degrees) {
   Camera result = camera;
-  result.world_from_view = glm::angleAxis(degrees * std::numbers::pi / 180, glm::dvec3(0, 0, 1)) * camera.world_from_view;
+  result.world_from_view =
+      glm::angleAxis(degrees * std::numbers::pi / 180, glm::dvec3(0, 0, 1)) * camera.world_from_view;
   return result;
 }
 
 void print_camera(const Camera& camera) {
   const glm::dvec3 eye = eye_of(camera), up = camera.world_from_view * glm::dvec3(0, 1, 0);
-  std::printf("{\"eye\": [%.9g, %.9g, %.9g], \"centre\": [%.9g, %.9g, %.9g], \"up\": [%.9g, %.9g, %.9g], \"angle\": %.9g}", eye.x, eye.y, eye.z,
-              camera.centre.x, camera.centre.y, camera.centre.z, up.x, up.y, up.z, camera.field_of_view * 180 / std::numbers::pi);
+  std::printf(
+      "{\"eye\": [%.9g, %.9g, %.9g], \"centre\": [%.9g, %.9g, %.9g], \"up\": [%.9g, %.9g, %.9g], \"angle\": %.9g}",
+      eye.x, eye.y, eye.z, camera.centre.x, camera.centre.y, camera.centre.z, up.x, up.y, up.z,
+      camera.field_of_view * 180 / std::numbers::pi);
 }
 
 int covered_pixels(const Image& image) {
@@ -59,7 +65,8 @@ int covered_pixels(const Image& image) {
   return count;
 }
 
-void measure_view(Renderer& renderer, Scene scene, const char* distance, const Camera& first, const glm::ivec2& size, const std::string& png) {
+void measure_view(Renderer& renderer, Scene scene, const char* distance, const Camera& first, const glm::ivec2& size,
+                  const std::string& png) {
   View3D view(renderer);
   const bool xray = scene.display == Display::XRay;
   scene.transparent_background = true;  // the alpha is the silhouette
@@ -68,8 +75,8 @@ void measure_view(Renderer& renderer, Scene scene, const char* distance, const C
   renderer.finish();
   std::vector<double> seconds;
   std::vector<int> pixels;
-  std::printf("{\"view\": \"%s %dx%d %s\", \"display\": \"%s\", \"size\": [%d, %d], \"cameras\": [", distance, size.x, size.y, xray ? "xray" : "solid",
-              xray ? "xray" : "solid", size.x, size.y);
+  std::printf("{\"view\": \"%s %dx%d %s\", \"display\": \"%s\", \"size\": [%d, %d], \"cameras\": [", distance, size.x,
+              size.y, xray ? "xray" : "solid", xray ? "xray" : "solid", size.x, size.y);
   for (int i = 0; i < kPictures; ++i) {
     camera = turned(camera, kTurn);
     const double begin = cpu_seconds();
@@ -100,7 +107,8 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
     wall.push_back(wall_seconds() - begin);
     cpu.push_back(cpu_seconds() - cpu_begin);
   }
-  std::printf("{\"view\": \"turning 1280x720\", \"scale\": %d, \"frames_per_second\": %.1f, \"cpu_seconds\": %.6f}", view.scale(), 1 / median(wall), median(cpu));
+  std::printf("{\"view\": \"turning 1280x720\", \"scale\": %d, \"frames_per_second\": %.1f, \"cpu_seconds\": %.6f}",
+              view.scale(), 1 / median(wall), median(cpu));
 }
 
 // At every `scale`-th pixel each way.
@@ -115,7 +123,8 @@ void measure_turning_at(Renderer& renderer, const Scene& scene, const Camera& fi
     renderer.finish();
     if (i >= 5) cpu.push_back(cpu_seconds() - begin);
   }
-  std::printf("{\"scale\": %d, \"cpu_seconds\": %.6f, \"frames_per_second\": %.1f}", scale, median(cpu), 2 / median(cpu));
+  std::printf("{\"scale\": %d, \"cpu_seconds\": %.6f, \"frames_per_second\": %.1f}", scale, median(cpu),
+              2 / median(cpu));
 }
 
 }  // namespace
@@ -151,7 +160,9 @@ int main(int argc, char** argv) {
           scene.display = display;
           const char* distance = near ? "close" : "far";
           std::string png;
-          if (argc > 2) png = std::string(argv[2]) + "-" + distance + "-" + std::to_string(size.x) + (display == Display::XRay ? "-xray" : "-solid") + ".png";
+          if (argc > 2)
+            png = std::string(argv[2]) + "-" + distance + "-" + std::to_string(size.x) +
+                  (display == Display::XRay ? "-xray" : "-solid") + ".png";
           measure_view(renderer, scene, distance, near ? close : far, size, png);
         }
     }

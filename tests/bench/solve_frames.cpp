@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // solve_frames
-// What a solve by finite elements leaves of the editor's frames, and how long a cancel takes: the real editor in a window of
-// 1280x720 that is a picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one, its elbow
-// bent by 90 degrees. The mouse turns the view while the body follows the pose by blending: without a solve, while one with
-// contact is at work in a worker that yields, and without one again; then in the Resample workspace while the tissue is seen to
-// settle, and there while the result of blending is seen and nothing is solved. Frames are drawn 60 a second or as fast as they
-// can. Prints as JSON for each the frames and, in milliseconds, the median, the 95th percentile and the worst of a whole frame
-// (with the window painted and OpenGL done); then of solves that are cancelled in each of their stages the milliseconds from the
-// wish to the end of the worker.
+// What a solve by finite elements leaves of the editor's frames, and how long a cancel takes: the real editor in a
+// window of 1280x720 that is a picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the
+// procedural one, its elbow bent by 90 degrees. The mouse turns the view while the body follows the pose by blending:
+// without a solve, while one with contact is at work in a worker that yields, and without one again; then in the
+// Resample workspace while the tissue is seen to settle, and there while the result of blending is seen and nothing is
+// solved. Frames are drawn 60 a second or as fast as they can. Prints as JSON for each the frames and, in milliseconds,
+// the median, the 95th percentile and the worst of a whole frame (with the window painted and OpenGL done); then of
+// solves that are cancelled in each of their stages the milliseconds from the wish to the end of the worker.
 //
 //   solve_frames [SECONDS]    of frames for each, 10 without; 0: only what is cancelled
 #include <algorithm>
@@ -21,13 +21,13 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/pose/pose.h"
-#include "editor/fem_view.h"
-#include "editor/frame_log.h"
-#include "editor/offscreen.h"
-#include "editor/project.h"
-#include "editor/recording.h"
-#include "editor/results.h"
+#include "core/rig/pose.h"
+#include "editor/app/headless_window.h"
+#include "editor/app/script_player.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/frame_timing.h"
+#include "editor/resample/results.h"
+#include "editor/shown/fem_live_view.h"
 #include "tests/bench/arm_document.h"
 
 namespace {
@@ -49,7 +49,11 @@ Document bent_arm() {
 
 class ArmSolved {
  public:
-  explicit ArmSolved(double length) : length_(length), host_(open_offscreen({1280, 720})), editor_(*host_), player_(editor_, *host_) {
+  explicit ArmSolved(double length)
+      : length_(length),
+        host_(open_offscreen({1280, 720})),
+        editor_(*host_),
+        player_(editor_, *host_) {
     player_.step();
     editor_.worker_program = LIMBER_PROGRAM;
     editor_.history.reset(bent_arm(), "Open arm");
@@ -83,7 +87,8 @@ class ArmSolved {
         wait_for([&] { return stage_of_solve() == stage || stage_of_solve() == "solving"; });
         for (const double until = seconds() + later; seconds() < until;) frame();
         const std::string reached = stage_of_solve();
-        std::printf("%s{\"stage\": \"%s\", \"ms\": %.0f}", before, reached.empty() ? "hand over" : reached.c_str(), cancel());
+        std::printf("%s{\"stage\": \"%s\", \"ms\": %.0f}", before, reached.empty() ? "hand over" : reached.c_str(),
+                    cancel());
         std::fflush(stdout);
         before = ", ";
       }
@@ -98,21 +103,26 @@ class ArmSolved {
   template <class There>
   void wait_for(const There& there) {
     for (const double begin = seconds(); !there();) {
-      if (seconds() - begin > 300) throw Error("the solve does not come to it", stage_of_solve(), editor_.messages.last_failure);
+      if (seconds() - begin > 300)
+        throw Error("the solve does not come to it", stage_of_solve(), editor_.messages.last_failure);
       frame();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
-  std::string stage_of_solve() const { return editor_.fem->solves.empty() ? "" : editor_.fem->solves.begin()->second.feed->seen().progress.stage; }
+  std::string stage_of_solve() const {
+    return editor_.fem->solves.empty() ? "" : editor_.fem->solves.begin()->second.feed->seen().progress.stage;
+  }
   void ask_for_solve() { editor_.fem->watched = 0, limber::editor::run(editor_, "resample.run"); }
   void solve() {
     ask_for_solve();
-    wait_for([&] { return !editor_.fem->solves.empty() && editor_.fem->solves.begin()->second.feed->seen().mesh.posed; });
+    wait_for(
+        [&] { return !editor_.fem->solves.empty() && editor_.fem->solves.begin()->second.feed->seen().mesh.posed; });
   }
   // ms until the worker has ended.
   double cancel() {
     const double asked = seconds();
-    if (editor_.fem->solves.empty()) throw Error("the solve was over too soon", "to be cancelled", "give fewer seconds");
+    if (editor_.fem->solves.empty())
+      throw Error("the solve was over too soon", "to be cancelled", "give fewer seconds");
     const int job = editor_.fem->solves.begin()->first;
     editor_.jobs.cancel(job);
     while (editor_.jobs.status(job).active()) std::this_thread::sleep_for(std::chrono::microseconds(200));
@@ -124,7 +134,9 @@ class ArmSolved {
   void turn(const char* name, const std::string& script) {
     player_.play(script);
     const Rect view = *editor_.layout.place_of(ViewId::Body);
-    const auto at = [&](double way) { return view.centre() + glm::vec2(120 * std::sin(way), 40 * std::sin(0.7 * way)); };
+    const auto at = [&](double way) {
+      return view.centre() + glm::vec2(120 * std::sin(way), 40 * std::sin(0.7 * way));
+    };
     for (const double settled = seconds() + 2; seconds() < settled;) frame();
     host_->events.push(PointerMoved{at(0)});
     frame();
@@ -140,8 +152,11 @@ class ArmSolved {
     }
     host_->events.push(ButtonChanged{MouseButton::Middle, false});
     frame();
-    std::printf("%s{\"view\": \"%s\", \"solving\": %s, \"frames\": %zu, \"scale\": %d, \"median\": %.1f, \"p95\": %.1f, \"worst\": %.1f}", first_ ? "" : ",\n  ", name,
-                editor_.jobs.busy() ? "true" : "false", took.size(), editor_.views->body.picture->scale(), percentile(took, 50), percentile(took, 95), percentile(took, 100));
+    std::printf(
+        "%s{\"view\": \"%s\", \"solving\": %s, \"frames\": %zu, \"scale\": %d, \"median\": %.1f, \"p95\": %.1f, "
+        "\"worst\": %.1f}",
+        first_ ? "" : ",\n  ", name, editor_.jobs.busy() ? "true" : "false", took.size(),
+        editor_.views->body.picture->scale(), percentile(took, 50), percentile(took, 95), percentile(took, 100));
     std::fflush(stdout);
     first_ = false;
   }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // stroke_frames
-// How long the frames of the editor take while weights are painted: the real editor in a window of 640x480 that is a picture
-// in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one. The mouse draws a stroke of 200
-// dabs along the middle of the body and back, as fast as makes 60 dabs a second; then the frames go on for a second, in which
-// what the stroke left behind is done. Frames are drawn 60 a second or as fast as they can; events that came meanwhile wait.
-// At rest and on the posed body, with a radius of 16 and of 32 voxels, then undone. Prints as JSON for each the dabs, the
-// frames of the stroke and after it, and in milliseconds the worst and the 95th percentile of a whole frame (with the window
-// painted and OpenGL done) and of what the interface's own thread computed in it; `over` counts frames longer than 1/30 s.
+// How long the frames of the editor take while weights are painted: the real editor in a window of 640x480 that is a
+// picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one. The mouse draws a
+// stroke of 200 dabs along the middle of the body and back, as fast as makes 60 dabs a second; then the frames go on
+// for a second, in which what the stroke left behind is done. Frames are drawn 60 a second or as fast as they can;
+// events that came meanwhile wait. At rest and on the posed body, with a radius of 16 and of 32 voxels, then undone.
+// Prints as JSON for each the dabs, the frames of the stroke and after it, and in milliseconds the worst and the 95th
+// percentile of a whole frame (with the window painted and OpenGL done) and of what the interface's own thread computed
+// in it; `over` counts frames longer than 1/30 s.
 //
 //   stroke_frames [LOG]    the parts of every frame as frame_log.h tells them, into files LOG.NAME.txt
 #include <algorithm>
@@ -23,14 +24,14 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "editor/frame_log.h"
-#include "editor/offscreen.h"
-#include "editor/painting.h"
-#include "editor/project.h"
-#include "editor/recording.h"
-#include "editor/seen_from.h"
-#include "editor/skin_display.h"
-#include "editor/timeline.h"
+#include "editor/app/headless_window.h"
+#include "editor/app/script_player.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/frame_timing.h"
+#include "editor/motion/timeline.h"
+#include "editor/skin/paint_mode.h"
+#include "editor/skin/weight_display.h"
+#include "editor/viewport/view_projection.h"
 #include "tests/bench/arm_document.h"
 
 namespace {
@@ -45,7 +46,11 @@ double seconds() { return std::chrono::duration<double>(std::chrono::steady_cloc
 
 class ArmPainted {
  public:
-  explicit ArmPainted(std::string log) : log_(std::move(log)), host_(open_offscreen({640, 480})), editor_(*host_), player_(editor_, *host_) {
+  explicit ArmPainted(std::string log)
+      : log_(std::move(log)),
+        host_(open_offscreen({640, 480})),
+        editor_(*host_),
+        player_(editor_, *host_) {
     player_.step();
     editor_.history.reset(bench::arm_document(), "Open arm");
     editor_.name = "arm";
@@ -54,7 +59,8 @@ class ArmPainted {
     // A bone in the middle of the body, so that its weight ends within the stroke.
     const Armature& armature = *editor_.document().armature;
     for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
-      if (armature.bones[static_cast<std::size_t>(bone)].name.find("orearm") != std::string::npos || bone == 0) editor_.selection.bone = bone;
+      if (armature.bones[static_cast<std::size_t>(bone)].name.find("orearm") != std::string::npos || bone == 0)
+        editor_.selection.bone = bone;
     editor_.selection.bones = {*editor_.selection.bone};
     rest();
   }
@@ -79,7 +85,8 @@ class ArmPainted {
     whole_.clear();
 
     const auto place = brush_place(editor_, view, path.front());
-    const double step = painting.spacing * painting.radius / SeenFrom(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
+    const double step = painting.spacing * painting.radius /
+                        SeenFrom(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
     const std::size_t before = static_cast<std::size_t>(editor_.history.position());
     frame(ButtonChanged{MouseButton::Left, true});
     const double begin = seconds();
@@ -98,7 +105,8 @@ class ArmPainted {
       frame();
       std::this_thread::sleep_for(std::chrono::duration<double>(due - seconds()));
     }
-    if (static_cast<std::size_t>(editor_.history.position()) != before + 1) throw Error("the stroke changed nothing", name, "look at what it paints");
+    if (static_cast<std::size_t>(editor_.history.position()) != before + 1)
+      throw Error("the stroke changed nothing", name, "look at what it paints");
     report(name, dabs, took, of_stroke);
     player_.play("key Ctrl+Z");
     rest();
@@ -165,10 +173,12 @@ class ArmPainted {
     for (const FrameLog::Frame& each : editor_.timeline->frame_log->frames()) own.push_back(each.computed);
     const auto row = [](const char* what, std::vector<double> all) {
       const auto over = std::count_if(all.begin(), all.end(), [](double ms) { return ms > 1e3 * kLongest; });
-      std::printf(", \"%s\": {\"worst\": %.1f, \"p95\": %.1f, \"median\": %.1f, \"over\": %d}", what, percentile(all, 100), percentile(all, 95), percentile(all, 50), static_cast<int>(over));
+      std::printf(", \"%s\": {\"worst\": %.1f, \"p95\": %.1f, \"median\": %.1f, \"over\": %d}", what,
+                  percentile(all, 100), percentile(all, 95), percentile(all, 50), static_cast<int>(over));
     };
     const auto cut = static_cast<std::ptrdiff_t>(of_stroke);
-    std::printf("%s{\"stroke\": \"%s\", \"dabs\": %d, \"seconds\": %.2f, \"frames\": %zu, \"frames_after\": %zu", std::exchange(first_, false) ? "" : ",\n ", name, dabs, took, of_stroke, whole_.size() - of_stroke);
+    std::printf("%s{\"stroke\": \"%s\", \"dabs\": %d, \"seconds\": %.2f, \"frames\": %zu, \"frames_after\": %zu",
+                std::exchange(first_, false) ? "" : ",\n ", name, dabs, took, of_stroke, whole_.size() - of_stroke);
     row("whole_ms", {whole_.begin(), whole_.begin() + cut});
     row("own_ms", {own.begin(), own.begin() + cut});
     row("whole_after_ms", {whole_.begin() + cut, whole_.end()});

@@ -2,10 +2,11 @@
 // The editor with a trunk that an arm is grown to, in the Skin workspace.
 #pragma once
 
-#include "editor/painting.h"
-#include "editor/seam_view.h"
-#include "editor/seen_from.h"
-#include "editor/skin_display.h"
+#include "editor/context/view_projection.h"
+#include "editor/seams/seam_view.h"
+#include "editor/shown/frame_all.h"
+#include "editor/skin/painting.h"
+#include "editor/skin/weight_display.h"
 #include "tests/editor/small_editor.h"
 #include "tests/support/glued_arm.h"
 
@@ -28,7 +29,8 @@ inline Document glued_document(bool names = false) {
 struct GluedEditor : SmallEditor {
   TemporaryFolder folder;
 
-  explicit GluedEditor(float scale = 1) : SmallEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale), false) {
+  explicit GluedEditor(float scale = 1)
+      : SmallEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale), false) {
     editor->history.reset(glued_document(), "Open glued arm");
     editor->name = "glued";
     editor->worker_program = LIMBER_PROGRAM;
@@ -43,7 +45,8 @@ struct GluedEditor : SmallEditor {
   }
 
   void open_only(const std::string& section) {
-    for (const char* folded : {"Bones", "Layers", "Brush", "Problems", "Outliner", "Steps", "Seams", "Bone map"}) editor->open_sections[folded] = folded == section;
+    for (const char* folded : {"Bones", "Layers", "Brush", "Problems", "Outliner", "Steps", "Seams", "Bone map"})
+      editor->open_sections[folded] = folded == section;
     play("wait-idle");
   }
   std::int64_t faces() const {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "editor/offscreen.h"
+#include "editor/app/headless_window.h"
 
 namespace limber::test {
 

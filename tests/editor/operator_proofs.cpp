@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "tests/editor/operator_proofs.h"
 
+#include "editor/files/project_session.h"
+
 #include <algorithm>
 
 namespace limber::test {
@@ -47,7 +49,16 @@ void Stage::watch() {
 
 Seen Stage::look() {
   editor::Editor& e = editor();
-  Seen seen{e.document(), static_cast<int>(e.history.steps().size()), static_cast<int>(e.history.position()), e.views->body.camera, {}, e.views->cross_hair, e.selection, sitting.test.host->clipboard(), {}, {}};
+  Seen seen{e.document(),
+            static_cast<int>(e.history.steps().size()),
+            static_cast<int>(e.history.position()),
+            e.views->body.camera,
+            {},
+            e.views->cross_hair,
+            e.selection,
+            sitting.test.host->clipboard(),
+            {},
+            {}};
   for (int i = 0; i < 3; ++i) seen.slices[i] = e.views->slices[i].camera;
   render::View3D body(e.views->renderer);
   body.draw(e.views->scene, seen.camera, kSmall, 0, 1);
@@ -68,7 +79,8 @@ void prove(Stage& stage, const std::vector<Proof>& proofs) {
     const Seen before = stage.look();
     CHECK_FALSE(proof.effect(stage, before));
     stage.play(proof.deeds);
-    INFO("then: dialog ", stage.fact("dialog"), ", error ", stage.fact("error"), ", last message ", stage.fact("toast"), ", edit ", stage.fact("edit"));
+    INFO("then: dialog ", stage.fact("dialog"), ", error ", stage.fact("error"), ", last message ", stage.fact("toast"),
+         ", edit ", stage.fact("edit"));
     CHECK(stage.ran(proof.id));
     CHECK(proof.effect(stage, before));
     if (proof.shows == Shows::InBody) CHECK(stage.look().body != before.body);
@@ -78,7 +90,13 @@ void prove(Stage& stage, const std::vector<Proof>& proofs) {
 
 TEST_CASE("operators: each one that exists is proved to do what it says") {
   std::set<std::string> proved;
-  for (const auto& proofs : {proofs_of_views(), proofs_of_navigation(), proofs_of_tissues(), proofs_of_work(), proofs_of_files(), proofs_of_pages(), proofs_of_posing(), proofs_of_comparing(), proofs_of_motion(), proofs_of_clips(), proofs_of_handling(), proofs_of_rigging(), proofs_of_rig_fitting(), proofs_of_skin(), proofs_of_painting(), proofs_of_weight_edits(), proofs_of_regions(), proofs_of_layers(), proofs_of_test_poses(), proofs_of_weight_problems(), proofs_of_seams(), proofs_of_bone_table()})
+  for (const auto& proofs :
+       {proofs_of_views(),       proofs_of_navigation(), proofs_of_tissues(),    proofs_of_work(),
+        proofs_of_files(),       proofs_of_pages(),      proofs_of_posing(),     proofs_of_comparing(),
+        proofs_of_motion(),      proofs_of_clips(),      proofs_of_handling(),   proofs_of_rigging(),
+        proofs_of_rig_fitting(), proofs_of_skin(),       proofs_of_painting(),   proofs_of_weight_edits(),
+        proofs_of_regions(),     proofs_of_layers(),     proofs_of_test_poses(), proofs_of_weight_problems(),
+        proofs_of_seams(),       proofs_of_bone_table()})
     for (const Proof& proof : proofs) {
       INFO(proof.id);
       CHECK(proved.insert(proof.id).second);

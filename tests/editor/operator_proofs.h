@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What every operator does, shown in the real editor: an effect that is not there, what a user does with pointer and keys
-// so that the operator runs, and the effect that is there then. An operator without such a proof fails a test by name.
+// What every operator does, shown in the real editor: an effect that is not there, what a user does with pointer and
+// keys so that the operator runs, and the effect that is there then. An operator without such a proof fails a test by
+// name.
 #pragma once
 
 #include <functional>
@@ -57,7 +58,7 @@ struct Proof {
   std::string deeds;
   std::function<bool(Stage&, const Seen& before)> effect;  // false before the deeds, true after them
   Shows shows = Shows::Nothing;
-  std::string first = "";  // deeds that make ready
+  std::string first = "";                  // deeds that make ready
   std::function<void(Stage&)> ready = {};  // what no deed can make
 };
 

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "editor/painting.h"
-#include "editor/skin_display.h"
+#include "editor/context/view_projection.h"
+#include "editor/skin/painting.h"
+#include "editor/skin/weight_display.h"
 #include "tests/editor/weighed_limb.h"
 
 namespace limber::test {
@@ -15,7 +16,8 @@ using namespace editor;
 
 // The ball, of which the upper half follows the upper bone wholly; seen from the front.
 struct PaintEditor : LimbEditor {
-  explicit PaintEditor(float scale = 1, bool parallel = false) : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
+  explicit PaintEditor(float scale = 1, bool parallel = false)
+      : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
     Document next = editor->document();
     next.weights = test::half_weights(*next.volume);
     editor->history.reset(next, "Open weighted limb");
@@ -70,7 +72,9 @@ struct PaintEditor : LimbEditor {
     const TissueVoxels tissue(*editor->document().volume);
     const AffineTransform world = world_from_voxel(editor->document().volume->grid);
     for (std::int64_t brick = 0; brick < weights().chunk_count(); ++brick)
-      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) { body(world * glm::dvec3(voxel), voxel, weights().chunk(brick)[place - tissue.bricks()[brick].first]); });
+      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
+        body(world * glm::dvec3(voxel), voxel, weights().chunk(brick)[place - tissue.bricks()[brick].first]);
+      });
   }
   // Voxels with some weight of the bone where it had none, and the furthest of them from a point.
   std::pair<int, double> painted(int bone, const glm::dvec3& from, bool upper) const {

@@ -5,13 +5,16 @@
 #include <cstdlib>
 #include <string>
 
-#include "editor/sitting.h"
+#include "editor/app/editor_session.h"
+#include "editor/files/project_session.h"
 #include "tests/editor/small_editor.h"
 
 namespace limber::test {
 
 struct Sitting {
-  explicit Sitting(const std::filesystem::path& home, std::vector<Path> files = {}, const glm::ivec2& size = {1280, 720}) : test(size, {}, false) {
+  explicit Sitting(const std::filesystem::path& home, std::vector<Path> files = {},
+                   const glm::ivec2& size = {1280, 720})
+      : test(size, {}, false) {
     ::setenv("HOME", home.c_str(), 1);
     begin_sitting(*test.editor, {home / "config", home / "cache", home / "edits"}, std::move(files));
     test.play("wait-job");

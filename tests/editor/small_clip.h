@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/pose/clip.h"
-#include "editor/timeline.h"
+#include "core/motion/clip.h"
+#include "editor/motion/timeline.h"
 #include "tests/editor/small_limb.h"
 
 namespace limber::test {
@@ -18,12 +18,15 @@ inline Motion bending_motion(const Armature& armature, int frames = 61, double r
   const BvhJoint& root = motion.joints[0];
   const BvhJoint& fore = motion.joints[1];
   const auto column = [](const BvhJoint& joint, BvhChannel channel) {
-    return joint.first_channel + static_cast<int>(std::find(joint.channels.begin(), joint.channels.end(), channel) - joint.channels.begin());
+    return joint.first_channel +
+           static_cast<int>(std::find(joint.channels.begin(), joint.channels.end(), channel) - joint.channels.begin());
   };
   for (int frame = 0; frame < frames; ++frame) {
     float* row = &motion.values[static_cast<std::size_t>(frame) * motion.channel_count];
     for (int axis = 0; axis < 3; ++axis)
-      if (const int at = column(root, static_cast<BvhChannel>(axis)); at < root.first_channel + std::ssize(root.channels)) row[at] = static_cast<float>(root.offset[axis]);
+      if (const int at = column(root, static_cast<BvhChannel>(axis));
+          at < root.first_channel + std::ssize(root.channels))
+        row[at] = static_cast<float>(root.offset[axis]);
     row[column(fore, BvhChannel::Xrotation)] = static_cast<float>(frame);
   }
   return motion;
@@ -35,7 +38,8 @@ inline double bend_of(const Pose& pose) { return glm::degrees(2 * std::atan2(pos
 // The limb with that clip.
 inline Document bending_limb(int frames = 61, double rate = 30) {
   Document document = small_limb();
-  editor::add_clip(document, clip_of(std::make_shared<const Motion>(bending_motion(*document.armature, frames, rate)), "bending"));
+  editor::add_clip(
+      document, clip_of(std::make_shared<const Motion>(bending_motion(*document.armature, frames, rate)), "bending"));
   return document;
 }
 

@@ -7,11 +7,12 @@
 
 #include <doctest/doctest.h>
 
-#include "core/volume/volume_io.h"
-#include "editor/editor.h"
-#include "editor/offscreen.h"
-#include "editor/project.h"
-#include "editor/recording.h"
+#include "core/volume_io/volume_io.h"
+#include "editor/app/headless_window.h"
+#include "editor/app/script_player.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/editor.h"
+#include "editor/shown/frame_all.h"
 #include "tests/support/program.h"
 
 namespace limber::test {
@@ -32,8 +33,10 @@ inline Document small_body() {
         if (r >= 12 && r < 32 && x == 12 && y < 8) volume->at({x, y, z}) = 65;
       }
   auto tissues = std::make_shared<TissueTable>();
-  for (const auto& [label, name, kind] : {std::tuple<Label, const char*, TissueKind>{17, "Muscle", TissueKind::Muscle}, {65, "Blood", TissueKind::Blood},
-                                          {111, "Cortical bone", TissueKind::CorticalBone}, {143, "Skin", TissueKind::Skin}}) {
+  for (const auto& [label, name, kind] : {std::tuple<Label, const char*, TissueKind>{17, "Muscle", TissueKind::Muscle},
+                                          {65, "Blood", TissueKind::Blood},
+                                          {111, "Cortical bone", TissueKind::CorticalBone},
+                                          {143, "Skin", TissueKind::Skin}}) {
     Tissue tissue;
     tissue.label = label;
     tissue.file_value = label;
@@ -50,8 +53,11 @@ inline Document small_body() {
 }
 
 struct SmallEditor {
-  explicit SmallEditor(const glm::ivec2& size = {1024, 640}, const editor::Preferences& preferences = {}, bool with_body = true)
-      : host(editor::open_offscreen(size)), editor(std::make_unique<editor::Editor>(*host, preferences)), player(*editor, *host) {
+  explicit SmallEditor(const glm::ivec2& size = {1024, 640}, const editor::Preferences& preferences = {},
+                       bool with_body = true)
+      : host(editor::open_offscreen(size)),
+        editor(std::make_unique<editor::Editor>(*host, preferences)),
+        player(*editor, *host) {
     editor->workers_yield = false;  // other tests run beside this one
     editor->views->renderer.average_at_rest(0);
     player.step();

@@ -2,6 +2,7 @@
 // The small body with two bones and a hinge between them.
 #pragma once
 
+#include "editor/shown/frame_all.h"
 #include "tests/editor/small_editor.h"
 
 namespace limber::test {
@@ -19,7 +20,8 @@ inline Document small_limb() {
 }
 
 struct LimbEditor : SmallEditor {
-  explicit LimbEditor(const glm::ivec2& size = {1280, 720}, const editor::Preferences& preferences = {}) : SmallEditor(size, preferences, false) {
+  explicit LimbEditor(const glm::ivec2& size = {1280, 720}, const editor::Preferences& preferences = {})
+      : SmallEditor(size, preferences, false) {
     editor->history.reset(small_limb(), "Open limb");
     editor->name = "limb";
     editor->worker_program = LIMBER_PROGRAM;

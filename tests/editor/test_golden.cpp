@@ -9,7 +9,8 @@
 // golden-failures, in the folder the test runs in). After a wanted change:
 //   LIMBER_GOLDEN_REFRESH=1 build/tests/limber_editor_tests -tc="golden:*"     and look at each picture that changed.
 // To look at the scenes in another window, without comparing:
-//   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"   writes NAME-2048x1280@2.png where it runs.
+//   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"   writes NAME-2048x1280@2.png where it
+//   runs.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -17,9 +18,10 @@
 #include <optional>
 #include <thread>
 
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
-#include "editor/task.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/phantom/phantom.h"
+#include "editor/context/background_task.h"
+#include "editor/files/project_session.h"
 #include "tests/editor/sitting.h"
 
 namespace limber::test {
@@ -30,11 +32,13 @@ using render::Image;
 namespace {
 
 constexpr glm::ivec2 kWindow{1280, 720};
-constexpr double kMostMean = 1.2;      // of 255
-constexpr double kClearly = 20;        // of 255, in any channel
-constexpr double kMostClear = 0.004;   // share of the pixels
+constexpr double kMostMean = 1.2;     // of 255
+constexpr double kClearly = 20;       // of 255, in any channel
+constexpr double kMostClear = 0.004;  // share of the pixels
 
-int channel(const Image& image, int x, int y, int c) { return image.rgba[(static_cast<std::size_t>(y) * image.size.x + x) * 4 + c]; }
+int channel(const Image& image, int x, int y, int c) {
+  return image.rgba[(static_cast<std::size_t>(y) * image.size.x + x) * 4 + c];
+}
 
 Image halved(const Image& image) {
   Image half{image.size / 2, {}};
@@ -42,7 +46,8 @@ Image halved(const Image& image) {
   for (int y = 0; y < half.size.y; ++y)
     for (int x = 0; x < half.size.x; ++x)
       for (int c = 0; c < 4; ++c) {
-        const int sum = channel(image, 2 * x, 2 * y, c) + channel(image, 2 * x + 1, 2 * y, c) + channel(image, 2 * x, 2 * y + 1, c) + channel(image, 2 * x + 1, 2 * y + 1, c);
+        const int sum = channel(image, 2 * x, 2 * y, c) + channel(image, 2 * x + 1, 2 * y, c) +
+                        channel(image, 2 * x, 2 * y + 1, c) + channel(image, 2 * x + 1, 2 * y + 1, c);
         half.rgba.push_back(static_cast<std::uint8_t>(c == 3 ? 255 : std::min(255, (sum / 4 + 2) / 4 * 4)));
       }
   return half;
@@ -51,7 +56,8 @@ Image halved(const Image& image) {
 double blurred(const Image& image, int x, int y, int c) {
   int sum = 0, count = 0;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, image.size.y - 1); ++v)
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, image.size.x - 1); ++u, ++count) sum += channel(image, u, v, c);
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, image.size.x - 1); ++u, ++count)
+      sum += channel(image, u, v, c);
   return static_cast<double>(sum) / count;
 }
 
@@ -73,14 +79,17 @@ Comparison compare(const Image& a, const Image& b) {
         const double difference = std::abs(blurred(a, x, y, c) - blurred(b, x, y, c));
         result.mean += difference / 3 / pixels;
         most = std::max(most, difference);
-        result.difference.rgba[(static_cast<std::size_t>(y) * a.size.x + x) * 4 + c] = static_cast<std::uint8_t>(std::min(255.0, 4 * difference));
+        result.difference.rgba[(static_cast<std::size_t>(y) * a.size.x + x) * 4 + c] =
+            static_cast<std::uint8_t>(std::min(255.0, 4 * difference));
       }
       result.clear += most > kClearly ? 1 / pixels : 0;
     }
   return result;
 }
 
-std::filesystem::path golden(const std::string& name) { return std::filesystem::path(LIMBER_SOURCE_DIR "/tests/editor/golden") / (name + ".png"); }
+std::filesystem::path golden(const std::string& name) {
+  return std::filesystem::path(LIMBER_SOURCE_DIR "/tests/editor/golden") / (name + ".png");
+}
 
 // The window that $LIMBER_SCENES asks for.
 struct Window {
@@ -90,7 +99,9 @@ struct Window {
 std::optional<Window> wanted_window() {
   Window window;
   const char* named = std::getenv("LIMBER_SCENES");
-  return named && std::sscanf(named, "%dx%d@%f", &window.size.x, &window.size.y, &window.scale) >= 2 ? std::optional(window) : std::nullopt;
+  return named && std::sscanf(named, "%dx%d@%f", &window.size.x, &window.size.y, &window.scale) >= 2
+             ? std::optional(window)
+             : std::nullopt;
 }
 
 void check_golden(const std::string& name, const Image& window) {
@@ -111,7 +122,8 @@ void check_golden(const std::string& name, const Image& window) {
 
 // A sitting in which nothing moves by itself.
 struct Scene {
-  explicit Scene(const glm::ivec2& size = kWindow) : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
+  explicit Scene(const glm::ivec2& size = kWindow)
+      : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
     editor().preferences.reduce_motion = true;
     editor().views->renderer.average_at_rest(6);  // as users see it
     editor().preferences.scale = wanted_window().value_or(Window{}).scale;
@@ -173,7 +185,9 @@ TEST_CASE("golden: arm, X-ray with bones, one chosen") {
 
 TEST_CASE("golden: arm, bones as cylinders in front, with names and axes") {
   Arm scene;
-  scene.play("click View/Bones/Cylinders\n click \"View/Bones/Bone names\"\n click \"View/Bones/Bone axes\"\n click \"View/Bones/Bones in front\"\n click tool.rotate");
+  scene.play(
+      "click View/Bones/Cylinders\n click \"View/Bones/Bone names\"\n click \"View/Bones/Bone axes\"\n click "
+      "\"View/Bones/Bones in front\"\n click tool.rotate");
   scene.editor().selection.bone = 1;
   scene.editor().selection.bones = {1};
   check_golden("bones_cylinders", scene.picture());
@@ -278,7 +292,8 @@ TEST_CASE("golden: body with organs") {
   Phantom phantom = make_body_phantom(6);
   Visibility visibility;
   for (const Tissue& tissue : phantom.tissues.tissues)
-    if (tissue.kind == TissueKind::Skin || tissue.kind == TissueKind::Fat || tissue.kind == TissueKind::Muscle) visibility.looks[tissue.label].visible = false;
+    if (tissue.kind == TissueKind::Skin || tissue.kind == TissueKind::Fat || tissue.kind == TissueKind::Muscle)
+      visibility.looks[tissue.label].visible = false;
   scene.open(std::move(phantom), "body", visibility);
   check_golden("body_organs", scene.picture());
 }
@@ -316,14 +331,17 @@ TEST_CASE("golden: a job at work") {
 
 TEST_CASE("golden: an error message") {
   Arm scene;
-  scene.editor().messages.show_error("the rig lies outside the volume: /data/limbs/far.json: choose the rig of this volume, or check its units (mm) and axes (LPS)");
+  scene.editor().messages.show_error(
+      "the rig lies outside the volume: /data/limbs/far.json: choose the rig of this volume, or check its units (mm) "
+      "and axes (LPS)");
   scene.editor().touch();
   check_golden("error", scene.picture());
 }
 
 TEST_CASE("golden: a hidden tissue, another display, a hidden tool strip and another theme are noticed") {
   Arm scene;
-  for (const char* change : {"move \"3D view/view\"\n key H", "move \"3D view/view\"\n key Alt+Z", "key T", "key F3\n type \"other theme\"\n key Return"}) {
+  for (const char* change : {"move \"3D view/view\"\n key H", "move \"3D view/view\"\n key Alt+Z", "key T",
+                             "key F3\n type \"other theme\"\n key Return"}) {
     INFO(std::string(change));
     const Image before = halved(scene.picture());
     CHECK(compare(before, halved(scene.picture())).same());

@@ -7,7 +7,7 @@
 #include <epoxy/gl.h>
 
 #include "core/base/error.h"
-#include "editor/frame_log.h"
+#include "editor/context/frame_timing.h"
 #include "render/gl/object.h"
 #include "render/image_io.h"
 #include "tests/editor/small_clip.h"
@@ -57,7 +57,8 @@ TEST_CASE("replay: clicks faster than frames all arrive") {
   REQUIRE(eye);
   test.host->events.push(editor::PointerMoved{eye->rect.centre()});
   for (int i = 0; i < 7; ++i)
-    for (const bool down : {true, false}) test.host->events.push(editor::ButtonChanged{editor::MouseButton::Left, down});
+    for (const bool down : {true, false})
+      test.host->events.push(editor::ButtonChanged{editor::MouseButton::Left, down});
   test.player.settle();
   CHECK(test.fact("hidden") == "1");
   CHECK(test.fact("history") == "8");
@@ -113,7 +114,9 @@ TEST_CASE("replay: the 3D view turns, shifts and zooms with Blender's keys") {
   CHECK(camera().distance > distance);
   test.play("wheel \"3D view/view\" 3");
   CHECK(camera().distance < distance * 1.2);
-  test.play("key Num1\n wait 0.3\n expect view Front\n key Ctrl+Num3\n wait 0.3\n expect view Right\n key Num5\n expect projection parallel");
+  test.play(
+      "key Num1\n wait 0.3\n expect view Front\n key Ctrl+Num3\n wait 0.3\n expect view Right\n key Num5\n expect "
+      "projection parallel");
   const render::Camera right = camera();
   test.play("drag \"3D view/view\" 40 0 LMB Alt");
   CHECK(camera().world_from_view != right.world_from_view);
@@ -157,7 +160,8 @@ TEST_CASE("replay: slices step, zoom about the pointer, shift, and meet in the c
   CHECK(test.editor->views->slices[2].camera.millimetres_per_pixel == doctest::Approx(scale / 1.44));
   const glm::dvec3 centre = test.editor->views->slices[1].camera.centre;
   test.play("drag Coronal/view 30 0 MMB");
-  CHECK(test.editor->views->slices[1].camera.centre.x == doctest::Approx(centre.x - 30 * test.editor->views->slices[1].camera.millimetres_per_pixel));
+  CHECK(test.editor->views->slices[1].camera.centre.x ==
+        doctest::Approx(centre.x - 30 * test.editor->views->slices[1].camera.millimetres_per_pixel));
   test.play("click tool.cross_hair\n drag Coronal/view 20 0");
   CHECK(test.editor->views->cross_hair.x > centre.x - 30 * test.editor->views->slices[1].camera.millimetres_per_pixel);
   test.play("key O\n expect slices outline");
@@ -203,7 +207,9 @@ TEST_CASE("replay: splitters follow the pointer, and a double click restores the
 
 TEST_CASE("replay: the area under the pointer is maximized and shrinks back") {
   SmallEditor test({1280, 720});
-  test.play("click view.four\n move Coronal/view\n key Ctrl+Space\n expect maximized Coronal\n key Ctrl+Space\n expect maximized no\n expect layout four");
+  test.play(
+      "click view.four\n move Coronal/view\n key Ctrl+Space\n expect maximized Coronal\n key Ctrl+Space\n expect "
+      "maximized no\n expect layout four");
 }
 
 TEST_CASE("replay: the same script gives the same document and the same picture") {
@@ -228,7 +234,8 @@ TEST_CASE("replay: the same script gives the same document and the same picture"
   CHECK(hash[0] == hash[1]);
   REQUIRE(picture[0].size == picture[1].size);
   std::int64_t different = 0;
-  for (std::size_t i = 0; i < picture[0].rgba.size(); ++i) different += std::abs(picture[0].rgba[i] - picture[1].rgba[i]) > 4;
+  for (std::size_t i = 0; i < picture[0].rgba.size(); ++i)
+    different += std::abs(picture[0].rgba[i] - picture[1].rgba[i]) > 4;
   CHECK(different < std::ssize(picture[0].rgba) / 1000);
 }
 
@@ -249,7 +256,8 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
 }
 
 TEST_CASE("replay: named widgets lie in their regions and none covers another") {
-  for (const auto& [size, scale] : {std::pair{glm::ivec2(1600, 900), 1.0}, {glm::ivec2(1024, 640), 1.0}, {glm::ivec2(2048, 1280), 2.0}}) {
+  for (const auto& [size, scale] :
+       {std::pair{glm::ivec2(1600, 900), 1.0}, {glm::ivec2(1024, 640), 1.0}, {glm::ivec2(2048, 1280), 2.0}}) {
     SmallEditor test(size, {.scale = scale});
     for (const char* arrangement : {"click view.one", "click view.four", "click view.split\n click \"Help/Console\""}) {
       test.play(arrangement);
@@ -271,7 +279,9 @@ TEST_CASE("replay: named widgets lie in their regions and none covers another") 
         INFO(size.x, "x", size.y, ": ", widgets[i].name);
         CHECK(region_of(widgets[i].region).contains(widgets[i].rect));
         for (std::size_t k = 0; k < i; ++k) {
-          if (widgets[i].region != widgets[k].region || widgets[i].name.ends_with("/view") || widgets[k].name.ends_with("/view")) continue;
+          if (widgets[i].region != widgets[k].region || widgets[i].name.ends_with("/view") ||
+              widgets[k].name.ends_with("/view"))
+            continue;
           if (widgets[i].name.ends_with("/grip") || widgets[k].name.ends_with("/grip")) continue;
           INFO("and ", widgets[k].name);
           CHECK_FALSE(widgets[i].rect.overlaps(widgets[k].rect));
@@ -319,7 +329,8 @@ TEST_CASE("replay: while a number is typed its field shows digits alone, and no 
     const render::Image picture = test.host->picture();
     std::vector<std::uint8_t> pixels;
     for (int y = static_cast<int>(field.low.y); y < static_cast<int>(field.high.y); ++y) {
-      const auto at = picture.rgba.begin() + 4 * (static_cast<std::ptrdiff_t>(y) * picture.size.x + static_cast<int>(field.high.x) + 1);
+      const auto at = picture.rgba.begin() +
+                      4 * (static_cast<std::ptrdiff_t>(y) * picture.size.x + static_cast<int>(field.high.x) + 1);
       pixels.insert(pixels.end(), at, at + 4 * 14);
     }
     return pixels;
@@ -337,8 +348,10 @@ TEST_CASE("replay: a script tells what its frames cost, and what a clip that pla
   test.editor->history.reset(bending_limb(), "Open limb");
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder / name).string(); };
-  test.play("key Ctrl+3\nwait-idle\nframe-log " + file("before") + "\nmove \"3D view/view\"\nkey Space\nwait 0.5\nexpect playing yes\nshot " + file("a.png") +
-            "\nshot-now " + file("b.png") + "\nwait 0.5\nexpect playing yes\nframe-log " + file("log") + "\nframe-log " + file("empty"));
+  test.play("key Ctrl+3\nwait-idle\nframe-log " + file("before") +
+            "\nmove \"3D view/view\"\nkey Space\nwait 0.5\nexpect playing yes\nshot " + file("a.png") + "\nshot-now " +
+            file("b.png") + "\nwait 0.5\nexpect playing yes\nframe-log " + file("log") + "\nframe-log " +
+            file("empty"));
   CHECK(render::read_png(file("a.png")).rgba == render::read_png(file("b.png")).rgba);
   CHECK_THROWS_WITH_AS(test.play("wait-idle"), doctest::Contains("while a clip plays"), Error);
   std::istringstream log(read_file(file("log")));
@@ -378,8 +391,9 @@ TEST_CASE("script: a wrong line is named") {
 
 TEST_CASE("script: a number that no window or hand reaches is refused, and nothing waits for ever") {
   SmallEditor test;
-  for (const char* line : {"wait nan", "wait inf", "wait 1e308", "wait -1", "resize 0 500", "resize 1e9 500", "resize nan 500",
-                           "move 1e308 0", "wheel \"3D view/view\" 1e9", "drag \"3D view/view\" inf 0"})
+  for (const char* line :
+       {"wait nan", "wait inf", "wait 1e308", "wait -1", "resize 0 500", "resize 1e9 500", "resize nan 500",
+        "move 1e308 0", "wheel \"3D view/view\" 1e9", "drag \"3D view/view\" inf 0"})
     CHECK_THROWS_WITH_AS(test.play(line), doctest::Contains("a number from"), Error);
 }
 
@@ -408,7 +422,8 @@ TEST_CASE("replay: a face of the clip box follows its handle, shown while dragge
   const AffineTransform world = world_from_voxel(test.editor->document().volume->grid);
   glm::dvec3 face = (box().low + box().high) * 0.5;
   face.z = box().high.z;
-  REQUIRE(render::project(test.editor->views->body.camera, world * face, glm::ivec2(test.editor->layout.views.size()), pixel));
+  REQUIRE(render::project(test.editor->views->body.camera, world * face, glm::ivec2(test.editor->layout.views.size()),
+                          pixel));
   CHECK(std::abs(pixel.y + test.editor->layout.views.low.y - (at.y + 60)) < 10);
   test.play("key Ctrl+Z");
   CHECK(box() == before);
@@ -432,12 +447,16 @@ TEST_CASE("replay: opacity is dragged live and is one edit") {
 
 TEST_CASE("replay: the right button chooses what it lists commands for") {
   SmallEditor test({1280, 720});
-  test.play("wait-idle\n right-click \"3D view/view\"\n expect tissue 143\n expect \"widget:context/Hide\"\n click context/Hide\n expect hidden 1\n expect edit \"Hide Skin\"");
+  test.play(
+      "wait-idle\n right-click \"3D view/view\"\n expect tissue 143\n expect \"widget:context/Hide\"\n click "
+      "context/Hide\n expect hidden 1\n expect edit \"Hide Skin\"");
 }
 
 TEST_CASE("replay: Alt and a click choose, and list what lies behind") {
   SmallEditor test({1280, 720});
-  test.play("wait-idle\n click \"3D view/view\" Alt\n expect tissue 143\n expect \"widget:pick/Muscle\"\n click pick/Muscle\n expect tissue 17");
+  test.play(
+      "wait-idle\n click \"3D view/view\" Alt\n expect tissue 143\n expect \"widget:pick/Muscle\"\n click "
+      "pick/Muscle\n expect tissue 17");
 }
 
 TEST_CASE("replay: labels of the header's switches go before a choice goes behind three dots") {
@@ -448,7 +467,9 @@ TEST_CASE("replay: labels of the header's switches go before a choice goes behin
 
 TEST_CASE("replay: what does not fit the header goes behind three dots") {
   SmallEditor test({1200, 640});
-  test.play("click view.four\n drag \"splitter sidebar/grip\" -240 0\n expect \"widget:header/More\"\n click header/More\n click \"more/Clip plane\"\n expect clip-plane yes");
+  test.play(
+      "click view.four\n drag \"splitter sidebar/grip\" -240 0\n expect \"widget:header/More\"\n click header/More\n "
+      "click \"more/Clip plane\"\n expect clip-plane yes");
 }
 
 TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of it whichever layout comes first") {
@@ -459,7 +480,8 @@ TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of
   for (const editor::ViewId id : {editor::ViewId::Axial, editor::ViewId::Coronal, editor::ViewId::Sagittal}) {
     const glm::vec2 size = test.editor->layout.place_of(id)->size();
     for (const double side : {-40.0, 40.0}) {
-      const glm::vec2 pixel = editor::pixel_of(editor::slice_of(*test.editor->views, id).camera, glm::dvec3(side), size);
+      const glm::vec2 pixel =
+          editor::pixel_of(editor::slice_of(*test.editor->views, id).camera, glm::dvec3(side), size);
       CHECK(editor::Rect{{0, 0}, size}.contains(pixel));
     }
   }

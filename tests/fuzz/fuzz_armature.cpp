@@ -3,10 +3,10 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/bender_armature.h"
-#include "core/rig/gltf.h"
-#include "core/rig/obj.h"
+#include "core/rig_io/bender_rig.h"
+#include "core/rig_io/gltf_rig.h"
+#include "core/rig_io/obj_summary.h"
+#include "core/rig_io/rig_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t size) {
   using namespace limber;

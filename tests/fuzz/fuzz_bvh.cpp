@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/rig/bvh.h"
-#include "core/rig/retarget.h"
+#include "core/motion/bvh.h"
+#include "core/motion/retarget.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t size) {
   using namespace limber;

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/volume/dielectric.h"
-#include "core/volume/landmarks.h"
+#include "core/tissue/dielectric.h"
+#include "core/volume_io/landmarks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace limber;

@@ -17,8 +17,8 @@
 
 #include "core/base/error.h"
 #include "core/base/module.h"
-#include "core/volume/dicom.h"
-#include "core/volume/dicom_codec.h"
+#include "core/volume_io/dicom.h"
+#include "core/volume_io/dicom_codec.h"
 
 namespace {
 constexpr std::size_t kMostImages = 4;

@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "editor/arrangement_json.h"
-#include "editor/preferences.h"
-#include "editor/remembered.h"
-#include "editor/theme.h"
+#include "editor/context/layout_json.h"
+#include "editor/context/preferences.h"
+#include "editor/context/recent_files.h"
+#include "editor/ui/theme.h"
 
 namespace {
 

@@ -4,14 +4,15 @@
 
 #include "core/base/error.h"
 #include "core/bones/bone_identity.h"
+#include "core/motion/retarget.h"
 #include "core/pose/pose_io.h"
-#include "core/rig/armature_io.h"
-#include "core/rig/retarget.h"
+#include "core/rig_io/rig_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t size) {
   using namespace limber;
   static const Armature rig{{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}};
-  static const Motion motion = parse_bvh("HIERARCHY ROOT base { OFFSET 0 0 0 CHANNELS 0 JOINT tip { OFFSET 0 1 0 CHANNELS 0 } }", "motion");
+  static const Motion motion =
+      parse_bvh("HIERARCHY ROOT base { OFFSET 0 0 0 CHANNELS 0 JOINT tip { OFFSET 0 1 0 CHANNELS 0 } }", "motion");
   static const TissueTable bones = [] {
     TissueTable table;
     table.tissues.resize(1);

@@ -30,13 +30,15 @@ Path file_of(const std::string& bytes) {
 // Only what read_document promises: parts that fit each other.
 void check(const Document& document) {
   if (document.volume && document.volume->grid.voxel_count() != std::ssize(document.volume->voxels)) std::abort();
-  if (document.weights && (!document.volume || TissueVoxels(*document.volume).size() != document.weights->size())) std::abort();
+  if (document.weights && (!document.volume || TissueVoxels(*document.volume).size() != document.weights->size()))
+    std::abort();
   if (document.seams && (!document.volume || !fit(*document.seams, *document.volume))) std::abort();
-  if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size())) std::abort();
+  if (document.pose && (!document.armature || document.pose->rotation.size() != document.armature->bones.size()))
+    std::abort();
 }
 
-// Chunks one after another, the root last: number of nodes, of leaves (a byte each), which earlier chunks they are (a byte
-// each), length (two bytes), bytes. A chunk that names none is a leaf when the length's highest bit is set.
+// Chunks one after another, the root last: number of nodes, of leaves (a byte each), which earlier chunks they are (a
+// byte each), length (two bytes), bytes. A chunk that names none is a leaf when the length's highest bit is set.
 struct Chunks final : ChunkSource {
   std::map<std::array<std::uint8_t, 32>, std::string> packed;
   std::vector<ChunkHash> hashes;
@@ -50,7 +52,8 @@ struct Chunks final : ChunkSource {
       Node node;
       const int nodes = byte(), leaves = byte();
       for (int i = 0; i < nodes + leaves; ++i)
-        if (const std::uint8_t which = byte(); which < hashes.size()) (i < nodes ? node.nodes : node.leaves).push_back(hashes[which]);
+        if (const std::uint8_t which = byte(); which < hashes.size())
+          (i < nodes ? node.nodes : node.leaves).push_back(hashes[which]);
       const int low = byte(), high = byte();
       const std::size_t size = std::min<std::size_t>(in.size(), static_cast<std::size_t>(low | (high & 0x7f) << 8));
       node.bytes = in.substr(0, size);

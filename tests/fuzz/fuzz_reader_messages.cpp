@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/volume/reader_messages.h"
+#include "core/volume_io/reader_messages.h"
 
 namespace {
 

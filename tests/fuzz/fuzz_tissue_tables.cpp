@@ -6,11 +6,12 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/volume/tissue_table_io.h"
+#include "core/volume_io/tissue_table_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const limber::TissueTable table = limber::parse_tissue_table(std::string(reinterpret_cast<const char*>(data), size), "f");
+    const limber::TissueTable table =
+        limber::parse_tissue_table(std::string(reinterpret_cast<const char*>(data), size), "f");
     for (const limber::Tissue& tissue : table.tissues)
       if (!std::isfinite(tissue.file_value) || !(tissue.density > 0) || !(tissue.poisson_ratio < 0.5)) std::abort();
   } catch (const limber::Error&) {

@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/seams/seams_io.h"
-#include "core/volume/vector_volume_io.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/vector_volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 // A bar of 4 x 3 x 2 voxels, all tissue but one, whose seams a file may hold.
 static const limber::LabelVolume& body() {
@@ -32,7 +32,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }();
   for (const char* name : {"a.nrrd", "a.nii"}) {
     const limber::Path path = folder / name;
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
     try {
       limber::summarize_volume(path);
       limber::read_volume(path);

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/volume/meta_header.h"
-#include "core/volume/nifti_header.h"
-#include "core/volume/nrrd_header.h"
-#include "core/volume/virtual_family.h"
+#include "core/volume_io/metaimage.h"
+#include "core/volume_io/nifti.h"
+#include "core/volume_io/nrrd.h"
+#include "core/volume_io/virtual_family.h"
 
 namespace {
 template <class Parse>
@@ -18,7 +18,9 @@ void try_parser(const Parse& parse) {
     const limber::VolumeHeader header = parse();
     const limber::Grid& grid = header.grid;
     for (int axis = 0; axis < 3; ++axis)
-      if (grid.size[axis] < 1 || !(grid.spacing[axis] > 0) || !std::isfinite(grid.spacing[axis]) || !std::isfinite(grid.origin[axis])) std::abort();
+      if (grid.size[axis] < 1 || !(grid.spacing[axis] > 0) || !std::isfinite(grid.spacing[axis]) ||
+          !std::isfinite(grid.origin[axis]))
+        std::abort();
     if (grid.voxel_count() < 1 || !(std::abs(glm::determinant(grid.direction)) > 0)) std::abort();
   } catch (const limber::Error&) {
   }

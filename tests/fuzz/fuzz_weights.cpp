@@ -34,7 +34,8 @@ struct Bar {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Bar bar;
-  static const limber::Path path = std::filesystem::temp_directory_path() / ("fuzz-weights-" + std::to_string(::getpid()) + ".nrrd");
+  static const limber::Path path =
+      std::filesystem::temp_directory_path() / ("fuzz-weights-" + std::to_string(::getpid()) + ".nrrd");
   std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     const limber::WeightsFile file = limber::read_weights(path, bar.volume, bar.tissue, bar.armature);

@@ -12,7 +12,7 @@
 
 #include "core/report/dice.h"
 #include "core/report/metrics.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 #include "tests/support/random_blobs.h"
 #include "tests/support/shared_data.h"
@@ -37,7 +37,8 @@ Image::Pointer image_of(const LabelVolume& volume, const Of& value, int margin =
   glm::ivec3 v;
   for (v.z = 0; v.z < volume.grid.size.z; ++v.z)
     for (v.y = 0; v.y < volume.grid.size.y; ++v.y)
-      for (v.x = 0; v.x < volume.grid.size.x; ++v.x) image->SetPixel({v.x + margin, v.y + margin, v.z + margin}, value(volume.at(v)));
+      for (v.x = 0; v.x < volume.grid.size.x; ++v.x)
+        image->SetPixel({v.x + margin, v.y + margin, v.z + margin}, value(volume.at(v)));
   return image;
 }
 
@@ -55,7 +56,9 @@ std::vector<std::int64_t> pieces_of(Image::Pointer mask, bool across_corners) {
 
 std::int64_t enclosed_air(const LabelVolume& volume) {
   // With a margin the air outside is one piece, and the largest here.
-  const auto pieces = pieces_of(image_of(volume, [](Label label) -> Label { return label == 0; }, 8), false);
+  const auto pieces = pieces_of(image_of(
+                                    volume, [](Label label) -> Label { return label == 0; }, 8),
+                                false);
   std::int64_t enclosed = 0;
   for (std::size_t i = 1; i < pieces.size(); ++i) enclosed += pieces[i];
   return enclosed;
@@ -66,11 +69,13 @@ void check(const LabelVolume& before, const LabelVolume& after, const TissueTabl
   for (const TissueChange& tissue : ours.tissues)
     for (const bool is_after : {false, true}) {
       INFO(tissue.name, is_after ? " after" : " before");
-      const auto pieces = pieces_of(image_of(is_after ? after : before, [&](Label label) -> Label { return label == tissue.label; }), true);
+      const auto pieces = pieces_of(
+          image_of(is_after ? after : before, [&](Label label) -> Label { return label == tissue.label; }), true);
       std::int64_t voxels = 0;
       for (const std::int64_t piece : pieces) voxels += piece;
       CHECK(voxels == (is_after ? tissue.voxels_after : tissue.voxels_before));
-      CHECK(std::count_if(pieces.begin(), pieces.end(), [](std::int64_t piece) { return piece >= kSmallest; }) == (is_after ? tissue.components_after : tissue.components_before));
+      CHECK(std::count_if(pieces.begin(), pieces.end(), [](std::int64_t piece) { return piece >= kSmallest; }) ==
+            (is_after ? tissue.components_after : tissue.components_before));
     }
   CHECK(enclosed_air(before) == ours.enclosed_air_before);
   CHECK(enclosed_air(after) == ours.enclosed_air_after);
@@ -86,7 +91,8 @@ void check(const LabelVolume& before, const LabelVolume& after, const TissueTabl
     INFO(tissue.name);
     CHECK(overlap->GetDiceCoefficient(tissue.label) == doctest::Approx(dice[tissue.label]));
     // Theirs is 2 (source - target) / (source + target).
-    const double change = double(tissue.voxels_after - tissue.voxels_before), sum = double(tissue.voxels_before + tissue.voxels_after);
+    const double change = double(tissue.voxels_after - tissue.voxels_before),
+                 sum = double(tissue.voxels_before + tissue.voxels_after);
     CHECK(std::abs(overlap->GetVolumeSimilarity(tissue.label)) == doctest::Approx(std::abs(2 * change / sum)));
   }
 }
@@ -96,7 +102,8 @@ void check(const LabelVolume& before, const LabelVolume& after, const TissueTabl
 TEST_CASE("known figures: ITK finds the same voxels, pieces, enclosed air and Dice in random blobs") {
   std::mt19937 random(11);
   TissueTable table;
-  for (Label label = 1; label < 6; ++label) table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
+  for (Label label = 1; label < 6; ++label)
+    table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
   const LabelVolume a = random_blobs(random, {30, 26, 22}, 300, 5), b = random_blobs(random, {30, 26, 22}, 300, 5);
   check(a, b, table);
 }
@@ -104,11 +111,13 @@ TEST_CASE("known figures: ITK finds the same voxels, pieces, enclosed air and Di
 TEST_CASE("known figures: ITK finds the same in an arm that was posed") {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   const TemporaryFolder folder;
-  const std::string rest = folder / "rest.nrrd", posed = folder / "posed.nrrd", rig = shared_path("data/bender/man-arm-2mm-armature.vtk").string();
+  const std::string rest = folder / "rest.nrrd", posed = folder / "posed.nrrd",
+                    rig = shared_path("data/bender/man-arm-2mm-armature.vtk").string();
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"prepare", shared_path("data/bender/man-arm-2mm.mha").string(), "-o", rest, "--spacing", "4"},
            {"weights", rest, "--rig", rig, "--method", "geodesic", "-o", folder / "w.nrrd"},
-           {"resample", rest, "--rig", rig, "--weights", folder / "w.nrrd", "--flex", "Forearm=45", "--method", "dqs", "-o", posed}}) {
+           {"resample", rest, "--rig", rig, "--weights", folder / "w.nrrd", "--flex", "Forearm=45", "--method", "dqs",
+            "-o", posed}}) {
     const auto run = run_limber(words);
     REQUIRE_MESSAGE(run.exit_code == 0, run.err);
   }

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/seams/limbs.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::oracle {
 
@@ -49,8 +49,8 @@ std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
   const Json truth = read_truth(folder);
   for (const auto& [number, bone] : truth.at("bones_in_truth_nrrd").items()) {
     const std::string wanted = bone.at("rig").at(0);
-    const auto found = std::find_if(armature.bones.begin(), armature.bones.end(),
-                                    [&](const Bone& b) { return b.name == wanted; });
+    const auto found =
+        std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& b) { return b.name == wanted; });
     if (found == armature.bones.end())
       throw Error("the rig lacks a bone that the truth names", wanted, "give the rig that lies beside the volume");
     bone_of[std::stoi(number)] = static_cast<int>(found - armature.bones.begin());
@@ -73,7 +73,8 @@ void for_each_voxel(const LabelVolume& volume, const Body& body) {
 class PartsOfBody {
  public:
   PartsOfBody(const Path& folder, const Json& truth, const LabelVolume& volume)
-      : bone_(folder / "truth.nrrd", volume), part_(folder / "parts.nrrd", volume) {
+      : bone_(folder / "truth.nrrd", volume),
+        part_(folder / "parts.nrrd", volume) {
     std::map<int, std::map<int, std::int64_t>> voxels;  // by true bone and part
     for_each_voxel(volume, [&](const glm::ivec3& v) { ++voxels[bone_.at(v)][part_.at(v)]; });
     for (const auto& [number, bone] : truth.at("bones_in_truth_nrrd").items()) {

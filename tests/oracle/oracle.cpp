@@ -23,12 +23,12 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/binding/heat_diffusion.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
+#include "core/rig_io/rig_io.h"
 #include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
-#include "core/skin/heat_diffusion.h"
 #include "core/skin/weights_io.h"
 #include "tests/oracle/body_truth.h"
 
@@ -62,7 +62,8 @@ struct ToldBody {
   BoneParts parts;
 
   ToldBody(const Options& options, Progress& progress)
-      : body(cmd::read_body(options.body, progress)), tissue(body.file.volume) {
+      : body(cmd::read_body(options.body, progress)),
+        tissue(body.file.volume) {
     const LabelVolume& volume = body.file.volume;
     const Path folder = Path(options.body.volume).parent_path();
     const Source bones = source_named("LIMBER_ORACLE_BONES", false), seams = source_named("LIMBER_ORACLE_SEAMS", true);

@@ -9,8 +9,8 @@
 
 #include <doctest/doctest.h>
 
-#include "render/headless.h"
-#include "render/looks.h"
+#include "render/gl/egl_context.h"
+#include "render/scene/tissue_appearance.h"
 #include "render/view.h"
 
 namespace limber::test {
@@ -21,7 +21,9 @@ struct Studio {
   render::Renderer renderer;
 };
 
-inline Grid grid_of(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1)) { return {.size = size, .spacing = spacing}; }
+inline Grid grid_of(const glm::ivec3& size, const glm::dvec3& spacing = glm::dvec3(1)) {
+  return {.size = size, .spacing = spacing};
+}
 
 // The label that `at` gives for each voxel's centre in the world.
 inline std::shared_ptr<const LabelVolume> painted(const Grid& grid, const std::function<Label(const glm::dvec3&)>& at) {
@@ -46,7 +48,8 @@ inline std::shared_ptr<render::LabelLooks> plain_looks() {
   return looks;
 }
 
-inline render::Scene scene_of(std::shared_ptr<const LabelVolume> volume, std::shared_ptr<const render::LabelLooks> looks = plain_looks()) {
+inline render::Scene scene_of(std::shared_ptr<const LabelVolume> volume,
+                              std::shared_ptr<const render::LabelLooks> looks = plain_looks()) {
   render::Scene scene;
   scene.volume = std::move(volume);
   scene.looks = std::move(looks);
@@ -60,7 +63,8 @@ inline render::Camera camera_of(const Grid& grid, render::Projection projection 
   const AffineTransform to_world = world_from_voxel(grid);
   glm::dvec3 low(1e300), high(-1e300);
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p = to_world * glm::dvec3(corner & 1 ? grid.size.x : 0, corner & 2 ? grid.size.y : 0, corner & 4 ? grid.size.z : 0);
+    const glm::dvec3 p =
+        to_world * glm::dvec3(corner & 1 ? grid.size.x : 0, corner & 2 ? grid.size.y : 0, corner & 4 ? grid.size.z : 0);
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
@@ -69,11 +73,13 @@ inline render::Camera camera_of(const Grid& grid, render::Projection projection 
   return framing(looking_from(side, camera), low, high, 1);
 }
 
-inline render::Image draw(render::View3D& view, const render::Scene& scene, const render::Camera& camera, const glm::ivec2& size) {
+inline render::Image draw(render::View3D& view, const render::Scene& scene, const render::Camera& camera,
+                          const glm::ivec2& size) {
   view.draw(scene, camera, size, 0, 1);
   return view.read();
 }
-inline render::Image picture_of(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera, const glm::ivec2& size) {
+inline render::Image picture_of(render::Renderer& renderer, const render::Scene& scene, const render::Camera& camera,
+                                const glm::ivec2& size) {
   render::View3D view(renderer);
   return draw(view, scene, camera, size);
 }
@@ -88,7 +94,8 @@ inline int covered(const render::Image& image) {
   return count;
 }
 
-// How two pictures of the same size differ: the mean over all channels, and the share of channels that differ by more than 8.
+// How two pictures of the same size differ: the mean over all channels, and the share of channels that differ by more
+// than 8.
 struct Difference {
   double mean = 0, share = 0;
 };
@@ -110,7 +117,8 @@ struct CpuHit {
   glm::ivec3 voxel;
   glm::dvec3 point;
 };
-inline std::optional<CpuHit> follow(const LabelVolume& volume, const render::Ray& ray, const std::function<bool(Label)>& seen) {
+inline std::optional<CpuHit> follow(const LabelVolume& volume, const render::Ray& ray,
+                                    const std::function<bool(Label)>& seen) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid), to_world = world_from_voxel(volume.grid);
   const glm::dvec3 d = to_voxel.linear * ray.direction, unit = d / glm::length(d);
   const glm::dvec3 low(-0.5), high = glm::dvec3(volume.grid.size) - 0.5, origin = to_voxel * ray.origin;

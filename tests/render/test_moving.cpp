@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "core/binding/heat_diffusion.h"
 #include "core/deform/preview_map.h"
-#include "core/rig/armature_io.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/render/studio.h"
 #include "tests/support/shared_data.h"
 

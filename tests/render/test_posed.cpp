@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <utility>
 
+#include "core/binding/heat_diffusion.h"
 #include "core/deform/preview_map.h"
+#include "core/phantom/phantom.h"
 #include "core/resample/resample.h"
-#include "core/rig/armature_io.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/render/studio.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/shared_data.h"
@@ -102,7 +102,8 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
     const glm::dvec3 rest = glm::dvec3(map->first + n) - by, fraction = (rest - map->low) / map->extent;
     if (glm::any(glm::lessThan(fraction, glm::dvec3(0))) || glm::any(glm::greaterThan(fraction, glm::dvec3(1)))) return;
     moved[map->index(n)] = by;
-    map->nodes[map->index(n)] = glm::u16vec4(glm::u16vec3(glm::round(fraction * double(PreviewMap::kFullFraction))), PreviewMap::kFullFraction);
+    map->nodes[map->index(n)] =
+        glm::u16vec4(glm::u16vec3(glm::round(fraction * double(PreviewMap::kFullFraction))), PreviewMap::kFullFraction);
   };
   const auto each = [&](const auto& body) {
     for (int z = 0; z < map->size.z; ++z)
@@ -111,13 +112,16 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   };
   each([&](const glm::ivec3& n) {
     const glm::ivec3 v = n - kAround;
-    if (posed.volume.at_or_air(v) != 0) set(n, to_voxel.linear * glm::dvec3(posed.displacement[posed.volume.grid.index(v)]));
+    if (posed.volume.at_or_air(v) != 0)
+      set(n, to_voxel.linear * glm::dvec3(posed.displacement[posed.volume.grid.index(v)]));
   });
   // What lies just outside carries on straight.
   for (int ring = 0; ring < 2; ++ring) {
     std::vector<std::pair<glm::ivec3, glm::dvec3>> found;
     each([&](const glm::ivec3& n) {
-      if (map->covers(n) || glm::any(glm::lessThan(n, glm::ivec3(2))) || glm::any(glm::greaterThanEqual(n, map->size - 2))) return;
+      if (map->covers(n) || glm::any(glm::lessThan(n, glm::ivec3(2))) ||
+          glm::any(glm::greaterThanEqual(n, map->size - 2)))
+        return;
       glm::dvec3 sum(0);
       int neighbours = 0;
       for (int axis = 0; axis < 3; ++axis)
@@ -146,30 +150,38 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
       most = glm::max(most, glm::u16vec3(map->nodes[map->index(c)]));
     }
     if (low.x > high.x) return;
-    map->cubes[map->index(n)] = glm::any(glm::greaterThan(high - low, glm::dvec3(map->jump()))) ? PreviewMap::kBroken : PreviewMap::kWhole;
+    map->cubes[map->index(n)] =
+        glm::any(glm::greaterThan(high - low, glm::dvec3(map->jump()))) ? PreviewMap::kBroken : PreviewMap::kWhole;
     map->reach[map->index(n)] = {least, most};
   });
   return map;
 }
 
-// Turning a body's voxels into others shifts its outline by itself, by 0.2 to 1.1 % of its area where an arm only turns; so
-// the labels' own outline is asked for no more than what the dense map's differs from it.
-void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig, const TissueVoxels& tissue,
-                   const SkinWeights& weights, const Pose& pose, bool linear) {
+// Turning a body's voxels into others shifts its outline by itself, by 0.2 to 1.1 % of its area where an arm only
+// turns; so the labels' own outline is asked for no more than what the dense map's differs from it.
+void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig,
+                   const TissueVoxels& tissue, const SkinWeights& weights, const Pose& pose, bool linear) {
   Studio studio;
-  Scene coarse = scene_of(volume, std::make_shared<const LabelLooks>(looks_of(tissues))), fine = coarse, labels = coarse;
-  coarse.pose = LivePreview(volume, tissues, tissue, weights, 4).update(posed_from_rest(rig, pose), linear ? Blend::Linear : Blend::DualQuaternion);
-  const Posed posed = resample(*volume, tissues, rig, weights, pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.displacement = true});
+  Scene coarse = scene_of(volume, std::make_shared<const LabelLooks>(looks_of(tissues))), fine = coarse,
+        labels = coarse;
+  coarse.pose = LivePreview(volume, tissues, tissue, weights, 4)
+                    .update(posed_from_rest(rig, pose), linear ? Blend::Linear : Blend::DualQuaternion);
+  const Posed posed = resample(*volume, tissues, rig, weights, pose,
+                               linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.displacement = true});
   fine.pose = dense_map(*volume, posed);
   labels.volume = std::make_shared<const LabelVolume>(posed.volume);
-  const Camera front = camera_of(posed.volume.grid), side = camera_of(posed.volume.grid, Projection::Perspective, StandardView::Left);
+  const Camera front = camera_of(posed.volume.grid),
+               side = camera_of(posed.volume.grid, Projection::Perspective, StandardView::Left);
   Camera oblique = front;
-  oblique.world_from_view = glm::angleAxis(0.8, glm::dvec3(0, 0, 1)) * front.world_from_view * glm::angleAxis(-0.6, glm::dvec3(1, 0, 0));
+  oblique.world_from_view =
+      glm::angleAxis(0.8, glm::dvec3(0, 0, 1)) * front.world_from_view * glm::angleAxis(-0.6, glm::dvec3(1, 0, 0));
   for (const Camera& camera : {front, side, oblique}) {
-    const Image a = picture_of(studio.renderer, coarse, camera, kSize), b = picture_of(studio.renderer, fine, camera, kSize),
+    const Image a = picture_of(studio.renderer, coarse, camera, kSize),
+                b = picture_of(studio.renderer, fine, camera, kSize),
                 c = picture_of(studio.renderer, labels, camera, kSize);
     CHECK(covered(b) > 5000);
-    MESSAGE("to the dense map ", silhouette_difference(a, b), ", to the labels ", silhouette_difference(a, c), ", of the dense map to the labels ", silhouette_difference(b, c));
+    MESSAGE("to the dense map ", silhouette_difference(a, b), ", to the labels ", silhouette_difference(a, c),
+            ", of the dense map to the labels ", silhouette_difference(b, c));
     CHECK(silhouette_difference(a, b) < 0.005);
     CHECK(silhouette_difference(a, c) < silhouette_difference(b, c) + 0.002);
   }
@@ -184,7 +196,8 @@ TEST_CASE("posed body: at rest the picture is that of the volume itself, in ever
   for (const Display display : {Display::Solid, Display::XRay, Display::Tissue}) {
     Scene a = posed, b = still;
     a.display = b.display = display;
-    const Difference apart = difference(picture_of(studio.renderer, a, camera, kSize), picture_of(studio.renderer, b, camera, kSize));
+    const Difference apart =
+        difference(picture_of(studio.renderer, a, camera, kSize), picture_of(studio.renderer, b, camera, kSize));
     INFO("display ", int(display), " mean ", apart.mean, " share ", apart.share);
     CHECK(apart.mean < 0.1);
     CHECK(apart.share < 0.002);
@@ -223,7 +236,8 @@ TEST_CASE("posed body: a bent elbow has the colours of the resampled volume") {
     const Scene dense = arm().resampled(pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}));
     for (const StandardView side : {StandardView::Front, StandardView::Left}) {
       const Camera camera = camera_of(dense.volume->grid, Projection::Perspective, side);
-      const Image a = picture_of(studio.renderer, posed, camera, kSize), b = picture_of(studio.renderer, dense, camera, kSize);
+      const Image a = picture_of(studio.renderer, posed, camera, kSize),
+                  b = picture_of(studio.renderer, dense, camera, kSize);
       INFO("linear ", linear, " side ", int(side));
       CHECK(covered(b) > 5000);
       CHECK(colours_agree(a, b) > 0.87);
@@ -248,7 +262,9 @@ TEST_CASE("posed body: a slice shows the labels of the resampled volume") {
   const Pose pose = arm().bent(60);
   const Scene posed = arm().posed(pose, Blend::Linear), dense = arm().resampled(pose, LinearBlend{});
   const AffineTransform to_world = world_from_voxel(dense.volume->grid);
-  SliceCamera camera{.axis = SliceAxis::Sagittal, .centre = to_world * (glm::dvec3(dense.volume->grid.size) / 2.0), .millimetres_per_pixel = 2};
+  SliceCamera camera{.axis = SliceAxis::Sagittal,
+                     .centre = to_world * (glm::dvec3(dense.volume->grid.size) / 2.0),
+                     .millimetres_per_pixel = 2};
   SliceView view(studio.renderer);
   view.draw(posed, camera, SliceDisplay::Labels, kSize);
   const Image a = view.read();

@@ -26,7 +26,8 @@ TEST_CASE("slice: each pixel has the colour of the voxel under it, on every axis
     const Scene scene = scene_of(volume);
     const AffineTransform to_voxel = voxel_from_world(grid);
     for (const SliceAxis axis : {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal}) {
-      const SliceCamera camera{.axis = axis, .centre = world_from_voxel(grid) * glm::dvec3(20.2, 17.3, 21.1), .millimetres_per_pixel = 0.77};
+      const SliceCamera camera{
+          .axis = axis, .centre = world_from_voxel(grid) * glm::dvec3(20.2, 17.3, 21.1), .millimetres_per_pixel = 0.77};
       const SliceFrame frame = frame_of(axis);
       view.draw(scene, camera, SliceDisplay::Labels, kSize);
       const Image image = view.read();
@@ -46,7 +47,8 @@ TEST_CASE("slice: each pixel has the colour of the voxel under it, on every axis
   }
 }
 
-TEST_CASE("slice: the patient's right is on the left, the front on top in axial slices, the head on top in the others") {
+TEST_CASE(
+    "slice: the patient's right is on the left, the front on top in axial slices, the head on top in the others") {
   CHECK(frame_of(SliceAxis::Axial).right == glm::dvec3(1, 0, 0));
   CHECK(frame_of(SliceAxis::Axial).down == glm::dvec3(0, 1, 0));
   CHECK(frame_of(SliceAxis::Coronal).right == glm::dvec3(1, 0, 0));
@@ -58,7 +60,8 @@ TEST_CASE("slice: hidden tissue shows the background, and outlines leave the ins
   Studio studio;
   SliceView view(studio.renderer);
   const Grid grid = grid_of({40, 40, 40});
-  const auto volume = painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0; });
+  const auto volume =
+      painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0; });
   const SliceCamera camera{.centre = glm::dvec3(20), .millimetres_per_pixel = 0.6};
   auto looks = plain_looks();
   const Scene shown = scene_of(volume, looks);

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "render/gl/object.h"
 #include "tests/render/studio.h"
 #include "tests/support/shared_data.h"
@@ -47,7 +47,9 @@ struct Agreement {
 Agreement compare_with_cpu(const View3D& view, const Scene& scene, const Camera& camera, double voxel) {
   Agreement result;
   const auto seen = [&](Label label) { return label < scene.looks->size() && (*scene.looks)[label].visible; };
-  const auto cpu_hit = [&](int x, int y) { return follow(*scene.volume, ray_through(camera, glm::dvec2(x, y) + 0.5, kSize), seen); };
+  const auto cpu_hit = [&](int x, int y) {
+    return follow(*scene.volume, ray_through(camera, glm::dvec2(x, y) + 0.5, kSize), seen);
+  };
   for (int y = 3; y < kSize.y; y += 6)
     for (int x = 3; x < kSize.x; x += 6) {
       const auto cpu = cpu_hit(x, y);
@@ -107,7 +109,8 @@ TEST_CASE("view: what is picked agrees with rays followed on the CPU, on mirrore
       const Camera camera = zoomed(orbited(camera_of(grid, projection), {75, -50}), 0.7);
       View3D view(studio.renderer);
       view.draw(scene, camera, kSize, 0, 1);
-      const Agreement agreement = compare_with_cpu(view, scene, camera, std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
+      const Agreement agreement =
+          compare_with_cpu(view, scene, camera, std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z}));
       CHECK(agreement.both > 60);
       CHECK(agreement.only_one <= 2);
       CHECK(agreement.far <= agreement.both / 25);
@@ -119,7 +122,7 @@ TEST_CASE("view: threads and sheets of one voxel are not lost") {
   Studio studio;
   const Grid grid = grid_of({40, 40, 40});
   const auto thin = painted(grid, [](const glm::dvec3& p) -> Label {
-    if (p.x == 10 && p.y == 20) return 1;                          // a thread along z
+    if (p.x == 10 && p.y == 20) return 1;                                    // a thread along z
     return p.x == 26 && p.z > 8 && p.z < 30 && p.y > 8 && p.y < 30 ? 2 : 0;  // a sheet
   });
   const Camera camera = orbited(camera_of(grid, Projection::Orthographic), {60, 0});
@@ -228,7 +231,8 @@ TEST_CASE("view: a volume for which there is no room at all is refused in one se
   Studio studio(8);
   View3D view(studio.renderer);
   const Grid grid = grid_of({40, 40, 40});
-  CHECK_THROWS_WITH_AS(view.draw(scene_of(ball(grid, 10)), camera_of(grid), kSize, 0, 1), doctest::Contains("no room"), Error);
+  CHECK_THROWS_WITH_AS(view.draw(scene_of(ball(grid, 10)), camera_of(grid), kSize, 0, 1), doctest::Contains("no room"),
+                       Error);
 }
 
 TEST_CASE("view: a skin one voxel thick, closed by edges alone, hides what lies beneath from everywhere") {
@@ -298,7 +302,8 @@ TEST_CASE("view: a clip box cuts the body open, and the cut shows labels as they
   CHECK(shell->label == 1);
   CHECK(core->normal == glm::dvec3(0));
   CHECK(core->point.y == doctest::Approx(31.5).epsilon(0.01));
-  CHECK(glm::all(glm::lessThan(glm::abs(pixel_of(image, {100, 100}) - glm::ivec4(26, 26, 230, 255)), glm::ivec4(3))));  // 0.1, 0.1, 0.9
+  CHECK(glm::all(glm::lessThan(glm::abs(pixel_of(image, {100, 100}) - glm::ivec4(26, 26, 230, 255)),
+                               glm::ivec4(3))));  // 0.1, 0.1, 0.9
 }
 
 TEST_CASE("view: a clip plane hides its normal's side") {
@@ -362,7 +367,8 @@ TEST_CASE("view: the same scene gives the same picture, byte for byte, at once a
     }
     return view.read();
   };
-  CHECK(picture_of(studio.renderer, scene, camera, kSize).rgba == picture_of(studio.renderer, scene, camera, kSize).rgba);
+  CHECK(picture_of(studio.renderer, scene, camera, kSize).rgba ==
+        picture_of(studio.renderer, scene, camera, kSize).rgba);
   const Image first = refined();
   CHECK(first.rgba == refined().rgba);
   CHECK(difference(first, picture_of(studio.renderer, scene, camera, kSize)).mean < 4);
@@ -402,9 +408,12 @@ TEST_CASE("view: an empty volume, no volume, and an eye inside the body are draw
   Studio studio;
   const Grid grid = grid_of({40, 40, 40});
   const Camera camera = camera_of(grid);
-  CHECK(covered(picture_of(studio.renderer, scene_of(painted(grid, [](const glm::dvec3&) { return Label{0}; })), camera, kSize)) == 0);
+  CHECK(covered(picture_of(studio.renderer, scene_of(painted(grid, [](const glm::dvec3&) { return Label{0}; })), camera,
+                           kSize)) == 0);
   CHECK(covered(picture_of(studio.renderer, Scene{.grid = false, .transparent_background = true}, camera, kSize)) == 0);
-  CHECK(covered(picture_of(studio.renderer, scene_of(painted(grid_of({1, 1, 1}), [](const glm::dvec3&) { return Label{1}; })), camera_of(grid_of({1, 1, 1})), kSize)) > 100);
+  CHECK(covered(picture_of(studio.renderer,
+                           scene_of(painted(grid_of({1, 1, 1}), [](const glm::dvec3&) { return Label{1}; })),
+                           camera_of(grid_of({1, 1, 1})), kSize)) > 100);
 
   // Within a shell: its inner wall is all around.
   const auto shell = painted(grid, [](const glm::dvec3& p) -> Label {
@@ -444,7 +453,8 @@ TEST_CASE("view: bones are picked where they are drawn, and a body in front dims
   CHECK_FALSE(view.pick_bone({-1, 300}));
 }
 
-TEST_CASE("view: a cylinder is as wide at the head as at the tail, an octahedron is not, and either is picked at its rim") {
+TEST_CASE(
+    "view: a cylinder is as wide at the head as at the tail, an octahedron is not, and either is picked at its rim") {
   Studio studio;
   auto armature = std::make_shared<Armature>();
   armature->bones.push_back({.name = "Bone", .head = {0, 0, 0}, .tail = {0, 0, 100}});
@@ -496,7 +506,8 @@ TEST_CASE("view: at twice the scale bones' lines and joints are twice as wide, a
     const Image image = draw(view, scene, camera, kSize);
     const auto width = [&](double y) {
       double sum = 0;
-      for (int x = 0; x < kSize.x; ++x) sum += image.rgba[(static_cast<size_t>(std::lround(y)) * kSize.x + x) * 4 + 3] > 0;
+      for (int x = 0; x < kSize.x; ++x)
+        sum += image.rgba[(static_cast<size_t>(std::lround(y)) * kSize.x + x) * 4 + 3] > 0;
       return sum;
     };
     const glm::ivec2 middle(glm::mix(head, tail, 0.5));

@@ -14,8 +14,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "core/volume/reader_messages.h"
-#include "core/volume/serve_volume.h"
+#include "core/volume_io/reader_messages.h"
+#include "core/volume_io/serve_volume.h"
 
 using namespace limber;
 

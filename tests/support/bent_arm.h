@@ -1,28 +1,32 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A real arm with a bent joint, made as the commands make it: what is bone is found, weights are diffused, the joint is fitted to
-// its bones.
+// A real arm with a bent joint, made as the commands make it: what is bone is found, weights are diffused, the joint is
+// fitted to its bones.
 #pragma once
 
 #include <memory>
 #include <string>
 
-#include "core/pose/pose.h"
+#include "core/autorig/joint_axis_fit.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/bones/guess_bone_labels.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/pose_path.h"
 #include "core/resample/resample.h"
-#include "core/rig/armature_io.h"
-#include "core/bones/guess_bone_labels.h"
-#include "core/rig/fit_joint.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/volume_io.h"
+#include "core/rig/pose.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::test {
 
 class BentArm {
  public:
   BentArm(const std::string& volume_file, const std::string& rig_file, const std::string& bone = "Forearm")
-      : file_(read_volume(volume_file)), tissues(merge_tissue_tables(file_.tissues, nullptr)), given_rig_(read_armature_file(rig_file).armature), bone_(bone) {
-    if (const auto guess = guess_bone_tissue(volume, tissues, given_rig_)) tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
+      : file_(read_volume(volume_file)),
+        tissues(merge_tissue_tables(file_.tissues, nullptr)),
+        given_rig_(read_armature_file(rig_file).armature),
+        bone_(bone) {
+    if (const auto guess = guess_bone_tissue(volume, tissues, given_rig_))
+      tissues = with_bones(tissues, {tissues.find(guess->label)->file_value});
     for (const Tissue& each : tissues.tissues) is_bone[each.label] = limber::is_bone(each.kind);
     parts_ = split_bones(volume, tissue, tissues, given_rig_);
     weights = diffuse_heat(volume, tissue, tissues, given_rig_, parts_);
@@ -38,8 +42,12 @@ class BentArm {
     pose = std::move(fitted.pose);
   }
 
-  std::vector<RigidTransform> motions(double t) const { return bone_motions(weights.bones(), rig, part_of_pose(pose, t)); }
-  std::shared_ptr<const FemShape> solved(const Fem& fem) const { return solve_shape(volume, tissue, tissues, is_bone, weights, rig, pose, fem); }
+  std::vector<RigidTransform> motions(double t) const {
+    return bone_motions(weights.bones(), rig, part_of_pose(pose, t));
+  }
+  std::shared_ptr<const FemShape> solved(const Fem& fem) const {
+    return solve_shape(volume, tissue, tissues, is_bone, weights, rig, pose, fem);
+  }
   Posed posed(const Method& method) const { return resample(volume, tissues, rig, weights, pose, method); }
 
  private:

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A limb small enough to check by hand: a round tube along z of skin, fat and two bones with a gap at the joint, a rig of
-// two bones that meet there, and weights that change over a few voxels around the joint in soft tissue and are whole in
-// bone.
+// A limb small enough to check by hand: a round tube along z of skin, fat and two bones with a gap at the joint, a rig
+// of two bones that meet there, and weights that change over a few voxels around the joint in soft tissue and are whole
+// in bone.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 #include "core/skin/skin_weights.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber::test {
 
@@ -45,7 +45,8 @@ inline Grid oblique_grid() {
 
 inline TissueTable tube_tissues() {
   TissueTable table;
-  for (auto [label, name, kind] : {std::tuple{kSkin, "skin", TissueKind::Skin}, {kFat, "fat", TissueKind::Fat},
+  for (auto [label, name, kind] : {std::tuple{kSkin, "skin", TissueKind::Skin},
+                                   {kFat, "fat", TissueKind::Fat},
                                    {kBone, "bone", TissueKind::Bone}}) {
     Tissue tissue;
     tissue.label = label;
@@ -76,7 +77,8 @@ inline BentTube bent_tube(const Grid& grid = {}, int length = 44) {
   tube.tissues = tube_tissues();
 
   const AffineTransform world = world_from_voxel(tube.volume.grid);
-  const glm::dvec3 ends[] = {world * glm::dvec3(11, 12, 2), world * glm::dvec3(11, 12, joint), world * glm::dvec3(11, 12, length - 4)};
+  const glm::dvec3 ends[] = {world * glm::dvec3(11, 12, 2), world * glm::dvec3(11, 12, joint),
+                             world * glm::dvec3(11, 12, length - 4)};
   for (int b = 0; b < 2; ++b) {
     Bone bone;
     bone.name = b ? "far" : "near";

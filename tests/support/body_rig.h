@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/pose/apply_pose.h"
-#include "core/pose/pose.h"
+#include "core/pose/apply_pose_as_rest.h"
+#include "core/rig/pose.h"
 
 namespace limber::test {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pairs of triangles that cross or touch elsewhere than in corners and edges they share, by CGAL's boxes and exact predicates. Unlike
-// CGAL's own self_intersections it takes surfaces that are no manifolds: parts of a body may meet in an edge.
+// Pairs of triangles that cross or touch elsewhere than in corners and edges they share, by CGAL's boxes and exact
+// predicates. Unlike CGAL's own self_intersections it takes surfaces that are no manifolds: parts of a body may meet in
+// an edge.
 #pragma once
 
 #include <array>
@@ -30,7 +31,8 @@ inline std::vector<std::array<int, 2>> crossings_by_cgal(const Eigen::MatrixX3d&
     bool cross = true;  // the same triangle twice
     if (common.empty()) cross = CGAL::do_intersect(triangle(a), triangle(b));
     if (common.size() == 1)
-      cross = CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(of_b[0]), point(of_b[1]))) || CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(of_a[0]), point(of_a[1])));
+      cross = CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(of_b[0]), point(of_b[1]))) ||
+              CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(of_a[0]), point(of_a[1])));
     if (common.size() == 2) {
       const auto p = point(common[0]), q = point(common[1]), r = point(of_a[0]), s = point(of_b[0]);
       cross = CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;

@@ -18,12 +18,16 @@ std::shared_ptr<const T> shared(T value) {
 // Bits, so that 0 and -0 differ and equal NaNs do not.
 bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool same(const glm::dvec3& a, const glm::dvec3& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
-bool same(const glm::dquat& a, const glm::dquat& b) { return same(a.w, b.w) && same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+bool same(const glm::dquat& a, const glm::dquat& b) {
+  return same(a.w, b.w) && same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
 
 bool equal(const NamedPose& a, const NamedPose& b) {
   const auto same_turn = [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); };
-  return a.name == b.name && a.picture == b.picture && std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), b.rotation.end(), same_turn) &&
-         a.root_translation.has_value() == b.root_translation.has_value() && (!a.root_translation || same(*a.root_translation, *b.root_translation));
+  return a.name == b.name && a.picture == b.picture &&
+         std::equal(a.rotation.begin(), a.rotation.end(), b.rotation.begin(), b.rotation.end(), same_turn) &&
+         a.root_translation.has_value() == b.root_translation.has_value() &&
+         (!a.root_translation || same(*a.root_translation, *b.root_translation));
 }
 bool equal(const Anchors& a, const Anchors& b) {
   const auto same_pole = [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); };
@@ -34,9 +38,9 @@ bool equal(const Seams& a, const Seams& b) { return a == b; }
 bool equal(const BoneMap& a, const BoneMap& b) { return a == b; }
 bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
 bool equal(const Tissue& a, const Tissue& b) {
-  return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour && a.kind == b.kind &&
-         same(a.density, b.density) && same(a.young_modulus, b.young_modulus) && same(a.poisson_ratio, b.poisson_ratio) &&
-         a.priority == b.priority;
+  return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour &&
+         a.kind == b.kind && same(a.density, b.density) && same(a.young_modulus, b.young_modulus) &&
+         same(a.poisson_ratio, b.poisson_ratio) && a.priority == b.priority;
 }
 bool equal(const TissueTable& a, const TissueTable& b) {
   if (a.source != b.source || a.tissues.size() != b.tissues.size()) return false;
@@ -44,7 +48,9 @@ bool equal(const TissueTable& a, const TissueTable& b) {
     if (!equal(a.tissues[i], b.tissues[i])) return false;
   return true;
 }
-bool equal(const FileType& a, const FileType& b) { return a.format == b.format && a.voxel_type == b.voxel_type && a.compressed == b.compressed; }
+bool equal(const FileType& a, const FileType& b) {
+  return a.format == b.format && a.voxel_type == b.voxel_type && a.compressed == b.compressed;
+}
 bool equal(const Armature& a, const Armature& b) { return a == b; }
 bool equal(const SkinWeights& a, const SkinWeights& b) { return a == b; }
 bool equal(const Pose& a, const Pose& b) {
@@ -54,8 +60,8 @@ bool equal(const Pose& a, const Pose& b) {
   return true;
 }
 bool equal(const Motion& a, const Motion& b) {
-  return a.joints == b.joints && a.channel_count == b.channel_count && a.frame_count == b.frame_count && same(a.frame_time, b.frame_time) &&
-         a.values == b.values && a.warnings == b.warnings;
+  return a.joints == b.joints && a.channel_count == b.channel_count && a.frame_count == b.frame_count &&
+         same(a.frame_time, b.frame_time) && a.values == b.values && a.warnings == b.warnings;
 }
 bool equal(const Visibility& a, const Visibility& b) { return a == b; }
 
@@ -64,26 +70,35 @@ bool equal(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b)
 
 bool equal(const WeightLayer& a, const WeightLayer& b) {
   return a.name == b.name && a.visible == b.visible && same(a.opacity, b.opacity) && a.weights == b.weights &&
-         std::equal(a.mask.begin(), a.mask.end(), b.mask.begin(), b.mask.end(), [](const auto& x, const auto& y) { return x && y ? *x == *y : !x && !y; });
+         std::equal(a.mask.begin(), a.mask.end(), b.mask.begin(), b.mask.end(),
+                    [](const auto& x, const auto& y) { return x && y ? *x == *y : !x && !y; });
 }
 bool equal(const WeightLayers& a, const WeightLayers& b) {
-  return equal(a.base, b.base) && std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(), [](const auto& x, const auto& y) { return equal(*x, *y); });
+  return equal(a.base, b.base) && std::equal(a.layers.begin(), a.layers.end(), b.layers.begin(), b.layers.end(),
+                                             [](const auto& x, const auto& y) { return equal(*x, *y); });
 }
 
 template <class Track>
 bool same_track(const Track& a, const Track& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); });
 }
 bool equal(const Clip& a, const Clip& b) {
-  const auto same_bone = [](const auto& x, const auto& y) { return x.first == y.first && same_track(x.second, y.second); };
-  return a.name == b.name && equal(a.motion, b.motion) && same(a.rate, b.rate) && a.start == b.start && a.first == b.first && a.last == b.last && a.map == b.map &&
-         a.retarget == b.retarget && a.range_start == b.range_start && a.range_end == b.range_end && a.markers == b.markers && same_track(a.keys.root, b.keys.root) &&
+  const auto same_bone = [](const auto& x, const auto& y) {
+    return x.first == y.first && same_track(x.second, y.second);
+  };
+  return a.name == b.name && equal(a.motion, b.motion) && same(a.rate, b.rate) && a.start == b.start &&
+         a.first == b.first && a.last == b.last && a.map == b.map && a.retarget == b.retarget &&
+         a.range_start == b.range_start && a.range_end == b.range_end && a.markers == b.markers &&
+         same_track(a.keys.root, b.keys.root) &&
          std::equal(a.keys.bones.begin(), a.keys.bones.end(), b.keys.bones.begin(), b.keys.bones.end(), same_bone);
 }
 bool equal(const Result& a, const Result& b) {
-  return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) && equal(a.from_volume, b.from_volume) &&
-         equal(a.from_tissues, b.from_tissues) && equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
-         equal(a.from_pose, b.from_pose) && !a.overlap == !b.overlap && (!a.overlap || *a.overlap == *b.overlap) && equal(a.from_seams, b.from_seams) && equal(a.from_bone_map, b.from_bone_map);
+  return a.name == b.name && a.method == b.method && a.report == b.report && equal(a.volume, b.volume) &&
+         equal(a.from_volume, b.from_volume) && equal(a.from_tissues, b.from_tissues) &&
+         equal(a.from_armature, b.from_armature) && equal(a.from_weights, b.from_weights) &&
+         equal(a.from_pose, b.from_pose) && !a.overlap == !b.overlap && (!a.overlap || *a.overlap == *b.overlap) &&
+         equal(a.from_seams, b.from_seams) && equal(a.from_bone_map, b.from_bone_map);
 }
 
 template <class T>
@@ -116,7 +131,11 @@ TissueTable two_tissues() {
   table.source = "names in the file";
   table.tissues.resize(2);
   table.tissues[0] = {.label = 1, .file_value = 17, .name = "flesh", .kind = TissueKind::Muscle};
-  table.tissues[1] = {.label = 2, .file_value = 9007199254740991.0, .name = "bone \xff not UTF-8", .kind = TissueKind::Bone, .priority = 9};
+  table.tissues[1] = {.label = 2,
+                      .file_value = 9007199254740991.0,
+                      .name = "bone \xff not UTF-8",
+                      .kind = TissueKind::Bone,
+                      .priority = 9};
   return table;
 }
 
@@ -130,7 +149,8 @@ Armature two_bones() {
 
 Motion short_motion() {
   Motion motion;
-  motion.joints.push_back({.name = "Hips", .channels = {BvhChannel::Xposition, BvhChannel::Zrotation}, .end_site = glm::dvec3(0, 1, 0)});
+  motion.joints.push_back(
+      {.name = "Hips", .channels = {BvhChannel::Xposition, BvhChannel::Zrotation}, .end_site = glm::dvec3(0, 1, 0)});
   motion.channel_count = 2;
   motion.frame_count = 3;
   motion.values = {0, 1, 2, 3, 4, -0.0f};
@@ -150,7 +170,8 @@ Clip keyed_clip() {
   return clip;
 }
 
-// The document's weights become those of a base with two layers, of which the upper is painted at two places of a brick.
+// The document's weights become those of a base with two layers, of which the upper is painted at two places of a
+// brick.
 void add_layers(Document& document, std::mt19937& random) {
   WeightLayers layers = with_new_layer(with_new_layer({document.weights, {}}, "lower \xff"), "upper");
   WeightLayer upper = *layers.layers[1];
@@ -168,24 +189,37 @@ void add_layers(Document& document, std::mt19937& random) {
 Result result_of(const Document& document, std::mt19937& random) {
   LabelVolume posed = *document.volume;
   for (int i = 0; i < 20; ++i) posed.voxels[random() % posed.voxels.size()] = static_cast<Label>(below(random, 3));
-  return {"Result " + std::to_string(random()), "dqs", shared(std::move(posed)), "{\"schema\": \"limber-report/1\"}",
-          document.volume, document.tissues, document.armature, document.weights, document.pose, nullptr, nullptr, document.seams, document.bone_map};
+  return {"Result " + std::to_string(random()),
+          "dqs",
+          shared(std::move(posed)),
+          "{\"schema\": \"limber-report/1\"}",
+          document.volume,
+          document.tissues,
+          document.armature,
+          document.weights,
+          document.pose,
+          nullptr,
+          nullptr,
+          document.seams,
+          document.bone_map};
 }
 
 }  // namespace
 
 bool same_contents(const Document& a, const Document& b) {
-  if (!equal(a.volume, b.volume) || !equal(a.tissues, b.tissues) || !equal(a.volume_type, b.volume_type) || !equal(a.armature, b.armature) ||
-      !equal(a.weights, b.weights) || !equal(a.pose, b.pose) || !equal(a.visibility, b.visibility) ||
-      a.results.size() != b.results.size())
+  if (!equal(a.volume, b.volume) || !equal(a.tissues, b.tissues) || !equal(a.volume_type, b.volume_type) ||
+      !equal(a.armature, b.armature) || !equal(a.weights, b.weights) || !equal(a.pose, b.pose) ||
+      !equal(a.visibility, b.visibility) || a.results.size() != b.results.size())
     return false;
   for (std::size_t i = 0; i < a.results.size(); ++i)
     if (!equal(a.results[i], b.results[i])) return false;
   const auto all_equal = [](const auto& ours, const auto& theirs) {
-    return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(), [](const auto& x, const auto& y) { return equal(x, y); });
+    return std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                      [](const auto& x, const auto& y) { return equal(x, y); });
   };
-  return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) && equal(a.anchors, b.anchors) &&
-         equal(a.locks, b.locks) && equal(a.layers, b.layers) && equal(a.seams, b.seams) && equal(a.bone_map, b.bone_map);
+  return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) &&
+         equal(a.anchors, b.anchors) && equal(a.locks, b.locks) && equal(a.layers, b.layers) &&
+         equal(a.seams, b.seams) && equal(a.bone_map, b.bone_map);
 }
 
 Document small_document() {
@@ -200,8 +234,9 @@ Document small_document() {
   document.clips = {shared(keyed_clip()), shared(Clip{.name = "Keys alone", .rate = 23.976})};
   document.clip = 1;
   document.frame = -3;
-  document.poses = {shared(NamedPose{"Reach \xff", {{"Lower", {0.5, -0.0, 1e-300, 0.5}}}, {}, std::string("\0PNG", 4)}),
-                    shared(NamedPose{"", {{"Upper", {1, 0, 0, 0}}}, glm::dvec3(1, -0.0, 1e-9), std::string(100'000, 'p')})};
+  document.poses = {
+      shared(NamedPose{"Reach \xff", {{"Lower", {0.5, -0.0, 1e-300, 0.5}}}, {}, std::string("\0PNG", 4)}),
+      shared(NamedPose{"", {{"Upper", {1, 0, 0, 0}}}, glm::dvec3(1, -0.0, 1e-9), std::string(100'000, 'p')})};
   document.anchors = shared(Anchors{.pins = {"Lower", "gone \xff"}, .poles = {{"Lower", {1e-300, -0.0, 70}}}});
   document.locks = shared(WeightLocks{{"Lower", "gone \xff"}});
   document.visibility = shared(Visibility{.looks = {{2, {.visible = false, .opacity = 0.25f}}}});
@@ -270,10 +305,8 @@ Document random_edit(const Document& document, std::mt19937& random) {
       break;
     }
     case 3:
-      if (document.results.size() > 3)
-        next.results.erase(next.results.begin());
-      else
-        next.results.push_back(shared(result_of(document, random)));
+      if (document.results.size() > 3) next.results.erase(next.results.begin());
+      else next.results.push_back(shared(result_of(document, random)));
       break;
     case 4:
     case 5: {

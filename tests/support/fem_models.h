@@ -17,7 +17,8 @@ struct BarModel {
   FemModel fem;
 
   explicit BarModel(int along = 20, int across = 6, double poisson_ratio = 0.499) {
-    fem.mesh = kuhn_box(across, across, along, {-width / 2, -width / 2, -length / 2}, {width / 2, width / 2, length / 2});
+    fem.mesh =
+        kuhn_box(across, across, along, {-width / 2, -width / 2, -length / 2}, {width / 2, width / 2, length / 2});
     fem.material.assign(fem.mesh.T.rows(), {4, poisson_ratio});
     fem.bone_names = {"Upper", "Lower"};
     const double reach = 1.1 * width / across;  // thick enough that flesh cannot spin around it
@@ -41,11 +42,14 @@ struct BarModel {
   }
   // The lower bone comes nearer.
   BonePath push(double mm) const {
-    return [=](double t) { return std::vector<RigidTransform>{{}, {glm::dquat(1, 0, 0, 0), glm::dvec3(0, 0, -mm * t)}}; };
+    return [=](double t) {
+      return std::vector<RigidTransform>{{}, {glm::dquat(1, 0, 0, 0), glm::dvec3(0, 0, -mm * t)}};
+    };
   }
 };
 
-// Pairs of an edge and a triangle of the mesh's skin that pass through each other and share no node. Every pair is tried.
+// Pairs of an edge and a triangle of the mesh's skin that pass through each other and share no node. Every pair is
+// tried.
 inline int skin_crossings(const TetMesh& mesh, const Eigen::MatrixX3d& V) {
   const Eigen::MatrixX3i F = boundary_of(mesh.T);
   std::vector<std::array<int, 2>> edges;
@@ -58,10 +62,13 @@ inline int skin_crossings(const TetMesh& mesh, const Eigen::MatrixX3d& V) {
   };
   int crossings = 0;
   for (const auto& f : F.rowwise()) {
-    const Eigen::RowVector3d low = V.row(f[0]).cwiseMin(V.row(f[1])).cwiseMin(V.row(f[2])), high = V.row(f[0]).cwiseMax(V.row(f[1])).cwiseMax(V.row(f[2]));
+    const Eigen::RowVector3d low = V.row(f[0]).cwiseMin(V.row(f[1])).cwiseMin(V.row(f[2])),
+                             high = V.row(f[0]).cwiseMax(V.row(f[1])).cwiseMax(V.row(f[2]));
     for (const auto& [a, b] : edges) {
       if ((f.array() == a).any() || (f.array() == b).any()) continue;
-      if ((V.row(a).cwiseMin(V.row(b)).array() > high.array()).any() || (V.row(a).cwiseMax(V.row(b)).array() < low.array()).any()) continue;
+      if ((V.row(a).cwiseMin(V.row(b)).array() > high.array()).any() ||
+          (V.row(a).cwiseMax(V.row(b)).array() < low.array()).any())
+        continue;
       if (volume(a, f[0], f[1], f[2]) * volume(b, f[0], f[1], f[2]) > 0) continue;
       const double u = volume(a, b, f[0], f[1]), v = volume(a, b, f[1], f[2]), w = volume(a, b, f[2], f[0]);
       crossings += (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "tests/support/figure.h"
 
-#include "core/rig/armature_io.h"
-#include "core/volume/tissue_table.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/tissue/tissue_table.h"
+#include "core/volume_io/volume_io.h"
 
 namespace limber::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/rig/armature.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
-#include "core/volume/tissue_table.h"
 
 namespace limber::test {
 

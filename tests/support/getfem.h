@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The energy of flesh by an independent program: GetFEM (Debian's python3-getfem), which integrates it from the text of the
-// formula, and takes Newton steps by MUMPS (tests/support/getfem_flesh.py).
+// The energy of flesh by an independent program: GetFEM (Debian's python3-getfem), which integrates it from the text of
+// the formula, and takes Newton steps by MUMPS (tests/support/getfem_flesh.py).
 #pragma once
 
 #include <fstream>
@@ -35,7 +35,8 @@ inline bool has_getfem() { return run_program("/usr/bin/python3", {"-c", "import
 namespace detail {
 template <class Number>
 void write_numbers(const std::filesystem::path& path, const Number* first, std::size_t count) {
-  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(first), std::streamsize(count * sizeof(Number)));
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(first), std::streamsize(count * sizeof(Number)));
 }
 
 inline Places read_places(const std::filesystem::path& path, Eigen::Index rows) {
@@ -52,7 +53,9 @@ inline GetfemAnswer ask_getfem(const Flesh& flesh, bool newton = false) {
   const TemporaryFolder folder;
   const std::size_t tets = flesh.material.size();
   std::vector<double> shear, bulk, patch, filled, pins(4 * flesh.rest.rows(), 0.0);
-  for (const TetMaterial& m : flesh.material) shear.push_back(m.shear_modulus), bulk.push_back(tet_bulk(m)), patch.push_back(patch_bulk(m)), filled.push_back(m.filled);
+  for (const TetMaterial& m : flesh.material)
+    shear.push_back(m.shear_modulus), bulk.push_back(tet_bulk(m)), patch.push_back(patch_bulk(m)),
+        filled.push_back(m.filled);
   const PatchOrder order = grow_patches(flesh.rest, flesh.T, patch, shear);
   std::vector<std::int32_t> patch_of(tets);
   for (std::size_t p = 0; p + 1 < order.first.size(); ++p)
@@ -75,7 +78,8 @@ inline GetfemAnswer ask_getfem(const Flesh& flesh, bool newton = false) {
   detail::write_numbers(folder / "weak.f64", weak, 2);
   detail::write_numbers(folder / "pins.f64", pins.data(), pins.size());
 
-  std::vector<std::string> words{"OMP_NUM_THREADS=1", "/usr/bin/python3", LIMBER_SOURCE_DIR "/tests/support/getfem_flesh.py", folder.path().string()};
+  std::vector<std::string> words{"OMP_NUM_THREADS=1", "/usr/bin/python3",
+                                 LIMBER_SOURCE_DIR "/tests/support/getfem_flesh.py", folder.path().string()};
   if (newton) words.push_back("newton");
   const ProgramRun run = run_program("/usr/bin/env", words);
   if (run.exit_code != 0) throw std::runtime_error("GetFEM failed: " + run.out + run.err);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A trunk and an arm that hangs beside it, grown to it all the way down without skin between, as a coarse scan shows a body with
-// its arms at its sides. It is known which of the two each voxel is.
+// A trunk and an arm that hangs beside it, grown to it all the way down without skin between, as a coarse scan shows a
+// body with its arms at its sides. It is known which of the two each voxel is.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "core/bones/bone_parts.h"
 #include "core/rig/armature.h"
 #include "core/seams/find_seams.h"
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber::test {
@@ -36,11 +36,16 @@ struct GluedArm {
       for (v.y = 0; v.y < size.y; ++v.y)
         for (v.x = 0; v.x < size.x; ++v.x) put(v, gap, names);
     cover_with_skin();
-    tissues.tissues = {tissue(kSkin, "skin", TissueKind::Skin), tissue(kFlesh, names ? "Muscle, trunk" : "muscle", TissueKind::Muscle),
-                       tissue(kSpine, "thoracic vertebrae", TissueKind::Bone), tissue(kHumerus, "left humerus", TissueKind::Bone),
-                       tissue(kUlna, "left ulna", TissueKind::Bone), tissue(kArmFlesh, "Muscle, arms", TissueKind::Muscle)};
+    tissues.tissues = {tissue(kSkin, "skin", TissueKind::Skin),
+                       tissue(kFlesh, names ? "Muscle, trunk" : "muscle", TissueKind::Muscle),
+                       tissue(kSpine, "thoracic vertebrae", TissueKind::Bone),
+                       tissue(kHumerus, "left humerus", TissueKind::Bone),
+                       tissue(kUlna, "left ulna", TissueKind::Bone),
+                       tissue(kArmFlesh, "Muscle, arms", TissueKind::Muscle)};
     const double x = arm_axis(gap);
-    rig.bones = {{"Spine", -1, {0, 0, 0}, {0, 0, 380}}, {"LeftUpperArm", 0, {x, 0, 380}, {x, 0, 200}}, {"LeftForearm", 1, {x, 0, 200}, {x, 0, 40}}};
+    rig.bones = {{"Spine", -1, {0, 0, 0}, {0, 0, 380}},
+                 {"LeftUpperArm", 0, {x, 0, 380}, {x, 0, 200}},
+                 {"LeftForearm", 1, {x, 0, 200}, {x, 0, 40}}};
   }
 
   static double arm_axis(double gap) { return kTrunk + gap + kArm; }

@@ -28,7 +28,8 @@ inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dve
         const glm::dvec3 p = world * (low + (high - low) * glm::dvec3(x, y, z) / glm::dvec3(cubes));
         mesh.V.row(at({x, y, z})) << p.x, p.y, p.z;
       }
-  constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
+  constexpr std::array<std::array<int, 3>, 6> kOrders{
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
   mesh.T.resize(6 * cubes.x * cubes.y * cubes.z, 4);
   int row = 0;
   for (int z = 0; z < cubes.z; ++z)
@@ -41,7 +42,8 @@ inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dve
             ++c[order[i]];
             corner[i + 1] = at(c);
           }
-          const Eigen::Vector3d a = mesh.V.row(corner[0]), b = mesh.V.row(corner[1]), d = mesh.V.row(corner[2]), e = mesh.V.row(corner[3]);
+          const Eigen::Vector3d a = mesh.V.row(corner[0]), b = mesh.V.row(corner[1]), d = mesh.V.row(corner[2]),
+                                e = mesh.V.row(corner[3]);
           if ((b - a).cross(d - a).dot(e - a) < 0) std::swap(corner[2], corner[3]);
           mesh.T.row(row++) << corner[0], corner[1], corner[2], corner[3];
         }
@@ -49,7 +51,8 @@ inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dve
   return mesh;
 }
 
-// The cubes of `side` voxels that hold any of the regions (0 none, 1 soft, 2 + bone), all of one if most of its voxels are.
+// The cubes of `side` voxels that hold any of the regions (0 none, 1 soft, 2 + bone), all of one if most of its voxels
+// are.
 inline TetMesh kuhn_mesh_of(const LabelVolume& regions, int side) {
   const glm::ivec3 cubes = (regions.grid.size + side - 1) / side;
   TetMesh mesh = kuhn_mesh(regions.grid, glm::dvec3(-0.5), glm::dvec3(cubes * side) - 0.5, cubes);
@@ -59,9 +62,12 @@ inline TetMesh kuhn_mesh_of(const LabelVolume& regions, int side) {
     const glm::ivec3 first = glm::ivec3(c % cubes.x, c / cubes.x % cubes.y, c / cubes.x / cubes.y) * side;
     std::map<Label, int> counts;
     for (int i = 0; i < side * side * side; ++i)
-      if (const Label label = regions.at_or_air(first + glm::ivec3(i % side, i / side % side, i / side / side))) ++counts[label];
+      if (const Label label = regions.at_or_air(first + glm::ivec3(i % side, i / side % side, i / side / side)))
+        ++counts[label];
     if (counts.empty()) continue;
-    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+    const auto most = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+                        return a.second < b.second;
+                      })->first;
     for (int t = 0; t < 6; ++t) {
       kept_tets.push_back(6 * c + t);
       region.push_back(static_cast<std::uint16_t>(most - 1));

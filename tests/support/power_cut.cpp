@@ -79,7 +79,7 @@ struct PowerCut::Disk {
   bool dead = false;
   std::map<std::string, std::shared_ptr<Image>> open;  // SQLite's, by name
   std::vector<LogImage> logs;
-  std::map<std::string, std::string> removed;          // not yet sure: their bytes
+  std::map<std::string, std::string> removed;  // not yet sure: their bytes
   Path folder;
   std::unique_ptr<TemporaryFolder> left;  // the folder as it was on the disk when the power went
   sqlite3_vfs* system = nullptr;
@@ -122,7 +122,8 @@ int close_file(sqlite3_file* raw) {
   const std::lock_guard lock(file->disk->mutex);
   delete file->image;
   // The last one to close it: what it saw lies in the system's file, and is taken as written.
-  if (const auto at = file->disk->open.find(*file->path); at != file->disk->open.end() && at->second.use_count() == 1) file->disk->open.erase(at);
+  if (const auto at = file->disk->open.find(*file->path); at != file->disk->open.end() && at->second.use_count() == 1)
+    file->disk->open.erase(at);
   delete file->path;
   return file->system()->pMethods->xClose(file->system());
 }
@@ -161,11 +162,21 @@ int sync_file(sqlite3_file* raw, int) {
   return SQLITE_OK;
 }
 
-int file_size(sqlite3_file* raw, sqlite3_int64* size) { return as_file(raw)->system()->pMethods->xFileSize(as_file(raw)->system(), size); }
-int lock_file(sqlite3_file* raw, int level) { return as_file(raw)->system()->pMethods->xLock(as_file(raw)->system(), level); }
-int unlock_file(sqlite3_file* raw, int level) { return as_file(raw)->system()->pMethods->xUnlock(as_file(raw)->system(), level); }
-int check_lock(sqlite3_file* raw, int* held) { return as_file(raw)->system()->pMethods->xCheckReservedLock(as_file(raw)->system(), held); }
-int control(sqlite3_file* raw, int what, void* with) { return as_file(raw)->system()->pMethods->xFileControl(as_file(raw)->system(), what, with); }
+int file_size(sqlite3_file* raw, sqlite3_int64* size) {
+  return as_file(raw)->system()->pMethods->xFileSize(as_file(raw)->system(), size);
+}
+int lock_file(sqlite3_file* raw, int level) {
+  return as_file(raw)->system()->pMethods->xLock(as_file(raw)->system(), level);
+}
+int unlock_file(sqlite3_file* raw, int level) {
+  return as_file(raw)->system()->pMethods->xUnlock(as_file(raw)->system(), level);
+}
+int check_lock(sqlite3_file* raw, int* held) {
+  return as_file(raw)->system()->pMethods->xCheckReservedLock(as_file(raw)->system(), held);
+}
+int control(sqlite3_file* raw, int what, void* with) {
+  return as_file(raw)->system()->pMethods->xFileControl(as_file(raw)->system(), what, with);
+}
 int sector_size(sqlite3_file*) { return static_cast<int>(kSector); }
 int characteristics(sqlite3_file*) { return 0; }
 
@@ -221,7 +232,10 @@ int access_file(sqlite3_vfs* vfs, const char* name, int flags, int* result) {
 
 class Log final : public LogFile {
  public:
-  Log(PowerCut::Disk& disk, const Path& path) : disk_(disk), image_(std::make_shared<Image>()), file_(limber::open_log(path)) {
+  Log(PowerCut::Disk& disk, const Path& path)
+      : disk_(disk),
+        image_(std::make_shared<Image>()),
+        file_(limber::open_log(path)) {
     const std::lock_guard lock(disk_.mutex);
     Path last_name = path;
     last_name.replace_extension();  // without ".new"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A disk that loses power. Until then it behaves like any other; at the cut, of what was written since a file's last sync
-// each piece of 512 bytes reached the disk or did not, by chance, and so did removals of files whose folder was not
-// synced. From the cut on every call fails; restore() gives the folder the contents that the disk had then.
+// A disk that loses power. Until then it behaves like any other; at the cut, of what was written since a file's last
+// sync each piece of 512 bytes reached the disk or did not, by chance, and so did removals of files whose folder was
+// not synced. From the cut on every call fails; restore() gives the folder the contents that the disk had then.
 //
 // One such disk is there at a time. It is a SQLite VFS around the system's own, and a LogFile for journals.
 #pragma once
@@ -16,8 +16,8 @@ namespace limber::test {
 
 class PowerCut {
  public:
-  // Becomes SQLite's default file system until it goes. The power goes with the `operation`-th write, sync, truncation or
-  // removal.
+  // Becomes SQLite's default file system until it goes. The power goes with the `operation`-th write, sync, truncation
+  // or removal.
   PowerCut(const Path& folder, std::int64_t operation, std::uint32_t seed);
   ~PowerCut();
   PowerCut(const PowerCut&) = delete;

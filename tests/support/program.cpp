@@ -20,7 +20,9 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-double seconds(const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); }
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 
 [[noreturn]] void become(const std::vector<char*>& argv, const std::string& out, const std::string& err) {
   const int null = ::open("/dev/null", O_RDONLY);
@@ -63,7 +65,9 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
 
 ProgramRun run_limber(const std::vector<std::string>& arguments) { return run_program(LIMBER_PROGRAM, arguments); }
 
-bool has_program(const std::string& name) { return run_program("/bin/sh", {"-c", "command -v " + name}).exit_code == 0; }
+bool has_program(const std::string& name) {
+  return run_program("/bin/sh", {"-c", "command -v " + name}).exit_code == 0;
+}
 
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "limber-test-XXXXXX").string();

@@ -20,7 +20,8 @@ struct ProgramRun {
 
 // `program` defaults to the limber that was built beside the tests.
 ProgramRun run_limber(const std::vector<std::string>& arguments);
-ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);  // a path, or a name on PATH
+ProgramRun run_program(const std::string& program,
+                       const std::vector<std::string>& arguments);  // a path, or a name on PATH
 
 bool has_program(const std::string& name);  // on PATH
 

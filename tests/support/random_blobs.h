@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A volume of random labels, 0 for air among them, in touching pieces: each voxel has the label of the seed nearest to it.
+// A volume of random labels, 0 for air among them, in touching pieces: each voxel has the label of the seed nearest to
+// it.
 #pragma once
 
 #include <random>
@@ -24,7 +25,8 @@ inline LabelVolume random_blobs(std::mt19937& random, const glm::ivec3& size, in
     int nearest = 1 << 20;
     for (const auto& [at, label] : all) {
       const glm::ivec3 d = v - at;
-      if (const int squared = d.x * d.x + d.y * d.y + d.z * d.z; squared < nearest) nearest = squared, volume.voxels[i] = label;
+      if (const int squared = d.x * d.x + d.y * d.y + d.z * d.z; squared < nearest)
+        nearest = squared, volume.voxels[i] = label;
     }
   }
   return volume;

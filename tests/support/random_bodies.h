@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small volumes of regions (0 air, 1 soft tissue, 2 + bone) that meshing must survive: noise, checkerboards, thin sheets,
-// islands, touching corners, holes, one label, no bone, nothing but bone.
+// Small volumes of regions (0 air, 1 soft tissue, 2 + bone) that meshing must survive: noise, checkerboards, thin
+// sheets, islands, touching corners, holes, one label, no bone, nothing but bone.
 #pragma once
 
 #include <random>
@@ -12,7 +12,8 @@
 
 namespace limber::test {
 
-inline constexpr const char* kBodyKinds[] = {"noise", "checkerboard", "thin sheet", "islands", "touching corners", "holes", "one label", "no bone", "all bone", "one voxel"};
+inline constexpr const char* kBodyKinds[] = {"noise", "checkerboard", "thin sheet", "islands",  "touching corners",
+                                             "holes", "one label",    "no bone",    "all bone", "one voxel"};
 
 struct RandomBody {
   std::string kind;
@@ -27,7 +28,8 @@ inline Grid random_grid(std::mt19937& random, int most) {
   grid.spacing = random() % 3 ? glm::dvec3(any(0.5, 4)) : glm::dvec3(any(0.3, 4), any(0.3, 8), any(0.3, 20));
   grid.origin = {any(-500, 500), any(-500, 500), any(-500, 500)};
   if (random() % 2)
-    grid.direction = glm::dmat3(glm::rotate(glm::dmat4(1), any(0, 6), glm::normalize(glm::dvec3(any(-1, 1), any(-1, 1), 1.1))));
+    grid.direction =
+        glm::dmat3(glm::rotate(glm::dmat4(1), any(0, 6), glm::normalize(glm::dvec3(any(-1, 1), any(-1, 1), 1.1))));
   if (random() % 3 == 0) grid.direction[random() % 3] *= -1.0;
   return grid;
 }
@@ -40,7 +42,8 @@ inline RandomBody random_body(unsigned seed, int most = 14) {
   const Grid& grid = body.regions.grid;
   body.regions.voxels = ZeroedVector<Label>(grid.voxel_count(), 0);
   const int bones = whole(0, 4), full = whole(5, 95), cell = whole(1, 4), axis = whole(0, 2), slope = whole(-2, 2);
-  const glm::ivec3 sheet(whole(0, grid.size.x), whole(0, grid.size.y), whole(0, grid.size.z)), one(random() % grid.size.x, random() % grid.size.y, random() % grid.size.z);
+  const glm::ivec3 sheet(whole(0, grid.size.x), whole(0, grid.size.y), whole(0, grid.size.z)),
+      one(random() % grid.size.x, random() % grid.size.y, random() % grid.size.z);
   const glm::dvec3 centre[3] = {glm::dvec3(grid.size) * 0.25, glm::dvec3(grid.size) * 0.6, glm::dvec3(grid.size) * 0.9};
   glm::ivec3 v;
   for (v.z = 0; v.z < grid.size.z; ++v.z)
@@ -53,7 +56,9 @@ inline RandomBody random_body(unsigned seed, int most = 14) {
         switch (kind) {
           case 0: tissue = whole(0, 99) < full, region = any_region; break;
           case 1: tissue = (block.x + block.y + block.z) % 2 == 0, region = Label(1 + block.x % (bones + 1)); break;
-          case 2: tissue = v[axis] + slope * v[(axis + 1) % 3] / 2 == sheet[axis], region = Label(1 + v.x % (bones + 1)); break;
+          case 2:
+            tissue = v[axis] + slope * v[(axis + 1) % 3] / 2 == sheet[axis], region = Label(1 + v.x % (bones + 1));
+            break;
           case 3:
             for (int i = 0; i < 3; ++i)
               if (glm::length(glm::dvec3(v) - centre[i]) < 1 + i) tissue = true, region = Label(1 + i % (bones + 1));

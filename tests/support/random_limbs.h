@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small bodies with a rig and a pose that no one asked for: trees of tubes of skin, fat and bone that branch, touch and lie side
-// by side, each joint turned by any angle, within or beyond what flesh can follow.
+// Small bodies with a rig and a pose that no one asked for: trees of tubes of skin, fat and bone that branch, touch and
+// lie side by side, each joint turned by any angle, within or beyond what flesh can follow.
 #pragma once
 
 #include <random>
 
-#include "core/pose/pose.h"
-#include "core/volume/tissue_table.h"
+#include "core/rig/pose.h"
+#include "core/tissue/tissue_table.h"
 #include "tests/support/bent_tube.h"
 
 namespace limber::test {
@@ -26,7 +26,8 @@ class RandomNumbers {
   bool one_in(int n) { return random_() % unsigned(n) == 0; }
   glm::dvec3 direction() {
     for (;;)
-      if (const glm::dvec3 d(any(-1, 1), any(-1, 1), any(-1, 1)); glm::length(d) > 0.1 && glm::length(d) < 1) return glm::normalize(d);
+      if (const glm::dvec3 d(any(-1, 1), any(-1, 1), any(-1, 1)); glm::length(d) > 0.1 && glm::length(d) < 1)
+        return glm::normalize(d);
   }
 
  private:
@@ -36,7 +37,8 @@ class RandomNumbers {
 // Each joint turned about an axis of its own; one joint in three stays at rest.
 inline void turn_joints(Pose& pose, RandomNumbers& random, double most_degrees) {
   for (size_t b = 1; b < pose.rotation.size(); ++b)
-    if (!random.one_in(3)) pose.rotation[b] = glm::angleAxis(random.any(0, most_degrees) * std::numbers::pi / 180, random.direction());
+    if (!random.one_in(3))
+      pose.rotation[b] = glm::angleAxis(random.any(0, most_degrees) * std::numbers::pi / 180, random.direction());
   if (random.one_in(4)) pose.rotation[0] = glm::angleAxis(random.any(0, 3), random.direction());
 }
 
@@ -50,7 +52,9 @@ inline RandomLimbs random_limbs(unsigned seed) {
     Bone bone;
     bone.name = "bone " + std::to_string(b);
     bone.parent = b == 0 ? -1 : random.whole(std::max(0, b - 2), b - 1);
-    const glm::dvec3 way = b == 0 ? glm::dvec3(0, 0, 1) : glm::normalize(limbs.rig.bones[bone.parent].tail - limbs.rig.bones[bone.parent].head);
+    const glm::dvec3 way = b == 0
+                               ? glm::dvec3(0, 0, 1)
+                               : glm::normalize(limbs.rig.bones[bone.parent].tail - limbs.rig.bones[bone.parent].head);
     bone.head = b == 0 ? glm::dvec3(0) : limbs.rig.bones[bone.parent].tail;
     bone.tail = bone.head + random.any(15, 40) * glm::normalize(way + 0.9 * random.direction());
     limbs.rig.bones.push_back(bone);
@@ -61,7 +65,8 @@ inline RandomLimbs random_limbs(unsigned seed) {
   Grid& grid = limbs.volume.grid;
   grid.spacing = random.one_in(3) ? glm::dvec3(voxel, voxel, 1.5 * voxel) : glm::dvec3(voxel);
   glm::dvec3 low(0), high(0);
-  for (const Bone& bone : limbs.rig.bones) low = glm::min(low, glm::min(bone.head, bone.tail)), high = glm::max(high, glm::max(bone.head, bone.tail));
+  for (const Bone& bone : limbs.rig.bones)
+    low = glm::min(low, glm::min(bone.head, bone.tail)), high = glm::max(high, glm::max(bone.head, bone.tail));
   grid.origin = low - 14.0;
   grid.size = glm::ivec3((high - low + 28.0) / grid.spacing) + 1;
   limbs.volume.voxels.assign(grid.voxel_count(), 0);

@@ -18,8 +18,8 @@ inline std::filesystem::path shared_path(const std::filesystem::path& relative) 
 
 }  // namespace limber::test
 
-#define NEEDS_SHARED(relative)                                                              \
-  if (!std::filesystem::exists(limber::test::shared_path(relative))) {                      \
-    MESSAGE("SKIPPED: ", limber::test::shared_path(relative).string(), " is not here");     \
-    return;                                                                                 \
+#define NEEDS_SHARED(relative)                                                          \
+  if (!std::filesystem::exists(limber::test::shared_path(relative))) {                  \
+    MESSAGE("SKIPPED: ", limber::test::shared_path(relative).string(), " is not here"); \
+    return;                                                                             \
   }

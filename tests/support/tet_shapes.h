@@ -15,8 +15,8 @@
 
 namespace limber {
 
-// Cubes of a grid as six tets each around the diagonal, all alike, so that neighbours fit [Kuhn 1960]. Corner (i, j, k) is
-// node i + (nx + 1) (j + (ny + 1) k).
+// Cubes of a grid as six tets each around the diagonal, all alike, so that neighbours fit [Kuhn 1960]. Corner (i, j, k)
+// is node i + (nx + 1) (j + (ny + 1) k).
 inline TetMesh kuhn_box(int nx, int ny, int nz, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   TetMesh mesh;
   mesh.V.resize((nx + 1) * (ny + 1) * (nz + 1), 3);
@@ -24,7 +24,9 @@ inline TetMesh kuhn_box(int nx, int ny, int nz, const Eigen::Vector3d& low, cons
   for (int k = 0; k <= nz; ++k)
     for (int j = 0; j <= ny; ++j)
       for (int i = 0; i <= nx; ++i)
-        mesh.V.row(node(i, j, k)) = low.transpose().array() + (high - low).transpose().array() * Eigen::Array3d(double(i) / nx, double(j) / ny, double(k) / nz).transpose();
+        mesh.V.row(node(i, j, k)) =
+            low.transpose().array() + (high - low).transpose().array() *
+                                          Eigen::Array3d(double(i) / nx, double(j) / ny, double(k) / nz).transpose();
   mesh.T.resize(6 * nx * ny * nz, 4);
   const int order[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   int t = 0;
@@ -53,7 +55,8 @@ inline TetMesh bent_box(const TetMesh& box, const std::function<Eigen::Vector3d(
   std::vector<Eigen::Vector3d> places;
   for (Eigen::Index v = 0; v < box.V.rows(); ++v) {
     const Eigen::Vector3d p = bend(box.V.row(v).transpose());
-    const auto [at, fresh] = found.try_emplace({std::lround(p[0] * 1e7), std::lround(p[1] * 1e7), std::lround(p[2] * 1e7)}, int(places.size()));
+    const auto [at, fresh] = found.try_emplace(
+        {std::lround(p[0] * 1e7), std::lround(p[1] * 1e7), std::lround(p[2] * 1e7)}, int(places.size()));
     if (fresh) places.push_back(p);
     node[v] = at->second;
   }
@@ -70,12 +73,13 @@ inline TetMesh bent_box(const TetMesh& box, const std::function<Eigen::Vector3d(
 }
 
 inline TetMesh thick_cylinder(double inner, double outer, double height, int radial, int around, int layers) {
-  return bent_box(kuhn_box(radial, around, layers, {inner, 0, 0}, {outer, 2 * M_PI, height}),
-                  [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p[0] * std::cos(p[1]), p[0] * std::sin(p[1]), p[2]); });
+  return bent_box(
+      kuhn_box(radial, around, layers, {inner, 0, 0}, {outer, 2 * M_PI, height}),
+      [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p[0] * std::cos(p[1]), p[0] * std::sin(p[1]), p[2]); });
 }
 
-// An eighth of a hollow ball, where x, y and z are positive: three quarters of a cube's faces, blown up. Layers are thinner
-// inside.
+// An eighth of a hollow ball, where x, y and z are positive: three quarters of a cube's faces, blown up. Layers are
+// thinner inside.
 inline TetMesh thick_sphere_eighth(double inner, double outer, int radial, int across) {
   TetMesh all;
   std::map<std::array<long, 3>, int> found;
@@ -90,26 +94,32 @@ inline TetMesh thick_sphere_eighth(double inner, double outer, int radial, int a
       direction[(axis + 1) % 3] = std::tan(M_PI / 4 * box.V(v, 1));
       direction[(axis + 2) % 3] = std::tan(M_PI / 4 * box.V(v, 2));
       const Eigen::Vector3d p = inner * std::pow(outer / inner, box.V(v, 0)) * direction.normalized();
-      const auto [at, fresh] = found.try_emplace({std::lround(p[0] * 1e7), std::lround(p[1] * 1e7), std::lround(p[2] * 1e7)}, int(places.size()));
+      const auto [at, fresh] = found.try_emplace(
+          {std::lround(p[0] * 1e7), std::lround(p[1] * 1e7), std::lround(p[2] * 1e7)}, int(places.size()));
       if (fresh) places.push_back(p);
       node[v] = at->second;
     }
-    // Diagonals of neighbouring faces need not meet the same way, so every cell is split by its nodes' numbers: each face by the
-    // diagonal at its smallest node [Dompierre et al. 1999].
+    // Diagonals of neighbouring faces need not meet the same way, so every cell is split by its nodes' numbers: each
+    // face by the diagonal at its smallest node [Dompierre et al. 1999].
     for (int k = 0; k < across; ++k)
       for (int j = 0; j < across; ++j)
         for (int i = 0; i < radial; ++i) {
-          const auto at = [&](int a, int b, int c) { return node[(i + a) + (radial + 1) * ((j + b) + (across + 1) * (k + c))]; };
-          const std::array<int, 8> hex{at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0), at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)};
+          const auto at = [&](int a, int b, int c) {
+            return node[(i + a) + (radial + 1) * ((j + b) + (across + 1) * (k + c))];
+          };
+          const std::array<int, 8> hex{at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0),
+                                       at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)};
           // From the smallest node, a fan over the three faces it is not on.
-          const int faces_of[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+          const int faces_of[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                      {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
           const int apex = int(std::min_element(hex.begin(), hex.end()) - hex.begin());
           for (const auto& quad : faces_of) {
             if (std::find(quad, quad + 4, apex) != quad + 4) continue;
             int low = 0;
             for (int q = 1; q < 4; ++q)
               if (hex[quad[q]] < hex[quad[low]]) low = q;
-            const int a = hex[quad[low]], b = hex[quad[(low + 1) % 4]], c = hex[quad[(low + 2) % 4]], d = hex[quad[(low + 3) % 4]];
+            const int a = hex[quad[low]], b = hex[quad[(low + 1) % 4]], c = hex[quad[(low + 2) % 4]],
+                      d = hex[quad[(low + 3) % 4]];
             tets.push_back({hex[apex], a, b, c});
             tets.push_back({hex[apex], a, c, d});
           }

@@ -29,7 +29,8 @@ Armature hanging_body() {
 }
 
 Motion t_pose_body(const std::vector<std::array<double, 3>>& frames) {
-  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 9 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n";
+  std::string text =
+      "HIERARCHY\nROOT Hips\n{\nOFFSET 0 9 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n";
   int joints = 1;
   auto open = [&](const std::string& name, const std::string& offset) {
     text += "JOINT " + name + "\n{\nOFFSET " + offset + "\nCHANNELS 3 Zrotation Xrotation Yrotation\n";

@@ -5,14 +5,15 @@
 #include <array>
 #include <vector>
 
+#include "core/motion/bvh.h"
 #include "core/rig/armature.h"
-#include "core/rig/bvh.h"
 
 namespace limber::test {
 
 // A rig of a body with hanging arms, mm, LPS.
 Armature hanging_body();
-// A motion of a body in T-pose, two units to the metre less, whose joints all turn as the angles say (degrees about x, y, z).
+// A motion of a body in T-pose, two units to the metre less, whose joints all turn as the angles say (degrees about x,
+// y, z).
 Motion t_pose_body(const std::vector<std::array<double, 3>>& frames);
 
 }  // namespace limber::test

@@ -20,7 +20,8 @@ TEST_CASE("background: work is done when the call returns, on one thread that yi
   int priority = -1;
   in_background([&] {
     priority = getpriority(PRIO_PROCESS, 0);
-    parallel_for(std::ssize(done_by), 1, [&](std::int64_t begin, std::int64_t) { done_by[begin] = std::this_thread::get_id(); });
+    parallel_for(std::ssize(done_by), 1,
+                 [&](std::int64_t begin, std::int64_t) { done_by[begin] = std::this_thread::get_id(); });
   });
   CHECK(std::set<std::thread::id>(done_by.begin(), done_by.end()).size() == 1);
   CHECK(done_by.front() != std::thread::id());

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <random>
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
+#include <Eigen/Dense>
 
 #include "core/base/parallel.h"
 
@@ -46,7 +46,8 @@ Eigen::MatrixXd fill(Cholesky& sparse, const BlockGraph& graph, double diagonal)
     Eigen::Matrix3d own = Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); });
     put(a, a, own + own.transpose() + diagonal * Eigen::Matrix3d::Identity());
     for (auto k = graph.first[a]; k < graph.first[a + 1]; ++k)
-      if (graph.neighbour[k] < a) put(a, graph.neighbour[k], Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); }));
+      if (graph.neighbour[k] < a)
+        put(a, graph.neighbour[k], Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); }));
   }
   return dense;
 }
@@ -66,7 +67,8 @@ TEST_CASE("cholesky: the places of all pairs of some nodes are those of each pai
   int met = 0;
   for (std::size_t row = 0, k = 0; row < nodes.size(); ++row)
     for (std::size_t column = 0; column <= row; ++column, ++k) {
-      const Cholesky::Place expected = nodes[row] < 0 || nodes[column] < 0 ? Cholesky::Place{-1, 0} : matrix.place(nodes[row], nodes[column]);
+      const Cholesky::Place expected =
+          nodes[row] < 0 || nodes[column] < 0 ? Cholesky::Place{-1, 0} : matrix.place(nodes[row], nodes[column]);
       CHECK(places[k].at == expected.at);
       if (expected.at < 0) continue;
       CHECK(places[k].stride == expected.stride);
@@ -116,7 +118,9 @@ TEST_CASE("cholesky: another graph, larger or smaller, is solved in the same mem
   }
 }
 
-TEST_CASE("cholesky: a graph that gains a few edges keeps its order but for their ends, costs little more than ordered anew, and is solved as well") {
+TEST_CASE(
+    "cholesky: a graph that gains a few edges keeps its order but for their ends, costs little more than ordered anew, "
+    "and is solved as well") {
   constexpr int kSize = 8;
   const BlockGraph base = grid_graph(kSize);
   Cholesky sparse(base);

@@ -29,8 +29,10 @@ std::string noise(std::size_t size) {
 
 std::string packed(const std::string& bytes, Deflater::Wrap wrap, std::size_t piece) {
   std::string stream;
-  Deflater deflater(wrap, [&](const void* put, std::size_t size) { stream.append(static_cast<const char*>(put), size); });
-  for (std::size_t i = 0; i < bytes.size(); i += piece) deflater.write(bytes.data() + i, std::min(piece, bytes.size() - i));
+  Deflater deflater(wrap,
+                    [&](const void* put, std::size_t size) { stream.append(static_cast<const char*>(put), size); });
+  for (std::size_t i = 0; i < bytes.size(); i += piece)
+    deflater.write(bytes.data() + i, std::min(piece, bytes.size() - i));
   deflater.end();
   return stream;
 }
@@ -107,7 +109,8 @@ TEST_CASE("deflate: what was packed comes back, however it is cut into pieces, h
 }
 
 TEST_CASE("deflate: zlib's streams are read, and what is behind them is left") {
-  const std::string bytes = runs_of_labels(100000, 2), behind = "what follows is another's, and long enough to be noticed";
+  const std::string bytes = runs_of_labels(100000, 2),
+                    behind = "what follows is another's, and long enough to be noticed";
   for (const int window_bits : {15, 15 + 16, 9})
     for (const int level : {0, 1, 6, 9}) {
       const std::string stream = packed_elsewhere(bytes, window_bits, level);
@@ -125,7 +128,8 @@ TEST_CASE("deflate: a stream that is cut off never ends, and one with another bi
   const std::string bytes = runs_of_labels(5000, 3);
   for (const auto wrap : {Deflater::Wrap::Zlib, Deflater::Wrap::Gzip}) {
     const std::string stream = packed(bytes, wrap, 1000);
-    for (std::size_t size = 0; size < stream.size(); ++size) CHECK_FALSE(unpacked(std::string_view(stream).substr(0, size), 100, 512).ended);
+    for (std::size_t size = 0; size < stream.size(); ++size)
+      CHECK_FALSE(unpacked(std::string_view(stream).substr(0, size), 100, 512).ended);
     // All but the gzip header's fields that mean nothing here.
     for (std::size_t at = wrap == Deflater::Wrap::Gzip ? 10 : 0; at < stream.size(); ++at)
       for (int bit = 0; bit < 8; ++bit) {
@@ -150,6 +154,7 @@ TEST_CASE("deflate: streams one after the other are read one after the other") {
     if (inflater.ended()) inflater.start_next();
     REQUIRE_FALSE(step.damaged);
   }
-  for (Inflater::Step step{1, 1}; step.made > 0; all.append(out, 0, step.made)) step = inflater.inflate({}, out.data(), 64);
+  for (Inflater::Step step{1, 1}; step.made > 0; all.append(out, 0, step.made))
+    step = inflater.inflate({}, out.data(), 64);
   CHECK(all == one + two);
 }

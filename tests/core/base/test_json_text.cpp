@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 
 #include "core/base/file.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -36,8 +36,8 @@ TEST_CASE("JSON text: what is nested too deeply or names a key twice has a probl
                     "the JSON is nested more than 64 levels deep: rig.json: correct the file");
 }
 
-TEST_CASE("JSON text: every command refuses a file that is nested a million deep, and a key that is there twice"
-          * doctest::test_suite("slow")) {
+TEST_CASE("JSON text: every command refuses a file that is nested a million deep, and a key that is there twice" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Phantom phantom = make_arm_phantom(10);
   write_volume(phantom.volume, folder / "volume.nrrd", phantom.tissues);
@@ -60,11 +60,11 @@ TEST_CASE("JSON text: every command refuses a file that is nested a million deep
       {"fk", rig, "--motion", motion, "--map", bad},
       {"fit-rig", volume, "--template", bad, "-o", folder / "rig3.json"},
   };
-  for (
-      const std::string& text :
-      {deep, "{\"bones\": " + deep + ", \"schema\": " + deep + ", \"command\": " + deep + ", \"1\": " + deep + "}",
-       std::string(
-           R"({"bones": [], "bones": {}, "command": "x", "command": "y", "schema": "a", "schema": "b", "1": "Skin", "1": "Fat", "name": "a", "name": "b"})")}) {
+  for (const std::string& text :
+       {deep, "{\"bones\": " + deep + ", \"schema\": " + deep + ", \"command\": " + deep + ", \"1\": " + deep + "}",
+        std::string(
+            R"({"bones": [], "bones": {}, "command": "x", "command": "y", "schema": "a", "schema": "b", "1": "Skin",
+             "1": "Fat", "name": "a", "name": "b"})")}) {
     write_file_atomically(bad, text);
     for (const auto& words : commands) {
       const ProgramRun run = run_limber(words);

@@ -37,21 +37,27 @@ TEST_CASE("parallel: a sum of rounding-sensitive terms is the same for 1, 2 and 
 }
 
 TEST_CASE("parallel: what a block throws reaches the caller") {
-  CHECK_THROWS_AS(parallel_for(100, 1, [](std::int64_t begin, std::int64_t) { if (begin == 57) throw std::runtime_error("57"); }),
+  CHECK_THROWS_AS(parallel_for(100, 1,
+                               [](std::int64_t begin, std::int64_t) {
+                                 if (begin == 57) throw std::runtime_error("57");
+                               }),
                   std::runtime_error);
 }
 
 TEST_CASE("parallel: loops under a cancelled progress stop before their next block, others run on") {
   Progress& quiet = no_progress();
-  struct Cancellable : Progress {} progress;
+  struct Cancellable : Progress {
+  } progress;
   int done = 0;
   {
     ThreadCount one(1);
     CancelScope scope(progress);
-    CHECK_THROWS_AS(parallel_for(100, 1, [&](std::int64_t begin, std::int64_t) {
-      ++done;
-      if (begin == 9) progress.cancel();
-    }), Cancelled);
+    CHECK_THROWS_AS(parallel_for(100, 1,
+                                 [&](std::int64_t begin, std::int64_t) {
+                                   ++done;
+                                   if (begin == 9) progress.cancel();
+                                 }),
+                    Cancelled);
     CHECK(done == 10);
     CHECK_THROWS_AS(parallel_for(1, 1, [&](std::int64_t, std::int64_t) { ++done; }), Cancelled);
     CancelScope inner(quiet);

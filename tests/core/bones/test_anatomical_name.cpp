@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/volume/tissue_table.h"
+#include "core/tissue/tissue_table.h"
 
 using namespace limber;
 
@@ -60,7 +60,8 @@ TEST_CASE("anatomical names: regions of reference phantoms hold several bones or
   check_one("Ribs, cortical", Thorax, BodySide::Middle, true);
   check_one("Lumbar spine, spongiosa", Lumbar, BodySide::Middle, true);
   check_one("Pelvis, cortical", Pelvis, BodySide::Middle, false);
-  const AnatomicalName feet = anatomical_name("Ankles and foot bones, cortical"), hands = anatomical_name("Wrists and hand bones, spongiosa");
+  const AnatomicalName feet = anatomical_name("Ankles and foot bones, cortical"),
+                       hands = anatomical_name("Wrists and hand bones, spongiosa");
   CHECK(feet.regions == std::set<BoneRegion>{Foot, Toes});
   CHECK(hands.regions == std::set<BoneRegion>{Hand, Finger});
   CHECK(feet.plural);
@@ -68,7 +69,8 @@ TEST_CASE("anatomical names: regions of reference phantoms hold several bones or
 }
 
 TEST_CASE("anatomical names: a bone in Latin plural is bone tissue, and a medullary cavity is marrow") {
-  for (const char* text : {"Ulnae and radii", "Femora", "Humeri, upper half", "Tibiae, fibulae and patellae", "Scapulae"}) {
+  for (const char* text :
+       {"Ulnae and radii", "Femora", "Humeri, upper half", "Tibiae, fibulae and patellae", "Scapulae"}) {
     CAPTURE(text);
     CHECK(tissue_kind_from_name(text) == TissueKind::Bone);
   }

@@ -24,8 +24,8 @@ Tissue named_tissue(Label label, const char* name, TissueKind kind) {
   return tissue;
 }
 
-// A pelvis and two legs of a walker: pelvis 40 voxels wide, a thigh under each end. Hip bones reach down beside the thighs'
-// heads, so that nearness alone gives them to the thighs.
+// A pelvis and two legs of a walker: pelvis 40 voxels wide, a thigh under each end. Hip bones reach down beside the
+// thighs' heads, so that nearness alone gives them to the thighs.
 constexpr Label kHip = 3, kFemora = 4, kMarrow = 5;
 SmallBody hips(bool one_label_each_side = false) {
   SmallBody body;
@@ -39,11 +39,15 @@ SmallBody hips(bool one_label_each_side = false) {
         const bool in_plane = y >= 5 && y < 11;
         if (in_plane && z >= 42 && z < 62 && std::abs(std::abs(x - 27.5) - 11) < 4) body.volume.at({x, y, z}) = kHip;
         if (in_plane && z >= 6 && z < 56 && std::abs(std::abs(x - 27.5) - 18) < 3) body.volume.at({x, y, z}) = kFemora;
-        if (y >= 7 && y < 9 && z >= 10 && z < 40 && std::abs(std::abs(x - 27.5) - 18) < 1.1) body.volume.at({x, y, z}) = kMarrow;
+        if (y >= 7 && y < 9 && z >= 10 && z < 40 && std::abs(std::abs(x - 27.5) - 18) < 1.1)
+          body.volume.at({x, y, z}) = kMarrow;
       }
-  body.tissues.tissues = {named_tissue(kMuscle, "muscle", TissueKind::Muscle), named_tissue(kHip, one_label_each_side ? "hip_left" : "Pelvis, cortical", TissueKind::Bone),
-                          named_tissue(kFemora, "Femora, cortical", TissueKind::Bone), named_tissue(kMarrow, "marrow", TissueKind::Marrow)};
-  body.armature.bones = {bone_between("Pelvis", -1, {27.5, 7.5, 56}, {27.5, 7.5, 68}), bone_between("LeftThigh", 0, {45.5, 7.5, 54}, {45.5, 7.5, 6}),
+  body.tissues.tissues = {named_tissue(kMuscle, "muscle", TissueKind::Muscle),
+                          named_tissue(kHip, one_label_each_side ? "hip_left" : "Pelvis, cortical", TissueKind::Bone),
+                          named_tissue(kFemora, "Femora, cortical", TissueKind::Bone),
+                          named_tissue(kMarrow, "marrow", TissueKind::Marrow)};
+  body.armature.bones = {bone_between("Pelvis", -1, {27.5, 7.5, 56}, {27.5, 7.5, 68}),
+                         bone_between("LeftThigh", 0, {45.5, 7.5, 54}, {45.5, 7.5, 6}),
                          bone_between("RightThigh", 0, {9.5, 7.5, 54}, {9.5, 7.5, 6})};
   return body;
 }
@@ -54,12 +58,15 @@ std::map<std::pair<Label, std::string>, std::int64_t> counts_of(const SmallBody&
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), map);
   std::map<std::pair<Label, std::string>, std::int64_t> counts;
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (parts.part_of[place]) ++counts[{body.volume.at(v), body.armature.bones[parts.parts[parts.part_of[place] - 1].bone].name}];
+    if (parts.part_of[place])
+      ++counts[{body.volume.at(v), body.armature.bones[parts.parts[parts.part_of[place] - 1].bone].name}];
   });
   return counts;
 }
 
-std::int64_t voxels_of(const SmallBody& body, Label label) { return std::count(body.volume.voxels.begin(), body.volume.voxels.end(), label); }
+std::int64_t voxels_of(const SmallBody& body, Label label) {
+  return std::count(body.volume.voxels.begin(), body.volume.voxels.end(), label);
+}
 }  // namespace
 
 TEST_CASE("bone identity: hip bones beside the heads of the thighs follow the pelvis by their name") {
@@ -104,7 +111,8 @@ TEST_CASE("bone identity: what a map says of nothing that is there is refused wi
 TEST_CASE("bone identity: each label's table says how it was found") {
   const SmallBody body = hips();
   const TissueVoxels tissue(body.volume);
-  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), {{"3", "Pelvis"}});
+  const BoneParts parts =
+      split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), {{"3", "Pelvis"}});
   std::map<Label, FoundBy> found;
   for (const auto& identity : parts.identities) found[identity.label] = identity.found_by;
   CHECK(found == std::map<Label, FoundBy>{{kHip, FoundBy::Map}, {kFemora, FoundBy::Name}, {kMarrow, FoundBy::Kind}});
@@ -133,8 +141,10 @@ TEST_CASE("bone identity: a rib on a rig with two thoraces follows the one it is
   for (int x = 8; x < 38; ++x)
     for (int z = 0; z < 3; ++z)
       for (int y = 4; y < 8; ++y) body.volume.at({x, y, std::max(2, 34 - (x - 8)) + z}) = kBone;
-  body.tissues.tissues = {named_tissue(kMuscle, "muscle", TissueKind::Muscle), named_tissue(kBone, "Left fifth rib", TissueKind::Bone)};
-  body.armature.bones = {bone_between("Pelvis", -1, {6, 6, 0}, {6, 6, 4}), bone_between("ThoraxLower", 0, {6, 6, 4}, {6, 6, 30}),
+  body.tissues.tissues = {named_tissue(kMuscle, "muscle", TissueKind::Muscle),
+                          named_tissue(kBone, "Left fifth rib", TissueKind::Bone)};
+  body.armature.bones = {bone_between("Pelvis", -1, {6, 6, 0}, {6, 6, 4}),
+                         bone_between("ThoraxLower", 0, {6, 6, 4}, {6, 6, 30}),
                          bone_between("ThoraxUpper", 1, {6, 6, 30}, {6, 6, 56})};
   const auto counts = counts_of(body);
   CHECK(counts.size() == 1);
@@ -144,7 +154,8 @@ TEST_CASE("bone identity: a rib on a rig with two thoraces follows the one it is
 TEST_CASE("bone map: a file that says a key twice, nests or names no bone is refused") {
   CHECK(parse_bone_map("{\"Ribs@left\": \"Thorax\"}", "map.json") == BoneMap{{"Ribs@left", "Thorax"}});
   CHECK(parse_bone_map("{}", "map.json").empty());
-  for (const char* text : {"", "[]", "{\"a\": 1}", "{\"a\": \"b\", \"a\": \"c\"}", "{\"a\": {\"b\": \"c\"}}", "{\"a\": [\"b\"]}", "{\"a\"", "null"}) {
+  for (const char* text : {"", "[]", "{\"a\": 1}", "{\"a\": \"b\", \"a\": \"c\"}", "{\"a\": {\"b\": \"c\"}}",
+                           "{\"a\": [\"b\"]}", "{\"a\"", "null"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_bone_map(text, "map.json"), Error);
   }

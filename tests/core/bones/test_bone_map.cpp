@@ -40,16 +40,19 @@ SmallBody legs() {
         if (z >= 6 && z < 52 && aside < 3) body.volume.at({x, y, z}) = kFemora;
         if (z == 69 && x == 27) body.volume.at({x, y, z}) = kHyoid;
       }
-  body.tissues.tissues = {named_tissue(kMuscle, "muscle", TissueKind::Muscle, 1), named_tissue(kHip, "Pelvis", TissueKind::Bone, 30), named_tissue(kFemora, "Femora", TissueKind::Bone, 40),
-                          named_tissue(kHyoid, "thing", TissueKind::Bone, 50)};
-  body.armature.bones = {bone_between("Pelvis", -1, {27.5, 7.5, 56}, {27.5, 7.5, 68}), bone_between("LeftThigh", 0, {45.5, 7.5, 54}, {45.5, 7.5, 6}),
+  body.tissues.tissues = {
+      named_tissue(kMuscle, "muscle", TissueKind::Muscle, 1), named_tissue(kHip, "Pelvis", TissueKind::Bone, 30),
+      named_tissue(kFemora, "Femora", TissueKind::Bone, 40), named_tissue(kHyoid, "thing", TissueKind::Bone, 50)};
+  body.armature.bones = {bone_between("Pelvis", -1, {27.5, 7.5, 56}, {27.5, 7.5, 68}),
+                         bone_between("LeftThigh", 0, {45.5, 7.5, 54}, {45.5, 7.5, 6}),
                          bone_between("RightThigh", 0, {9.5, 7.5, 54}, {9.5, 7.5, 6})};
   return body;
 }
 
 std::vector<MappedLabel> rows_of(const SmallBody& body, const BoneMap& map = {}) {
   const TissueVoxels tissue(body.volume);
-  return mapped_labels(split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), map), body.tissues, body.armature, map);
+  return mapped_labels(split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), map), body.tissues,
+                       body.armature, map);
 }
 
 }  // namespace
@@ -91,7 +94,8 @@ TEST_CASE("bone map: entries of a row change it alone, by the label's value, and
   rows = rows_of(body, whole);
   REQUIRE(rows.size() == 3);
   CHECK(rows[1].bones == std::vector<int>{1});
-  CHECK(with_entry(whole, femora, BodySide::Left, &pelvis) == BoneMap{{"40@left", "Pelvis"}, {"40@right", "LeftThigh"}});
+  CHECK(with_entry(whole, femora, BodySide::Left, &pelvis) ==
+        BoneMap{{"40@left", "Pelvis"}, {"40@right", "LeftThigh"}});
   CHECK(with_entry(whole, femora, {}, nullptr).empty());
   CHECK(with_entry(one, femora, BodySide::Right, nullptr).empty());
   CHECK(with_entry({{"Femora", "Pelvis"}}, femora, {}, &left) == BoneMap{{"40", "LeftThigh"}});
@@ -99,13 +103,15 @@ TEST_CASE("bone map: entries of a row change it alone, by the label's value, and
 
 TEST_CASE("bone map: what names no tissue or no bone is left out, and the rest is used") {
   const SmallBody body = legs();
-  const BoneMap map{{"40@left", "LeftThigh"}, {"40@right", "Tail"}, {"99", "Pelvis"}, {"Pelvis", "LeftThigh"}, {"thing", "Pelvis"}, {"", "x"}};
+  const BoneMap map{{"40@left", "LeftThigh"}, {"40@right", "Tail"}, {"99", "Pelvis"},
+                    {"Pelvis", "LeftThigh"},  {"thing", "Pelvis"},  {"", "x"}};
   const FittingBoneMap fitting = fitting_bone_map(map, body.tissues, body.armature);
   CHECK(fitting.map == BoneMap{{"40@left", "LeftThigh"}, {"Pelvis", "LeftThigh"}, {"thing", "Pelvis"}});
   CHECK(fitting.left_out == std::vector<std::string>{"", "40@right", "99"});
   CHECK_NOTHROW(rows_of(body, fitting.map));
   // Two sides of a label whose name says neither fit together or not at all.
-  CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"50@right", "RightThigh"}}, body.tissues, body.armature).left_out.empty());
+  CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"50@right", "RightThigh"}}, body.tissues, body.armature)
+            .left_out.empty());
   CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"99", "Pelvis"}}, body.tissues, body.armature).map.empty());
 }
 

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/rig/armature_io.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/core/skin/small_body.h"
 #include "tests/support/shared_data.h"
 
@@ -41,7 +41,8 @@ SmallBody two_touching_bones() {
       for (int x = 0; x < 32; ++x)
         if (glm::length(glm::dvec2(x, y) - 15.5) > 3.0) body.volume.at({x, y, z}) = kMuscle;
   body.tissues = muscle_and_bone();
-  body.armature.bones = {bone_between("Upper", -1, {15, 15, 0}, {15, 15, 45.5}), bone_between("Lower", 0, {15, 15, 45.5}, {15, 15, 91})};
+  body.armature.bones = {bone_between("Upper", -1, {15, 15, 0}, {15, 15, 45.5}),
+                         bone_between("Lower", 0, {15, 15, 45.5}, {15, 15, 91})};
   return body;
 }
 
@@ -66,17 +67,19 @@ void draw_tube(SmallBody& body, const glm::dvec3& from, const glm::dvec3& to, do
         if (glm::length(off - t * along) <= (t < 2.5 ? 1.0 : radius)) body.volume.at({x, y, z}) = kBone;
       }
 }
-std::string bone_at(const SmallBody& body, const BoneParts& parts, const TissueVoxels& tissue, const glm::ivec3& voxel) {
+std::string bone_at(const SmallBody& body, const BoneParts& parts, const TissueVoxels& tissue,
+                    const glm::ivec3& voxel) {
   return body.armature.bones[parts.parts[parts.part_of[tissue.index_of(voxel)] - 1].bone].name;
 }
 }  // namespace
 
 TEST_CASE("bone parts: a rib beside the arm that hangs on the collarbone follows that, not the arm") {
   SmallBody body = muscle_block({56, 24, 72});
-  draw_tube(body, {4, 12, 60}, {36, 12, 60}, 4);    // collarbone
-  draw_tube(body, {42, 12, 62}, {42, 12, 2}, 4);    // arm
+  draw_tube(body, {4, 12, 60}, {36, 12, 60}, 4);       // collarbone
+  draw_tube(body, {42, 12, 62}, {42, 12, 2}, 4);       // arm
   draw_tube(body, {28, 12, 55.5}, {28, 12, 24}, 2.5);  // rib, nearer to the arm
-  body.armature.bones = {bone_between("Collarbone", -1, {4, 12, 60}, {40, 12, 60}), bone_between("Arm", 0, {40, 12, 60}, {42, 12, 0})};
+  body.armature.bones = {bone_between("Collarbone", -1, {4, 12, 60}, {40, 12, 60}),
+                         bone_between("Arm", 0, {40, 12, 60}, {42, 12, 0})};
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
   CHECK(bone_at(body, parts, tissue, {42, 12, 30}) == "Arm");
@@ -86,14 +89,15 @@ TEST_CASE("bone parts: a rib beside the arm that hangs on the collarbone follows
 
 TEST_CASE("bone parts: breastbone and rib are the trunk's, whatever lies nearer, and a shoulder blade its shoulder's") {
   SmallBody body = muscle_block({140, 60, 90});
-  body.armature.bones = {bone_between("Thorax", -1, {20, 50, 5}, {20, 50, 85}), bone_between("LeftClavicle", 0, {30, 10, 78}, {120, 22, 74}),
+  body.armature.bones = {bone_between("Thorax", -1, {20, 50, 5}, {20, 50, 85}),
+                         bone_between("LeftClavicle", 0, {30, 10, 78}, {120, 22, 74}),
                          bone_between("LeftUpperArm", 1, {120, 22, 74}, {126, 22, 2})};
-  draw_tube(body, {20, 50, 5}, {20, 50, 85}, 4);      // spine
-  draw_tube(body, {34, 10, 78}, {112, 21, 74}, 3);    // collarbone
-  draw_tube(body, {124, 22, 66}, {126, 22, 2}, 4);    // upper arm
-  draw_tube(body, {18, 8, 40}, {18, 8, 80}, 4);       // breastbone
-  draw_tube(body, {40, 48, 62}, {70, 24, 58}, 2);     // rib
-  draw_tube(body, {100, 44, 50}, {116, 28, 74}, 3);   // shoulder blade
+  draw_tube(body, {20, 50, 5}, {20, 50, 85}, 4);     // spine
+  draw_tube(body, {34, 10, 78}, {112, 21, 74}, 3);   // collarbone
+  draw_tube(body, {124, 22, 66}, {126, 22, 2}, 4);   // upper arm
+  draw_tube(body, {18, 8, 40}, {18, 8, 80}, 4);      // breastbone
+  draw_tube(body, {40, 48, 62}, {70, 24, 58}, 2);    // rib
+  draw_tube(body, {100, 44, 50}, {116, 28, 74}, 3);  // shoulder blade
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
   CHECK(bone_at(body, parts, tissue, {20, 50, 40}) == "Thorax");
@@ -104,16 +108,21 @@ TEST_CASE("bone parts: breastbone and rib are the trunk's, whatever lies nearer,
   CHECK(bone_at(body, parts, tissue, {108, 36, 62}) == "LeftClavicle");
 }
 
-TEST_CASE("bone parts: a breastbone grown to a collarbone is the trunk's also where the rig's collarbones begin at the spine") {
+TEST_CASE(
+    "bone parts: a breastbone grown to a collarbone is the trunk's also where the rig's collarbones begin at the "
+    "spine") {
   SmallBody body = muscle_block({200, 60, 90});
-  body.armature.bones = {bone_between("Thorax", -1, {100, 50, 5}, {100, 50, 85}), bone_between("LeftClavicle", 0, {100, 46, 80}, {180, 22, 74}),
-                         bone_between("LeftUpperArm", 1, {180, 22, 74}, {186, 22, 2}), bone_between("RightClavicle", 0, {100, 46, 80}, {20, 22, 74}),
+  body.armature.bones = {bone_between("Thorax", -1, {100, 50, 5}, {100, 50, 85}),
+                         bone_between("LeftClavicle", 0, {100, 46, 80}, {180, 22, 74}),
+                         bone_between("LeftUpperArm", 1, {180, 22, 74}, {186, 22, 2}),
+                         bone_between("RightClavicle", 0, {100, 46, 80}, {20, 22, 74}),
                          bone_between("RightUpperArm", 3, {20, 22, 74}, {14, 22, 2})};
-  draw_tube(body, {100, 50, 5}, {100, 50, 85}, 4);   // spine
-  draw_tube(body, {112, 12, 78}, {172, 21, 74}, 4);  // collarbones, the left one on a neck that grows from the breastbone
+  draw_tube(body, {100, 50, 5}, {100, 50, 85}, 4);  // spine
+  draw_tube(body, {112, 12, 78}, {172, 21, 74},
+            4);  // collarbones, the left one on a neck that grows from the breastbone
   draw_tube(body, {98, 12, 78}, {118, 13, 78}, 2.5);
   draw_tube(body, {88, 12, 78}, {28, 21, 74}, 3);
-  draw_tube(body, {184, 22, 66}, {186, 22, 2}, 4);   // upper arms
+  draw_tube(body, {184, 22, 66}, {186, 22, 2}, 4);  // upper arms
   draw_tube(body, {16, 22, 66}, {14, 22, 2}, 4);
   draw_tube(body, {100, 12, 40}, {100, 12, 84}, 5);  // breastbone
   const TissueVoxels tissue(body.volume);
@@ -124,11 +133,14 @@ TEST_CASE("bone parts: a breastbone grown to a collarbone is the trunk's also wh
   CHECK(bone_at(body, parts, tissue, {100, 50, 40}) == "Thorax");
 }
 
-TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "bone parts: in a whole body with one bone label the chest is whole, and shoulder blades go with their shoulders" *
+    doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
-  const VolumeFile file = read_volume(shared_path("data/bp3d/body_3mm_tissue.nrrd")), named = read_volume(shared_path("data/bp3d/body_3mm_structures.nii.gz"));
-  const TissueTable user = read_tissue_table(shared_path("data/bp3d/tissue.labels.json")), names = read_tissue_table(shared_path("data/bp3d/body_structures.labels.json"));
+  const VolumeFile file = read_volume(shared_path("data/bp3d/body_3mm_tissue.nrrd")),
+                   named = read_volume(shared_path("data/bp3d/body_3mm_structures.nii.gz"));
+  const TissueTable user = read_tissue_table(shared_path("data/bp3d/tissue.labels.json")),
+                    names = read_tissue_table(shared_path("data/bp3d/body_structures.labels.json"));
   const TissueTable tissues = merge_tissue_tables(file.tissues, &user);
   const Armature armature = read_armature(shared_path("data/bp3d/body.armature.json"));
   const TissueVoxels tissue(file.volume);
@@ -150,7 +162,8 @@ TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, a
     REQUIRE(all > 0);
     return double(there) / double(all);
   };
-  for (const char* chest : {"Body of sternum", "Manubrium", "Left second rib", "Right second rib", "Left third rib", "Right fifth rib", "Second thoracic vertebra"}) {
+  for (const char* chest : {"Body of sternum", "Manubrium", "Left second rib", "Right second rib", "Left third rib",
+                            "Right fifth rib", "Second thoracic vertebra"}) {
     CAPTURE(chest);
     CHECK(share(chest, "Thorax") > 0.99);
   }
@@ -162,12 +175,13 @@ TEST_CASE("bone parts: in a whole body with one bone label the chest is whole, a
 
 TEST_CASE("bone parts: a toe beside the toe that the rig bone runs along is a toe") {
   SmallBody body = muscle_block({64, 44, 24});
-  draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);   // foot, two bones wide
+  draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);  // foot, two bones wide
   draw_tube(body, {2, 32, 12}, {36, 32, 12}, 4);
   draw_tube(body, {18, 15, 12}, {18, 29, 12}, 4);
   draw_tube(body, {37, 12, 12}, {58, 12, 12}, 3);  // toes
   draw_tube(body, {37, 32, 12}, {58, 32, 12}, 3);
-  body.armature.bones = {bone_between("Foot", -1, {2, 12, 12}, {38, 12, 12}), bone_between("Toes", 0, {38, 12, 12}, {60, 12, 12})};
+  body.armature.bones = {bone_between("Foot", -1, {2, 12, 12}, {38, 12, 12}),
+                         bone_between("Toes", 0, {38, 12, 12}, {60, 12, 12})};
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
   CHECK(bone_at(body, parts, tissue, {10, 32, 12}) == "Foot");
@@ -223,8 +237,8 @@ TEST_CASE("bone parts: a volume that is all bone, or has none, is no trouble") {
   CHECK(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature).parts.empty());
 }
 
-TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies on one rig bone"
-          * doctest::test_suite("slow")) {
+TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies on one rig bone" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/arm_shoulder_1mm_tissue.mha");
   const VolumeFile file = read_volume(shared_path("data/bp3d/arm_shoulder_1mm_tissue.mha"));
   const VolumeFile truth = read_volume(shared_path("data/bp3d/arm_shoulder_1mm.nrrd"));
@@ -237,7 +251,8 @@ TEST_CASE("bone parts: on a whole arm with one bone label, every true bone lies 
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     if (!parts.part_of[place]) return;
     ++bone_voxels;
-    ++bones_of_structure[truth.tissues.find(truth.volume.at(v))->file_value][parts.parts[parts.part_of[place] - 1].bone];
+    ++bones_of_structure[truth.tissues.find(truth.volume.at(v))->file_value]
+                        [parts.parts[parts.part_of[place] - 1].bone];
   });
   std::int64_t astray = 0;
   for (const auto& [structure, bones] : bones_of_structure) {

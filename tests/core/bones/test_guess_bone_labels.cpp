@@ -43,17 +43,24 @@ TEST_CASE("bone tissue: the thin label that the rig runs through is taken for bo
   CHECK(guess->share_of_rig > 0.95);
 }
 
-TEST_CASE("bone tissue: bones are told where the rig runs between two of them, and muscle beside one bone of the rig is none") {
+TEST_CASE(
+    "bone tissue: bones are told where the rig runs between two of them, and muscle beside one bone of the rig is "
+    "none") {
   Bar forearm;
   for (int z = 2; z < 158; ++z)
     for (int y = 2; y < 19; ++y)
-      for (int x = 2; x < 19; ++x) forearm.volume.at({x, y, z}) = x != 10 && std::abs(x - 10) < 3 && std::abs(y - 10) <= 1 ? 2 : z < 50 && std::abs(y - 10) <= 1 ? 3 : 1;
+      for (int x = 2; x < 19; ++x)
+        forearm.volume.at({x, y, z}) = x != 10 && std::abs(x - 10) < 3 && std::abs(y - 10) <= 1 ? 2
+                                       : z < 50 && std::abs(y - 10) <= 1                        ? 3
+                                                                                                : 1;
   const auto guess = guess_bone_tissue(forearm.volume, forearm.tissues, forearm.rig);
   REQUIRE(guess);
   CHECK(guess->label == 2);
 }
 
-TEST_CASE("bone tissue: nothing is guessed where a table knows a tissue, the rig runs elsewhere, or the label is most of the body") {
+TEST_CASE(
+    "bone tissue: nothing is guessed where a table knows a tissue, the rig runs elsewhere, or the label is most of the "
+    "body") {
   Bar bar;
   bar.tissues.tissues[0].kind = TissueKind::Muscle;
   CHECK_FALSE(guess_bone_tissue(bar.volume, bar.tissues, bar.rig));

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/rig/armature_io.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/core/skin/small_body.h"
 #include "tests/support/shared_data.h"
 
@@ -14,7 +14,8 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// Two thighs and shanks in a slab of muscle; the body's left has larger x. The slab reaches further to the left than to the right.
+// Two thighs and shanks in a slab of muscle; the body's left has larger x. The slab reaches further to the left than to
+// the right.
 SmallBody legs() {
   SmallBody body;
   body.volume.grid.size = {60, 12, 84};
@@ -41,8 +42,9 @@ SmallBody legs() {
   fill(13, 17, 44, 80, 3, 4);
   fill(43, 47, 4, 40, 4, 4);
   fill(13, 17, 4, 40, 5, 4);
-  body.armature.bones = {bone_between("LeftThigh", -1, {55, 6, 80}, {55, 6, 42}), bone_between("LeftShank", 0, {55, 6, 42}, {55, 6, 4}),
-                         bone_between("RightThigh", -1, {25, 6, 80}, {25, 6, 42}), bone_between("RightShank", 2, {25, 6, 42}, {25, 6, 4})};
+  body.armature.bones = {
+      bone_between("LeftThigh", -1, {55, 6, 80}, {55, 6, 42}), bone_between("LeftShank", 0, {55, 6, 42}, {55, 6, 4}),
+      bone_between("RightThigh", -1, {25, 6, 80}, {25, 6, 42}), bone_between("RightShank", 2, {25, 6, 42}, {25, 6, 4})};
   return body;
 }
 
@@ -83,7 +85,8 @@ TEST_CASE("input doubts: a rig whose left is the labels' right is told") {
 
 TEST_CASE("input doubts: a rig of another limb is told") {
   SmallBody body = legs();
-  body.armature.bones = {bone_between("LeftUpperArm", -1, {55, 6, 80}, {55, 6, 42}), bone_between("LeftForearm", 0, {55, 6, 42}, {55, 6, 4})};
+  body.armature.bones = {bone_between("LeftUpperArm", -1, {55, 6, 80}, {55, 6, 42}),
+                         bone_between("LeftForearm", 0, {55, 6, 42}, {55, 6, 4})};
   CHECK(doubts(body, "rig of the arm"));
 }
 
@@ -111,8 +114,10 @@ TEST_CASE("input doubts: real bodies with their own rigs raise none" * doctest::
   NEEDS_SHARED("data/bp3d/body_2mm_tissue.mha");
   const struct {
     const char *volume, *rig;
-  } kBodies[] = {{"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk"}, {"bp3d/body_3mm_structures.nii.gz", "bp3d/body.armature.json"},
-                 {"bp3d/body_2mm_tissue.mha", "bp3d/body.armature.json"}, {"bp3d/arm_shoulder_1mm.nrrd", "bp3d/arm_shoulder.armature.json"},
+  } kBodies[] = {{"bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk"},
+                 {"bp3d/body_3mm_structures.nii.gz", "bp3d/body.armature.json"},
+                 {"bp3d/body_2mm_tissue.mha", "bp3d/body.armature.json"},
+                 {"bp3d/arm_shoulder_1mm.nrrd", "bp3d/arm_shoulder.armature.json"},
                  {"makehuman/body_4mm.nrrd", "makehuman/body.armature.json"}};
   for (const auto& body : kBodies) {
     CAPTURE(body.volume);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies of one bone label whose bones touch, with known truth: every voxel is of the bone whose surface it lies deepest in.
+// Bodies of one bone label whose bones touch, with known truth: every voxel is of the bone whose surface it lies
+// deepest in.
 #include "core/bones/joint_cuts.h"
 
 #include <algorithm>
@@ -29,15 +30,16 @@ struct Dumbbell {
 double outside_of(const Dumbbell& bone, const glm::dvec3& at) {
   const glm::dvec3 along = glm::normalize(bone.to - bone.from), inset = 2.0 / 3 * bone.knob * along;
   const double length = glm::length(bone.to - bone.from), t = std::clamp(glm::dot(at - bone.from, along), 0.0, length);
-  return std::min({glm::distance(at, bone.from + t * along) - bone.shaft, glm::distance(at, bone.from + inset) - bone.knob,
-                   glm::distance(at, bone.to - inset) - bone.knob});
+  return std::min({glm::distance(at, bone.from + t * along) - bone.shaft,
+                   glm::distance(at, bone.from + inset) - bone.knob, glm::distance(at, bone.to - inset) - bone.knob});
 }
 
 struct FusedBody {
   SmallBody body;
   std::vector<int> truth;  // by voxel: rig bone, -1 for no bone
 };
-FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const glm::ivec3& size, const glm::dvec3& spacing) {
+FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const glm::ivec3& size,
+                const glm::dvec3& spacing) {
   FusedBody made;
   made.body.volume.grid.size = size;
   made.body.volume.grid.spacing = spacing;
@@ -50,7 +52,8 @@ FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const g
       for (int x = 0; x < size.x; ++x) {
         double deepest = 0;
         for (const Dumbbell& bone : bones)
-          if (const double d = outside_of(bone, glm::dvec3(x, y, z) * spacing); d < deepest) deepest = d, made.truth[made.body.volume.grid.index({x, y, z})] = bone.rig_bone;
+          if (const double d = outside_of(bone, glm::dvec3(x, y, z) * spacing); d < deepest)
+            deepest = d, made.truth[made.body.volume.grid.index({x, y, z})] = bone.rig_bone;
         if (deepest < 0) made.body.volume.at({x, y, z}) = kBone;
       }
   return made;
@@ -75,7 +78,8 @@ Wrong wrong_bones(const FusedBody& made) {
   });
   Wrong all;
   for (const auto& [bone, count] : wrong_of) {
-    MESSAGE(made.body.armature.bones[bone].name, ": ", count.first, " of ", count.second, " voxels follow another rig bone");
+    MESSAGE(made.body.armature.bones[bone].name, ": ", count.first, " of ", count.second,
+            " voxels follow another rig bone");
     all.worst_share = std::max(all.worst_share, double(count.first) / double(count.second));
     all.voxels += count.first;
   }
@@ -94,12 +98,14 @@ FusedBody coarse_leg(const glm::dvec3& off) {
 // A finger of three bones along points, 1 mm.
 std::vector<Dumbbell> finger(const std::vector<glm::dvec3>& joints, int first_bone) {
   std::vector<Dumbbell> bones;
-  for (std::size_t k = 0; k + 1 < joints.size(); ++k) bones.push_back({joints[k], joints[k + 1], 3.5, 5.5, first_bone + static_cast<int>(k)});
+  for (std::size_t k = 0; k + 1 < joints.size(); ++k)
+    bones.push_back({joints[k], joints[k + 1], 3.5, 5.5, first_bone + static_cast<int>(k)});
   return bones;
 }
 void add_chain(Armature& rig, const std::string& name, const std::vector<glm::dvec3>& joints) {
   for (std::size_t k = 0; k + 1 < joints.size(); ++k)
-    rig.bones.push_back(bone_between((name + std::to_string(k)).c_str(), k == 0 ? -1 : static_cast<int>(rig.bones.size()) - 1, joints[k], joints[k + 1]));
+    rig.bones.push_back(bone_between((name + std::to_string(k)).c_str(),
+                                     k == 0 ? -1 : static_cast<int>(rig.bones.size()) - 1, joints[k], joints[k + 1]));
 }
 }  // namespace
 
@@ -108,10 +114,12 @@ TEST_CASE("joint cuts: femur and tibia that touch broadly on 8 mm slices are cut
 }
 
 TEST_CASE("joint cuts: a rig's knee 5 mm off moves the cut by one 8 mm slice at most") {
-  for (const glm::dvec3& off : {glm::dvec3(0, 0, 5), glm::dvec3(0, 0, -5), glm::dvec3(5, 0, 0), glm::dvec3(3, 3, 3)}) CHECK(worst_share(coarse_leg(off)) < 0.065);
+  for (const glm::dvec3& off : {glm::dvec3(0, 0, 5), glm::dvec3(0, 0, -5), glm::dvec3(5, 0, 0), glm::dvec3(3, 3, 3)})
+    CHECK(worst_share(coarse_leg(off)) < 0.065);
 }
 
-// Thigh, shank and kneecap in one label, 2 x 2 x 5 mm. The kneecap leans on the femur; its tip hangs `low` mm below the joint.
+// Thigh, shank and kneecap in one label, 2 x 2 x 5 mm. The kneecap leans on the femur; its tip hangs `low` mm below the
+// joint.
 FusedBody leg_with_kneecap(double low) {
   const glm::dvec3 hip(50, 60, 796), knee(50, 60, 404), ankle(50, 60, 12);
   Armature rig;
@@ -133,8 +141,8 @@ TEST_CASE("joint cuts: the thin shaft beside a broad joint is not cut in its pla
   }
 }
 
-TEST_CASE("joint cuts: a kneecap that leans on the femur stays whole, also where its tip hangs below the joint"
-          * doctest::test_suite("slow")) {
+TEST_CASE("joint cuts: a kneecap that leans on the femur stays whole, also where its tip hangs below the joint" *
+          doctest::test_suite("slow")) {
   for (const double low : {-5.0, 5.0, 15.0}) {
     INFO("tip ", low, " mm below the joint");
     CHECK(wrong_bones(leg_with_kneecap(low)).voxels < 10);
@@ -276,7 +284,8 @@ TEST_CASE("joint cuts: a bone that hangs on the parent of the one it sits on is 
 }
 
 FusedBody fingers_side_by_side() {
-  const std::vector<glm::dvec3> first = {{20, 20, 110}, {20, 20, 66}, {20, 20, 38}, {20, 20, 12}}, second = {{30, 20, 112}, {30, 20, 70}, {30, 20, 40}, {30, 20, 10}};
+  const std::vector<glm::dvec3> first = {{20, 20, 110}, {20, 20, 66}, {20, 20, 38}, {20, 20, 12}},
+                                second = {{30, 20, 112}, {30, 20, 70}, {30, 20, 40}, {30, 20, 10}};
   Armature rig;
   add_chain(rig, "One", first);
   add_chain(rig, "Two", second);
@@ -290,11 +299,15 @@ TEST_CASE("joint cuts: two fingers grown together side by side are cut between t
 }
 
 TEST_CASE("joint cuts: bow legs whose knees touch are four bones") {
-  const glm::dvec3 left_hip(40, 60, 390), left_knee(92, 60, 200), left_ankle(40, 60, 10), right_hip(196, 60, 390), right_knee(144, 60, 200), right_ankle(196, 60, 10);
+  const glm::dvec3 left_hip(40, 60, 390), left_knee(92, 60, 200), left_ankle(40, 60, 10), right_hip(196, 60, 390),
+      right_knee(144, 60, 200), right_ankle(196, 60, 10);
   Armature rig;
   add_chain(rig, "Left", {left_hip, left_knee, left_ankle});
   add_chain(rig, "Right", {right_hip, right_knee, right_ankle});
-  const std::vector<Dumbbell> bones = {{left_hip, left_knee, 13, 29, 0}, {left_knee, left_ankle, 12, 28, 1}, {right_hip, right_knee, 13, 29, 2}, {right_knee, right_ankle, 12, 28, 3}};
+  const std::vector<Dumbbell> bones = {{left_hip, left_knee, 13, 29, 0},
+                                       {left_knee, left_ankle, 12, 28, 1},
+                                       {right_hip, right_knee, 13, 29, 2},
+                                       {right_knee, right_ankle, 12, 28, 3}};
   CHECK(worst_share(fused(bones, rig, {59, 30, 100}, {4, 4, 4})) < 0.01);
 }
 
@@ -315,7 +328,8 @@ TEST_CASE("joint cuts: bones that do not touch keep every connection") {
   const std::vector<TissueKind> kinds = body.tissues.kinds();
   BoneGraph graph = gather_bone(body.volume, tissue, kinds);
   const auto before = graph.neighbour;
-  const auto [beyond, broad, depth] = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+  const auto [beyond, broad, depth] =
+      cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
   CHECK(graph.neighbour == before);
   CHECK(broad.empty());
   CHECK(depth == bone_depth(graph, body.volume.grid.spacing));
@@ -325,7 +339,8 @@ TEST_CASE("joint cuts: bones that do not touch keep every connection") {
 
 TEST_CASE("joint cuts: bones that touch more broadly than they are thick are told, those with a neck are not") {
   auto lines_of = [](const SmallBody& body) {
-    return unsure_bones(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature), body.tissues, body.armature);
+    return unsure_bones(split_bones(body.volume, TissueVoxels(body.volume), body.tissues, body.armature), body.tissues,
+                        body.armature);
   };
   const auto lines = lines_of(coarse_leg({0, 0, 0}).body);
   REQUIRE(lines.size() == 1);
@@ -343,7 +358,8 @@ TEST_CASE("joint cuts: depths after a cut are those of the graph that was cut") 
   const std::vector<TissueKind> kinds = body.tissues.kinds();
   BoneGraph graph = gather_bone(body.volume, TissueVoxels(body.volume), kinds);
   const auto before = graph.neighbour;
-  const JointCuts cuts = cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+  const JointCuts cuts =
+      cut_at_joints(graph, body.volume, kinds, body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
   CHECK(graph.neighbour != before);
   const std::vector<float> depth = bone_depth(graph, body.volume.grid.spacing);
   double worst = 0;
@@ -353,13 +369,15 @@ TEST_CASE("joint cuts: depths after a cut are those of the graph that was cut") 
 
 TEST_CASE("joint cuts: one, two and four threads cut alike") {
   const std::vector<glm::dvec3> joints = {{20, 20, 112}, {20, 20, 70.3}, {20, 20, 38.6}, {20, 20, 14}};
-  for (const FusedBody& made : {coarse_leg({0, 0, 0}), rolling_finger(joints, ring_finger(joints), {0, 0}), fingers_side_by_side()}) {
+  for (const FusedBody& made :
+       {coarse_leg({0, 0, 0}), rolling_finger(joints, ring_finger(joints), {0, 0}), fingers_side_by_side()}) {
     const std::vector<TissueKind> kinds = made.body.tissues.kinds();
     auto cut_with = [&](int threads) {
       const ThreadCount count(threads);
       BoneGraph graph = gather_bone(made.body.volume, TissueVoxels(made.body.volume), kinds);
       const auto whole = graph.neighbour;
-      JointCuts cuts = cut_at_joints(graph, made.body.volume, kinds, made.body.armature, std::vector<std::int32_t>(graph.size(), 0), {{}});
+      JointCuts cuts = cut_at_joints(graph, made.body.volume, kinds, made.body.armature,
+                                     std::vector<std::int32_t>(graph.size(), 0), {{}});
       CHECK(graph.neighbour != whole);
       std::vector<std::array<int, 3>> beyond;
       for (const BeyondJoint& b : cuts.beyond) beyond.push_back({b.voxel, b.bone, b.other});

@@ -125,8 +125,8 @@ TEST_CASE("least shift: a ball turned about a point beside its middle goes back 
   CHECK(glm::length(found.shift) < glm::length(off));
 }
 
-TEST_CASE("least shift: a ball turned about its middle in a closed socket stays, whatever the voxels"
-          * doctest::test_suite("slow")) {
+TEST_CASE("least shift: a ball turned about its middle in a closed socket stays, whatever the voxels" *
+          doctest::test_suite("slow")) {
   for (const glm::dvec3 spacing : {glm::dvec3(1), glm::dvec3(3), glm::dvec3(2.1, 2.1, 8)}) {
     const glm::dvec3 middle(61.3, 60.2, 60.7);
     const Inside bone = [&](const glm::dvec3& p) {

@@ -10,7 +10,8 @@ using namespace limber;
 namespace {
 enum class Ways { Alike, Differ };  // to and fro along an edge
 
-// A cube of `side` voxels with random capacities; edge k of the 26 leads where the k-th of the offsets in z, y, x order does.
+// A cube of `side` voxels with random capacities; edge k of the 26 leads where the k-th of the offsets in z, y, x order
+// does.
 CutGraph<26> random_cube(int side, unsigned seed, int most_edge, int most_terminal, Ways ways) {
   std::mt19937 random(seed);
   CutGraph<26> graph;
@@ -23,7 +24,8 @@ CutGraph<26> random_cube(int side, unsigned seed, int most_edge, int most_termin
   for (int i = 0; i < count; ++i) {
     graph.terminal[i] = static_cast<int>(random() % (2 * most_terminal + 1)) - most_terminal;
     for (int k = 13; k < 26; ++k) {
-      const int step = k + 1, x = i % side + step % 3 - 1, y = i / side % side + step / 3 % 3 - 1, z = i / side / side + step / 9 - 1;
+      const int step = k + 1, x = i % side + step % 3 - 1, y = i / side % side + step / 3 % 3 - 1,
+                z = i / side / side + step / 9 - 1;
       if (x < 0 || y < 0 || z < 0 || x >= side || y >= side || z >= side) continue;
       const int j = x + side * (y + side * z);
       graph.neighbour[i][k] = j;

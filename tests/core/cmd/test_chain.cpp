@@ -8,9 +8,9 @@
 #include <thread>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
 
@@ -36,9 +36,12 @@ nlohmann::json info_of(const std::string& path) {
 // The arm of the phantoms, coarse.
 struct Arm {
   TemporaryFolder folder;
-  std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", motion = folder / "motion.bvh", tissues = folder / "tissues.json";
+  std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", motion = folder / "motion.bvh",
+              tissues = folder / "tissues.json";
 
-  explicit Arm(const std::string& spacing = "10") { REQUIRE(run_limber({"phantom", "arm", "--spacing", spacing, "-o", folder.path()}).exit_code == 0); }
+  explicit Arm(const std::string& spacing = "10") {
+    REQUIRE(run_limber({"phantom", "arm", "--spacing", spacing, "-o", folder.path()}).exit_code == 0);
+  }
 };
 
 // Starts the program, sends it a signal after a while and tells how it ended.
@@ -62,13 +65,15 @@ int exit_code_after(int signal, std::chrono::milliseconds wait, const std::vecto
 
 }  // namespace
 
-TEST_CASE("command chain: a phantom is weighted and posed, weights from a file give the volume that weights on the way give"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "command chain: a phantom is weighted and posed, weights from a file give the volume that weights on the way give" *
+    doctest::test_suite("slow")) {
   const Arm arm;
-  const std::string weights = arm.folder / "w.nrrd", direct = arm.folder / "direct.nrrd", by_file = arm.folder / "by-file.nrrd",
-                    report = arm.folder / "report.json";
+  const std::string weights = arm.folder / "w.nrrd", direct = arm.folder / "direct.nrrd",
+                    by_file = arm.folder / "by-file.nrrd", report = arm.folder / "report.json";
   REQUIRE(run_limber({"weights", arm.volume, "--rig", arm.rig, "-o", weights}).exit_code == 0);
-  const std::vector<std::string> pose = {"resample", arm.volume, "--rig", arm.rig, "--flex", "Forearm=60", "--method", "dqs", "--fit-joints"};
+  const std::vector<std::string> pose = {"resample",   arm.volume, "--rig", arm.rig,       "--flex",
+                                         "Forearm=60", "--method", "dqs",   "--fit-joints"};
   auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), pose.begin(), pose.end());
     return run_limber(more).exit_code;
@@ -81,7 +86,8 @@ TEST_CASE("command chain: a phantom is weighted and posed, weights from a file g
 
   const auto json = nlohmann::json::parse(bytes_of(report));
   CHECK(json["schema"] == "limber-report/1");
-  for (const char* key : {"voxels_before", "voxels_after", "volume_change_percent", "overlap_voxels", "new_hole_voxels", "trapped_air_voxels", "dropped_voxels"})
+  for (const char* key : {"voxels_before", "voxels_after", "volume_change_percent", "overlap_voxels", "new_hole_voxels",
+                          "trapped_air_voxels", "dropped_voxels"})
     CHECK_MESSAGE(json["total"].contains(key), key);
   CHECK(json["total"]["new_hole_voxels"] == 0);
   CHECK(json["total"]["dropped_voxels"] == 0);
@@ -99,15 +105,20 @@ TEST_CASE("command chain: the rest pose gives the input back, and report sees no
   CHECK(report["tissues"].size() > 5);
 }
 
-TEST_CASE("resample: --frames writes one volume and report for each frame, as --frame does, and refuses what would overwrite itself"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "resample: --frames writes one volume and report for each frame, as --frame does, and refuses what would overwrite "
+    "itself" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const auto posed = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--motion", arm.motion, "--method", "dqs"};
+    std::vector<std::string> words = {"resample",  arm.volume, "--rig",    arm.rig,    "--tissues",
+                                      arm.tissues, "--motion", arm.motion, "--method", "dqs"};
     words.insert(words.end(), more.begin(), more.end());
     return run_limber(words);
   };
-  REQUIRE(posed({"--frames", "2:12:5", "-o", arm.folder / "posed_{frame}.nrrd", "--report", arm.folder / "{frame}.json"}).exit_code == 0);
+  REQUIRE(
+      posed({"--frames", "2:12:5", "-o", arm.folder / "posed_{frame}.nrrd", "--report", arm.folder / "{frame}.json"})
+          .exit_code == 0);
   for (const char* frame : {"2", "7", "12"}) {
     REQUIRE(posed({"--frame", frame, "-o", arm.folder / "one.nrrd"}).exit_code == 0);
     const std::string number = std::string(4 - std::string(frame).size(), '0') + frame;
@@ -130,12 +141,16 @@ TEST_CASE("resample: --frames writes one volume and report for each frame, as --
   refused({"--frames", "0:3", "--fit-joints", "-o", out}, "joints are fitted to one pose");
 }
 
-TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is allowed"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "resample: --mass-exact gives soft tissues their rest volumes and reports it, and refuses to make up more than is "
+    "allowed" *
+    doctest::test_suite("slow")) {
   const Arm arm("4");
   const std::string out = arm.folder / "out.nrrd", report = arm.folder / "report.json";
   const auto posed = [&](const char* degrees, const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--flex", std::string("Forearm=") + degrees, "--method", "lbs", "-o", out, "--report", report};
+    std::vector<std::string> words = {
+        "resample", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--flex", std::string("Forearm=") + degrees,
+        "--method", "lbs",      "-o",    out,     "--report",  report};
     words.insert(words.end(), more.begin(), more.end());
     return run_limber(words);
   };
@@ -146,7 +161,8 @@ TEST_CASE("resample: --mass-exact gives soft tissues their rest volumes and repo
   int judged = 0;
   for (const auto& tissue : json["mass_exact"]["tissues"])
     if (tissue["voxels_wanted"] >= 5000) {
-      CHECK(tissue["voxels_after"].get<double>() == doctest::Approx(tissue["voxels_wanted"].get<double>()).epsilon(0.001));
+      CHECK(tissue["voxels_after"].get<double>() ==
+            doctest::Approx(tissue["voxels_wanted"].get<double>()).epsilon(0.001));
       ++judged;
     }
   CHECK(judged >= 2);
@@ -168,7 +184,8 @@ TEST_CASE("prepare: a volume that is prepared twice keeps its labels countable, 
   CHECK(run_limber({"prepare", arm.volume, "-o", padded, "--crop", "--pad", "2"}).exit_code == 0);
   const auto before = info_of(padded);
   const std::string coarse = arm.folder / "coarse.mha", statistics = arm.folder / "s.csv";
-  CHECK(run_limber({"prepare", padded, "-o", coarse, "--spacing", "20", "--flip", "x", "--statistics", statistics}).exit_code == 0);
+  CHECK(run_limber({"prepare", padded, "-o", coarse, "--spacing", "20", "--flip", "x", "--statistics", statistics})
+            .exit_code == 0);
   CHECK(info_of(coarse)["size"][2] == (before["size"][2].get<int>() + 1) / 2);
   CHECK(std::filesystem::file_size(statistics) > 0);
 }
@@ -180,7 +197,8 @@ TEST_CASE("prepare: a voxel may become larger than the volume by more than whole
   std::string text = bytes_of(small);
   const size_t directions = text.find("space directions: "), end = text.find('\n', directions);
   REQUIRE(end != std::string::npos);
-  std::ofstream(small, std::ios::binary) << text.replace(directions, end - directions, "space directions: (1e-8,0,0) (0,1e-8,0) (0,0,1e-8)");
+  std::ofstream(small, std::ios::binary) << text.replace(directions, end - directions,
+                                                         "space directions: (1e-8,0,0) (0,1e-8,0) (0,0,1e-8)");
   CHECK(run_limber({"prepare", small, "-o", coarse, "--spacing", "30"}).exit_code == 0);
   CHECK(info_of(coarse)["size"] == nlohmann::json({1, 1, 1}));
 }
@@ -188,12 +206,13 @@ TEST_CASE("prepare: a voxel may become larger than the volume by more than whole
 TEST_CASE("fit-joint: a rig is written whose forearm turns freely") {
   const Arm arm;
   const std::string rig = arm.folder / "fitted.json";
-  CHECK(run_limber({"fit-joint", arm.volume, "--rig", arm.rig, "--bone", "Forearm", "--range", "0,60", "-o", rig}).exit_code == 0);
+  CHECK(run_limber({"fit-joint", arm.volume, "--rig", arm.rig, "--bone", "Forearm", "--range", "0,60", "-o", rig})
+            .exit_code == 0);
   CHECK(info_of(rig)["bones"].size() == info_of(arm.rig)["bones"].size());
 }
 
-TEST_CASE("convert: volumes go through every format and come back bit for bit, rigs and motions keep bones and frames"
-          * doctest::test_suite("slow")) {
+TEST_CASE("convert: volumes go through every format and come back bit for bit, rigs and motions keep bones and frames" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   const std::string back = arm.folder / "back.nrrd";
   const auto original = info_of(arm.volume);
@@ -220,8 +239,8 @@ TEST_CASE("convert: volumes go through every format and come back bit for bit, r
   CHECK(info_of(motion)["frames"] == info_of(arm.motion)["frames"]);
 }
 
-TEST_CASE("command line: an output that cannot be written is refused in one line before anything is computed"
-          * doctest::test_suite("slow")) {
+TEST_CASE("command line: an output that cannot be written is refused in one line before anything is computed" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   const std::string volume = arm.volume, rig = arm.rig, out = arm.folder / "out.nrrd";
   const size_t files = files_in(arm.folder.path());
@@ -250,7 +269,8 @@ TEST_CASE("command line: an output that cannot be written is refused in one line
 
 TEST_CASE("command line: --progress json tells stages and rising fractions, one object a line") {
   const Arm arm;
-  const auto run = run_limber({"weights", arm.volume, "--rig", arm.rig, "-o", arm.folder / "w.nrrd", "--progress", "json"});
+  const auto run =
+      run_limber({"weights", arm.volume, "--rig", arm.rig, "-o", arm.folder / "w.nrrd", "--progress", "json"});
   REQUIRE(run.exit_code == 0);
   std::istringstream lines(run.err);
   int objects = 0;
@@ -265,13 +285,15 @@ TEST_CASE("command line: --progress json tells stages and rising fractions, one 
   CHECK(objects > 0);
 }
 
-TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever it comes"
-          * doctest::test_suite("slow")) {
+TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever it comes" *
+          doctest::test_suite("slow")) {
   const Arm arm("5");
   const size_t files = files_in(arm.folder.path());
   for (const int wait : {20, 80, 200}) {
     const std::string out = arm.folder / "out.nrrd";
-    const std::vector<std::string> words = {"resample", arm.volume, "--rig", arm.rig, "--flex", "Forearm=90", "--method", "dqs", "--fit-joints", "--threads", "1", "--spacing", "2", "-o", out};
+    const std::vector<std::string> words = {"resample",   arm.volume,  "--rig", arm.rig,        "--flex",
+                                            "Forearm=90", "--method",  "dqs",   "--fit-joints", "--threads",
+                                            "1",          "--spacing", "2",     "-o",           out};
     for (const int signal : {SIGINT, SIGKILL}) {
       const int code = exit_code_after(signal, std::chrono::milliseconds(wait), words);
       CAPTURE(code);
@@ -279,7 +301,8 @@ TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever 
       const bool done = code == 0;
       CHECK((done || code == (signal == SIGINT ? 3 : 128 + SIGKILL) || (signal == SIGINT && code == 128 + SIGINT)));
       // A kill cannot be seen coming: it may fall between the file's taking its place and the end.
-      if (signal == SIGKILL && code == 128 + SIGKILL && std::filesystem::exists(out)) CHECK(run_limber({"info", out}).exit_code == 0);
+      if (signal == SIGKILL && code == 128 + SIGKILL && std::filesystem::exists(out))
+        CHECK(run_limber({"info", out}).exit_code == 0);
       else CHECK(std::filesystem::exists(out) == done);
       std::filesystem::remove(out);
       CHECK(files_in(arm.folder.path()) == files);
@@ -287,8 +310,9 @@ TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever 
   }
 }
 
-TEST_CASE("weights: a rig 900 km away still gives every voxel its weights, one beyond any number of millimetres is refused"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "weights: a rig 900 km away still gives every voxel its weights, one beyond any number of millimetres is refused" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const auto rig = nlohmann::json::parse(bytes_of(arm.rig));
   const auto move_away = [&](double mm) {
@@ -299,8 +323,12 @@ TEST_CASE("weights: a rig 900 km away still gives every voxel its weights, one b
   };
   for (const char* method : {"heat", "geodesic", "rigid"}) {
     move_away(9e8);
-    CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"}).exit_code == 0, method);
+    CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"})
+                          .exit_code == 0,
+                  method);
     move_away(1e300);
-    CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"}).exit_code == 1, method);
+    CHECK_MESSAGE(run_limber({"weights", arm.volume, "--rig", arm.rig, "--method", method, "-o", arm.folder / "w.nrrd"})
+                          .exit_code == 1,
+                  method);
   }
 }

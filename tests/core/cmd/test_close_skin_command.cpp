@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -46,7 +46,8 @@ struct Ball {
 
 }  // namespace
 
-TEST_CASE("prepare: --close-skin says how many voxels of which tissue became skin, and grows the volume where it must") {
+TEST_CASE(
+    "prepare: --close-skin says how many voxels of which tissue became skin, and grows the volume where it must") {
   const Ball body(R"({"1": "skin", "2": "muscle", "3": "femur"})");
   const ProgramRun inward = body.close({"--close-skin", "inward"});
   REQUIRE_MESSAGE(inward.exit_code == 0, inward.err);
@@ -75,8 +76,8 @@ TEST_CASE("prepare: --close-skin warns where the volume's border cuts the body")
   CHECK(read_volume(body.out).volume.at({12, 12, 19}) == 2);
 }
 
-TEST_CASE("prepare: without a label of skin --close-skin is refused in one line, and --skin-label names one"
-          * doctest::test_suite("slow")) {
+TEST_CASE("prepare: without a label of skin --close-skin is refused in one line, and --skin-label names one" *
+          doctest::test_suite("slow")) {
   const Ball body(R"({"1": "fat", "2": "muscle", "3": "femur"})");
   const auto refused = [&](const std::vector<std::string>& more, int code = 1) {
     const ProgramRun run = body.close(more);

@@ -10,9 +10,9 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
 #include "tests/support/program.h"
@@ -24,8 +24,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void describe(const Path& path, const std::string& methods, const std::string& poses = R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}])") {
-  std::ofstream(path) << R"({"name": "Small & quick", "phantom": "arm", "spacings_mm": [8], "quality": "draft", "methods": )" << methods << R"(, "poses": )" << poses << "}";
+void describe(const Path& path, const std::string& methods,
+              const std::string& poses = R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}])") {
+  std::ofstream(path)
+      << R"({"name": "Small & quick", "phantom": "arm", "spacings_mm": [8], "quality": "draft", "methods": )" << methods
+      << R"(, "poses": )" << poses << "}";
 }
 
 // Without what differs from run to run.
@@ -41,7 +44,8 @@ json cells_of(const Path& folder) { return without_times(json::parse(read_file(f
 int cells_there(const Path& folder) {
   int cells = 0;
   if (fs::exists(folder / "cells"))
-    for (const auto& entry : fs::directory_iterator(folder / "cells")) cells += entry.path().filename().string()[0] != '.';
+    for (const auto& entry : fs::directory_iterator(folder / "cells"))
+      cells += entry.path().filename().string()[0] != '.';
   return cells;
 }
 
@@ -56,7 +60,8 @@ int ended_by(int signal, const Path& study, const Path& out, int cells, double a
     ::_exit(127);
   }
   int status = 0;
-  while (cells_there(out) < cells && ::waitpid(child, &status, WNOHANG) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (cells_there(out) < cells && ::waitpid(child, &status, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   std::this_thread::sleep_for(std::chrono::duration<double>(after));
   ::kill(child, signal);
   ::waitpid(child, &status, 0);
@@ -71,8 +76,10 @@ std::size_t count(const std::string& text, const std::string& of) {
 
 }  // namespace
 
-TEST_CASE("experiment: a study gives tables and one self-contained page, and killed after a random cell and taken up again the same"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "experiment: a study gives tables and one self-contained page, and killed after a random cell and taken up again "
+    "the same" *
+    doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", whole = folder / "whole", killed = folder / "killed";
   describe(study, R"(["lbs", "dqs", "fem"])");
@@ -113,10 +120,16 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
   CHECK(page.starts_with("<!doctype html>"));
   CHECK(page.ends_with("</html>\n"));
   CHECK(page.find("Small &amp; quick") != std::string::npos);
-  for (const char* outside : {"<script", "http:", "https:", "<link", "src=\"/", "url("}) CHECK_MESSAGE(page.find(outside) == std::string::npos, outside);
+  for (const char* outside : {"<script", "http:", "https:", "<link", "src=\"/", "url("})
+    CHECK_MESSAGE(page.find(outside) == std::string::npos, outside);
   CHECK(count(page, "data:image/png;base64,") >= 6);
-  for (const char* part : {"id=\"summary\"", "id=\"time\"", "id=\"volume\"", "id=\"pictures\"", "id=\"worst\"", "id=\"gates\"", "id=\"provenance\"", "prefers-color-scheme:dark", "@media print"}) CHECK_MESSAGE(page.find(part) != std::string::npos, part);
-  for (const char* tag : {"figure", "table", "tr", "td", "th", "svg", "figcaption", "thead"}) CHECK_MESSAGE(count(page, std::string("</") + tag + ">") == count(page, std::string("<") + tag + ">") + count(page, std::string("<") + tag + " "), tag);
+  for (const char* part : {"id=\"summary\"", "id=\"time\"", "id=\"volume\"", "id=\"pictures\"", "id=\"worst\"",
+                           "id=\"gates\"", "id=\"provenance\"", "prefers-color-scheme:dark", "@media print"})
+    CHECK_MESSAGE(page.find(part) != std::string::npos, part);
+  for (const char* tag : {"figure", "table", "tr", "td", "th", "svg", "figcaption", "thead"})
+    CHECK_MESSAGE(count(page, std::string("</") + tag + ">") ==
+                      count(page, std::string("<") + tag + ">") + count(page, std::string("<") + tag + " "),
+                  tag);
 
   std::random_device random;
   const int after = static_cast<int>(random() % 5);
@@ -131,7 +144,8 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
   CHECK(count(rest.err, ": there already") == std::size_t(kept));
   CHECK(count(rest.err, ": done") == std::size_t(6 - kept));
   CHECK(cells_of(killed) == cells);
-  for (const auto& entry : fs::recursive_directory_iterator(killed)) CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
+  for (const auto& entry : fs::recursive_directory_iterator(killed))
+    CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
 
   const auto again = run_limber({"experiment", study, "-o", killed});
   CHECK(count(again.err, ": there already") == 6);
@@ -144,8 +158,10 @@ TEST_CASE("experiment: a study gives tables and one self-contained page, and kil
   CHECK(read_file(one / "posed.nrrd") == before);
 }
 
-TEST_CASE("experiment: masses made exact are a technique of their own, and SAR that was computed of the cells is a figure of the page"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "experiment: masses made exact are a technique of their own, and SAR that was computed of the cells is a figure of "
+    "the page" *
+    doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs"])");
@@ -156,15 +172,31 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
   CHECK_FALSE(cells[2]["report"].contains("mass_exact"));
   const json& exact = cells[3]["report"]["mass_exact"];
   CHECK(exact["changed_voxels"] > 0);
-  for (const json& tissue : exact["tissues"]) CHECK(std::abs(tissue["voxels_after"].get<int>() - tissue["voxels_wanted"].get<int>()) <= std::abs(tissue["voxels_before"].get<int>() - tissue["voxels_wanted"].get<int>()));
+  for (const json& tissue : exact["tissues"])
+    CHECK(std::abs(tissue["voxels_after"].get<int>() - tissue["voxels_wanted"].get<int>()) <=
+          std::abs(tissue["voxels_before"].get<int>() - tissue["voxels_wanted"].get<int>()));
   const std::string page = read_file(out / "report.html");
   CHECK(page.find("Dual quaternions, mass-exact") != page.npos);
   CHECK(page.find("Voxels that mass-exact moved") != page.npos);
   CHECK(page.find("id=\"sar\"") == page.npos);
 
-  json sar{{"schema", "limber-sar/2"}, {"frequency_hz", 9e8}, {"cell_mm", 6}, {"polarization", "z"}, {"towards", "y"}, {"spacing_mm", 8}, {"method", "dqs"},
-           {"sphere", {{"cell_mm", 6}, {"absorbed_w", 0.0102}, {"absorbed_by_mie_w", 0.01}, {"difference_percent", 2.0}}}};
-  for (const int i : {2, 0}) sar["poses"].push_back({{"pose", cells[i]["pose"]}, {"key", cells[i]["key"]}, {"sar_average_w_per_kg", 0.0123 + 1e-3 * i}, {"sar_peak_10g_w_per_kg", 0.0667}, {"mass_kg", 2.5}, {"seconds", 68}, {"cells", 12000}});
+  json sar{
+      {"schema", "limber-sar/2"},
+      {"frequency_hz", 9e8},
+      {"cell_mm", 6},
+      {"polarization", "z"},
+      {"towards", "y"},
+      {"spacing_mm", 8},
+      {"method", "dqs"},
+      {"sphere", {{"cell_mm", 6}, {"absorbed_w", 0.0102}, {"absorbed_by_mie_w", 0.01}, {"difference_percent", 2.0}}}};
+  for (const int i : {2, 0})
+    sar["poses"].push_back({{"pose", cells[i]["pose"]},
+                            {"key", cells[i]["key"]},
+                            {"sar_average_w_per_kg", 0.0123 + 1e-3 * i},
+                            {"sar_peak_10g_w_per_kg", 0.0667},
+                            {"mass_kg", 2.5},
+                            {"seconds", 68},
+                            {"cells", 12000}});
   const auto page_with = [&](const json& of) {
     std::ofstream(out / "sar.json") << of;
     const auto run = run_limber(command);
@@ -172,13 +204,16 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
     return run.exit_code == 0 ? read_file(out / "report.html") : run.err;
   };
   const std::string shown = page_with(sar);
-  for (const char* part : {"id=\"sar\"", "900 MHz", "+2.0 %", "<td>12.30</td><td>66.7</td>", "<td>14.30</td>", "Largest average over 10 g"}) CHECK_MESSAGE(shown.find(part) != shown.npos, part);
+  for (const char* part : {"id=\"sar\"", "900 MHz", "+2.0 %", "<td>12.30</td><td>66.7</td>", "<td>14.30</td>",
+                           "Largest average over 10 g"})
+    CHECK_MESSAGE(shown.find(part) != shown.npos, part);
   CHECK(shown.find("<td>12.30</td>") < shown.find("<td>14.30</td>"));
   CHECK(shown.find("Left out") == shown.npos);
   sar["sphere"]["difference_percent"] = -12;
   sar["poses"][0]["key"] = "of another program";
   const std::string doubted = page_with(sar);
-  for (const char* part : {"do not trust", "Left out:</b> SAR of +40", "<td>12.30</td>"}) CHECK_MESSAGE(doubted.find(part) != doubted.npos, part);
+  for (const char* part : {"do not trust", "Left out:</b> SAR of +40", "<td>12.30</td>"})
+    CHECK_MESSAGE(doubted.find(part) != doubted.npos, part);
   CHECK(doubted.find("<td>14.30</td>") == doubted.npos);
   for (const json& damaged : {json("text"), json{{"schema", "limber-sar/2"}}, json{{"schema", "limber-sar/1"}}}) {
     const std::string said = page_with(damaged);
@@ -188,8 +223,8 @@ TEST_CASE("experiment: masses made exact are a technique of their own, and SAR t
   }
 }
 
-TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them"
-          * doctest::test_suite("slow")) {
+TEST_CASE("experiment: shards compute each their own cells, and a run without one collects them" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs", "dqs"])");
@@ -206,21 +241,23 @@ TEST_CASE("experiment: shards compute each their own cells, and a run without on
   CHECK(cells_of(out)["cells"].size() == 4);
 
   // Another pose more: only its cells are computed.
-  describe(study, R"(["lbs", "dqs"])", R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}, {"name": "+20", "flex": "Forearm=20"}])");
+  describe(study, R"(["lbs", "dqs"])",
+           R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}, {"name": "+20", "flex": "Forearm=20"}])");
   const auto more = run_limber({"experiment", study, "-o", out});
   CHECK(count(more.err, ": there already") == 4);
   CHECK(count(more.err, ": done") == 2);
 }
 
-TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and what cannot be is one clear line"
-          * doctest::test_suite("slow")) {
+TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and what cannot be is one clear line" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path study = folder / "study.json", out = folder / "out";
   describe(study, R"(["lbs", "dqs"])");
   CHECK(ended_by(SIGINT, study, out, 1, 0.02) == 3);
   CHECK(cells_there(out) >= 1);
   CHECK_FALSE(fs::exists(out / "report.html"));
-  for (const auto& entry : fs::recursive_directory_iterator(out)) CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
+  for (const auto& entry : fs::recursive_directory_iterator(out))
+    CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
 
   const auto refused = [](const std::vector<std::string>& words, const std::string& named) {
     const auto run = run_limber(words);

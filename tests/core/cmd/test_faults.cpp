@@ -71,8 +71,8 @@ void make_inputs(const Bench& bench) {
 
 }  // namespace
 
-TEST_CASE("faults: when every n-th write, open, rename or sync fails, commands say so, and all is as before"
-          * doctest::test_suite("slow")) {
+TEST_CASE("faults: when every n-th write, open, rename or sync fails, commands say so, and all is as before" *
+          doctest::test_suite("slow")) {
   const Bench bench;
   make_inputs(bench);
   int faults = 0;
@@ -107,8 +107,8 @@ TEST_CASE("faults: when every n-th write, open, rename or sync fails, commands s
   CHECK(faults > 30);
 }
 
-TEST_CASE("faults: what is killed at any of its writes leaves nothing behind after the next start"
-          * doctest::test_suite("slow")) {
+TEST_CASE("faults: what is killed at any of its writes leaves nothing behind after the next start" *
+          doctest::test_suite("slow")) {
   const Bench bench;
   make_inputs(bench);
   int kills = 0, left = 0;

@@ -7,15 +7,15 @@
 #include <sstream>
 #include <thread>
 
-#include <Eigen/Geometry>
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
 #include "core/resample/fem_steps.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -32,7 +32,8 @@ struct Arm {
     REQUIRE(run_limber(words("weights", {"-o", folder / "w.nrrd"})).exit_code == 0);
   }
   std::vector<std::string> words(const std::string& command, const std::vector<std::string>& more) const {
-    std::vector<std::string> all{command, folder / "volume.nrrd", "--rig", folder / "rig.json", "--tissues", folder / "tissues.json"};
+    std::vector<std::string> all{command,     folder / "volume.nrrd", "--rig", folder / "rig.json",
+                                 "--tissues", folder / "tissues.json"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -44,12 +45,16 @@ struct Arm {
 
 }  // namespace
 
-TEST_CASE("fem command: options of finite elements are refused with other methods, unknown ones with it, in one line and without output"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "fem command: options of finite elements are refused with other methods, unknown ones with it, in one line and "
+    "without output" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const std::string out = arm.folder / "out.nrrd";
-  for (const std::vector<std::string>& wrong :
-       {std::vector<std::string>{"--method", "dqs", "--contact"}, {"--method", "lbs", "--quality", "fine"}, {"--method", "lbs", "--mesher", "tetgen"}, {"--method", "dqs", "--mesh-out", arm.folder / "m"}}) {
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--method", "dqs", "--contact"},
+                                                {"--method", "lbs", "--quality", "fine"},
+                                                {"--method", "lbs", "--mesher", "tetgen"},
+                                                {"--method", "dqs", "--mesh-out", arm.folder / "m"}}) {
     auto words = wrong;
     words.insert(words.end(), {"--flex", "Forearm=20", "-o", out});
     const auto run = arm.resample(words);
@@ -64,16 +69,18 @@ TEST_CASE("fem command: options of finite elements are refused with other method
   const auto no_mesh = arm.resample({"--method", "fem", "--mesh-out", arm.folder / "m", "-o", out});
   CHECK(no_mesh.exit_code == 1);
   CHECK(no_mesh.err.starts_with("limber: the pose bends nothing"));
-  const auto twice = arm.resample({"--method", "fem", "--flex", "Forearm=20", "--mesh-out", arm.folder / "m", "-o", out, "--report", arm.folder / "m.ele"});
+  const auto twice = arm.resample({"--method", "fem", "--flex", "Forearm=20", "--mesh-out", arm.folder / "m", "-o", out,
+                                   "--report", arm.folder / "m.ele"});
   CHECK(twice.exit_code == 2);
   CHECK(twice.err.find("two outputs would be the same file") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(out));
 }
 
-TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does"
-          * doctest::test_suite("slow")) {
+TEST_CASE("fem command: the steps that it leaves for a watcher end where the mesh does" * doctest::test_suite("slow")) {
   const Arm arm;
-  const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--mesher", "tetgen", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
+  const auto run =
+      arm.resample({"--method", "fem", "--quality", "draft", "--mesher", "tetgen", "--flex", "Forearm=20", "-o",
+                    arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const auto mesh = read_fem_mesh(arm.folder / "solve");
@@ -98,14 +105,17 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   CHECK(worst < 1e-3);
   CHECK((step->V - mesh->tets.V).rowwise().norm().maxCoeff() > 10);  // the forearm has moved
 
-  // The share of the body that the command tells, by the tets' own volumes at rest: they reach a little beyond the tissue.
+  // The share of the body that the command tells, by the tets' own volumes at rest: they reach a little beyond the
+  // tissue.
   double mesh_mm3 = 0;
   for (int t = 0; t < mesh->tets.T.rows(); ++t) {
     const auto corner = [&](int i) -> Eigen::RowVector3d { return mesh->tets.V.row(mesh->tets.T(t, i)); };
     mesh_mm3 += std::abs((corner(1) - corner(0)).dot((corner(2) - corner(0)).cross(corner(3) - corner(0)))) / 6;
   }
   const LabelVolume rest = read_volume(arm.folder / "volume.nrrd").volume;
-  const double body_mm3 = rest.grid.voxel_volume() * double(rest.voxels.size() - std::size_t(std::count(rest.voxels.begin(), rest.voxels.end(), Label{0})));
+  const double body_mm3 =
+      rest.grid.voxel_volume() *
+      double(rest.voxels.size() - std::size_t(std::count(rest.voxels.begin(), rest.voxels.end(), Label{0})));
   const std::size_t told = run.err.find("the mesh holds ");
   REQUIRE(told != std::string::npos);
   const double share = std::stod(run.err.substr(told + 15));
@@ -113,14 +123,19 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   CHECK(share < 100 * mesh_mm3 / body_mm3);
   CHECK(share > 80 * mesh_mm3 / body_mm3);
   CHECK(run.err.find("not a whole phantom") != std::string::npos);
-  CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps", arm.folder / "solve"}).err.starts_with("limber: --steps"));
+  CHECK(arm.resample({"--method", "dqs", "--flex", "Forearm=20", "-o", arm.folder / "out.nrrd", "--steps",
+                      arm.folder / "solve"})
+            .err.starts_with("limber: --steps"));
 }
 
-TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, residual and time left, a job does the same bit for bit"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "fem command: writes volume, report and mesh, tells angle, iteration, residual and time left, a job does the same "
+    "bit for bit" *
+    doctest::test_suite("slow")) {
   const Arm arm;
-  const auto run = arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=25", "-o", arm.folder / "out.nrrd", "--report",
-                                 arm.folder / "r.json", "--mesh-out", arm.folder / "posed", "--progress", "json"});
+  const auto run =
+      arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=25", "-o", arm.folder / "out.nrrd",
+                    "--report", arm.folder / "r.json", "--mesh-out", arm.folder / "posed", "--progress", "json"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
 
@@ -165,7 +180,9 @@ TEST_CASE("fem command: writes volume, report and mesh, tells angle, iteration, 
   while (tets >> index >> corner >> corner >> corner >> corner >> label) without += label == 0;
   CHECK(without == 0);
 
-  std::ofstream(arm.folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json", "weights": "w.nrrd",
+  std::ofstream(arm.folder / "job.json")
+      << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+        "weights": "w.nrrd",
     "flex": ["Forearm=25"], "method": "fem", "quality": "draft", "contact": false, "output": "job.nrrd"})";
   REQUIRE(run_limber({"job", arm.folder / "job.json"}).exit_code == 0);
   CHECK(read_file(arm.folder / "job.nrrd") == read_file(arm.folder / "out.nrrd"));
@@ -185,11 +202,12 @@ void await_handler(pid_t child) {
 
 }  // namespace
 
-TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leaves nothing behind"
-          * doctest::test_suite("slow")) {
+TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leaves nothing behind" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   const auto words = [&] {
-    auto all = arm.words("resample", {"--weights", arm.folder / "w.nrrd", "--method", "fem", "--contact", "--flex", "Forearm=80", "-o", arm.folder / "out.nrrd"});
+    auto all = arm.words("resample", {"--weights", arm.folder / "w.nrrd", "--method", "fem", "--contact", "--flex",
+                                      "Forearm=80", "-o", arm.folder / "out.nrrd"});
     all.insert(all.begin(), LIMBER_PROGRAM);
     return all;
   }();

@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 
 #include "core/base/file.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/phantom.h"
-#include "core/volume/vector_volume_io.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/vector_volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -120,7 +120,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "field direction: the two directions are each other's negative in the file, and a direction that is none is refused") {
+    "field direction: the two directions are each other's negative in the file, and a direction that is none is "
+    "refused") {
   const TemporaryFolder folder;
   const Grid grid{glm::ivec3(2, 1, 1), glm::dvec3(1), glm::dvec3(0), glm::dmat3(1)};
   const std::vector<glm::vec3> field{{1, -2, 3}, {0, 0, 0}};

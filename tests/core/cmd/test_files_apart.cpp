@@ -3,14 +3,14 @@
 // before it reads anything.
 #include <filesystem>
 
-#include <CLI/CLI.hpp>
 #include <doctest/doctest.h>
+#include <CLI/CLI.hpp>
 
 #include "core/base/file.h"
 #include "core/cmd/command.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -69,8 +69,8 @@ void check_refused(const Files& files, const Words& words, const char* sentence)
 
 }  // namespace
 
-TEST_CASE("command files: an output that is also an input is refused by every command, and nothing is changed"
-          * doctest::test_suite("slow")) {
+TEST_CASE("command files: an output that is also an input is refused by every command, and nothing is changed" *
+          doctest::test_suite("slow")) {
   const Files files;
   const Words resample{"resample", "@volume.nrrd", "--rig", "@rig.json", "--flex", "Forearm=20", "--method", "lbs"};
   const auto with = [](Words words, const Words& more) {

@@ -49,8 +49,8 @@ struct Arm {
 
 TEST_CASE(
     "glide: bones that would enter each other come apart where nothing is said, and the report says which joints "
-    "glide"
-          * doctest::test_suite("slow")) {
+    "glide" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const auto stays = arm.posed({"--flex", "Forearm=100", "--glide", "off"}),
              glides = arm.posed({"--flex", "Forearm=100"});
@@ -68,8 +68,8 @@ TEST_CASE(
   for (const auto& bone : glides["bones"]) CHECK(bone["rigid_residual_mm"].get<double>() < 0.01);
 }
 
-TEST_CASE("glide: where no bones meet, the result is the same to the byte with and without"
-          * doctest::test_suite("slow")) {
+TEST_CASE("glide: where no bones meet, the result is the same to the byte with and without" *
+          doctest::test_suite("slow")) {
   const Arm arm(0);
   for (const char* method : {"mix", "lbs", "dqs"}) {
     const auto glides = arm.posed({"--flex", "Forearm=60", "--method", method});
@@ -80,8 +80,8 @@ TEST_CASE("glide: where no bones meet, the result is the same to the byte with a
   }
 }
 
-TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says what overlaps still"
-          * doctest::test_suite("slow")) {
+TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says what overlaps still" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   std::ofstream(arm.folder / "pose.json") << R"({"bones": {"Forearm": {"axis": [1, 0, 0], "degrees": -100}}})";
   const auto by_file = arm.posed({"--pose", arm.folder / "pose.json"});
@@ -98,8 +98,8 @@ TEST_CASE("glide: a pose file lets no bone go further than a voxel, and says wha
   CHECK(run.err.find("--fit-joints") == std::string::npos);
 }
 
-TEST_CASE("glide: jobs say it as the command line does, and what is no way to glide is refused"
-          * doctest::test_suite("slow")) {
+TEST_CASE("glide: jobs say it as the command line does, and what is no way to glide is refused" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   arm.posed({"--flex", "Forearm=100", "--glide", "off"});
   const std::string stays = read_file(arm.out);
@@ -113,7 +113,8 @@ TEST_CASE("glide: jobs say it as the command line does, and what is no way to gl
   for (const char* wrong : {"on", "0", "-3", "51", "2mm", "nan", "inf"}) {
     const ProgramRun run = arm.run({"--flex", "Forearm=100", std::string("--glide=") + wrong});
     INFO(wrong, " -> ", run.err);
-    const bool is_number = std::string_view("nan inf").find(wrong) == std::string_view::npos;  // what is none is refused everywhere
+    const bool is_number =
+        std::string_view("nan inf").find(wrong) == std::string_view::npos;  // what is none is refused everywhere
     CHECK(run.exit_code == (is_number ? 1 : 2));
     CHECK(run.err.find(is_number ? "joints do not glide that way" : "no finite number") != std::string::npos);
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);

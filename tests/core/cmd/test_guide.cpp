@@ -8,8 +8,8 @@
 
 using namespace limber::test;
 
-TEST_CASE("user guide: every point that is a command runs, one after the other, in an empty folder"
-          * doctest::test_suite("slow")) {
+TEST_CASE("user guide: every point that is a command runs, one after the other, in an empty folder" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   std::ifstream guide(LIMBER_SOURCE_DIR "/assets/docs/guide.md");
   int commands = 0;
@@ -17,7 +17,8 @@ TEST_CASE("user guide: every point that is a command runs, one after the other, 
     const std::string begin = "- `limber ";
     if (!line.starts_with(begin)) continue;
     const std::string arguments = line.substr(begin.size(), line.find('`', begin.size()) - begin.size());
-    const auto run = run_program("/bin/sh", {"-c", "cd " + folder.path().string() + " && " LIMBER_PROGRAM " " + arguments});
+    const auto run =
+        run_program("/bin/sh", {"-c", "cd " + folder.path().string() + " && " LIMBER_PROGRAM " " + arguments});
     CHECK_MESSAGE(run.exit_code == 0, arguments, ": ", run.err);
     ++commands;
   }

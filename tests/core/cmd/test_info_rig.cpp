@@ -20,8 +20,8 @@ bool is_motion_file(const std::string& path) {
 size_t lines_of(const std::string& text) { return static_cast<size_t>(std::count(text.begin(), text.end(), '\n')); }
 }  // namespace
 
-TEST_CASE("info: each rig, motion and model is taken, warned of or refused as it must be"
-          * doctest::test_suite("slow")) {
+TEST_CASE("info: each rig, motion and model is taken, warned of or refused as it must be" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/EXPECT.tsv");
   std::ifstream in(test::shared_path("data/EXPECT.tsv"));
   int rows = 0;
@@ -33,7 +33,10 @@ TEST_CASE("info: each rig, motion and model is taken, warned of or refused as it
     if (row.starts_with('#') || !is_motion_file(file)) continue;
     ++rows;
     const auto run = test::run_limber({"info", "--json", test::shared_path("data/" + file).string()});
-    const std::string got = run.exit_code == 1 ? "refuse" : run.exit_code != 0 ? "crash" : run.err.empty() ? "ok" : "warn";
+    const std::string got = run.exit_code == 1   ? "refuse"
+                            : run.exit_code != 0 ? "crash"
+                            : run.err.empty()    ? "ok"
+                                                 : "warn";
     CAPTURE(file);
     CAPTURE(run.err);
     CHECK_MESSAGE(("|" + expected + "|").find("|" + got + "|") != std::string::npos, got, " instead of ", expected);
@@ -50,9 +53,13 @@ TEST_CASE("info: rigs and motions tell their bones, joints and frames") {
     size_t count;
     int frames;
   };
-  for (const Expected& e : {Expected{"bvh/cmu_01_01.bvh", "motion", 31, 2752}, {"bvh/rokoko_jesse_dance.bvh", "motion", 60, 1007},
-                            {"bvh/mh_tpose_6ch.bvh", "motion", 173, 1}, {"bender/man-arm-2mm-armature.vtk", "rig", 21, 0},
-                            {"bender/HumanArmature.arm", "rig", 29, 0}, {"bp3d/body.armature.json", "rig", 60, 0}, {"gltf/cesium_man.gltf", "rig", 19, 0}}) {
+  for (const Expected& e : {Expected{"bvh/cmu_01_01.bvh", "motion", 31, 2752},
+                            {"bvh/rokoko_jesse_dance.bvh", "motion", 60, 1007},
+                            {"bvh/mh_tpose_6ch.bvh", "motion", 173, 1},
+                            {"bender/man-arm-2mm-armature.vtk", "rig", 21, 0},
+                            {"bender/HumanArmature.arm", "rig", 29, 0},
+                            {"bp3d/body.armature.json", "rig", 60, 0},
+                            {"gltf/cesium_man.gltf", "rig", 19, 0}}) {
     NEEDS_SHARED(std::string("data/") + e.file);
     const auto run = test::run_limber({"info", "--json", test::shared_path(std::string("data/") + e.file).string()});
     REQUIRE(run.exit_code == 0);
@@ -65,7 +72,8 @@ TEST_CASE("info: rigs and motions tell their bones, joints and frames") {
 
 TEST_CASE("fk: a rig at rest shows its heads and no rotation, a motion its own axes" * doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body.armature.json");
-  const std::string rig = test::shared_path("data/bp3d/body.armature.json").string(), bvh = test::shared_path("data/bvh/cmu_01_01.bvh").string();
+  const std::string rig = test::shared_path("data/bp3d/body.armature.json").string(),
+                    bvh = test::shared_path("data/bvh/cmu_01_01.bvh").string();
   const auto rest = nlohmann::json::parse(test::run_limber({"fk", rig, "--json"}).out);
   CHECK(rest["joints"].size() == 60);
   CHECK(rest["joints"][1]["name"] == "Lumbar");
@@ -83,7 +91,8 @@ TEST_CASE("fk: a rig at rest shows its heads and no rotation, a motion its own a
   CHECK(test::run_limber({"fk", rig, "--frame", "4"}).exit_code == 1);
 
   const std::string walk = test::shared_path("data/bvh/mh_walk1.bvh").string();
-  for (const std::vector<std::string>& of : {std::vector<std::string>{walk}, {rig, "--motion", walk, "--root-motion"}}) {
+  for (const std::vector<std::string>& of :
+       {std::vector<std::string>{walk}, {rig, "--motion", walk, "--root-motion"}}) {
     const auto told = [&](std::vector<std::string> options) {
       options.insert(options.begin(), of.begin(), of.end());
       options.insert(options.begin(), "fk");

@@ -14,12 +14,13 @@ TEST_CASE("job: a resampling described in a file gives the same bytes as the com
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json";
-  const auto direct = run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--flex", "Forearm=60", "--flex", "IndexProximal=20",
-                                  "--method", "dqs", "-o", folder / "direct.nrrd"});
+  const auto direct = run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--flex", "Forearm=60",
+                                  "--flex", "IndexProximal=20", "--method", "dqs", "-o", folder / "direct.nrrd"});
   INFO(direct.err);
   REQUIRE(direct.exit_code == 0);
 
-  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+  std::ofstream(folder / "job.json")
+      << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
     "flex": ["Forearm=60", "IndexProximal=20"], "method": "dqs", "nearest": false, "output": "job.nrrd"})";
   const auto job = run_limber({"job", folder / "job.json"});
   INFO(job.err);
@@ -31,12 +32,14 @@ TEST_CASE("job: poses by joints' names are given as in a report") {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json";
-  const auto direct = run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--pose-name", "sit", "--joint", "elbow flexion=40",
-                                  "--joint", "index flexion=20", "--method", "dqs", "-o", folder / "direct.nrrd"});
+  const auto direct =
+      run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--pose-name", "sit", "--joint",
+                  "elbow flexion=40", "--joint", "index flexion=20", "--method", "dqs", "-o", folder / "direct.nrrd"});
   INFO(direct.err);
   REQUIRE(direct.exit_code == 0);
 
-  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+  std::ofstream(folder / "job.json")
+      << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
     "pose_name": "sit", "joints": ["elbow flexion=40", "index flexion=20"], "method": "dqs", "output": "job.nrrd"})";
   const auto job = run_limber({"job", folder / "job.json"});
   INFO(job.err);
@@ -46,9 +49,10 @@ TEST_CASE("job: poses by joints' names are given as in a report") {
 
 TEST_CASE("job: what is not a job, or asks for what resample does not know, is refused in one line") {
   const TemporaryFolder folder;
-  for (const char* text : {"", "[]", "{", R"({"command": "resample"})", R"({"command": "format", "volume": "a"})",
-                           R"({"command": "resample", "volume": "a", "no-such": 1})", R"({"command": "resample", "volume": "a", "rig": {}})",
-                           R"({"command": 1, "volume": "a"})"}) {
+  for (const char* text :
+       {"", "[]", "{", R"({"command": "resample"})", R"({"command": "format", "volume": "a"})",
+        R"({"command": "resample", "volume": "a", "no-such": 1})",
+        R"({"command": "resample", "volume": "a", "rig": {}})", R"({"command": 1, "volume": "a"})"}) {
     std::ofstream(folder / "job.json") << text;
     const auto run = run_limber({"job", folder / "job.json"});
     INFO(text, " -> ", run.err);

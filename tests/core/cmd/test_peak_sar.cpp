@@ -28,12 +28,14 @@ void check_same(const std::string& program, const std::vector<std::string>& more
 
 }  // namespace
 
-TEST_CASE("peak SAR: every cell's cube, that of cells in no valid cube too, is the one that plain loops over all cells and all six sides find"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "peak SAR: every cell's cube, that of cells in no valid cube too, is the one that plain loops over all cells and "
+    "all six sides find" *
+    doctest::test_suite("slow")) {
   if (has_numpy()) check_same("peak_sar_slow.py", {"6"});
 }
 
-TEST_CASE("peak SAR: of Mie's field in a ball of muscle, cubes of 10 g in it and at its surface hold the exact SAR"
-          * doctest::test_suite("slow")) {
+TEST_CASE("peak SAR: of Mie's field in a ball of muscle, cubes of 10 g in it and at its surface hold the exact SAR" *
+          doctest::test_suite("slow")) {
   if (has_numpy()) check_same("mie_ball.py", {});
 }

@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 #include "core/skin/weights_io.h"
-#include "core/volume/vector_volume_io.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/vector_volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/figure.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
@@ -155,8 +155,8 @@ TEST_CASE("planted faults: half of a bone under the label of the next one is cau
   CHECK(std::filesystem::exists(folder / "w.nrrd"));
 }
 
-TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the body is caught"
-          * doctest::test_suite("slow")) {
+TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the body is caught" *
+          doctest::test_suite("slow")) {
   struct Case {
     std::function<glm::dvec3(const glm::dvec3&)> move;
     const char* sentence;
@@ -200,17 +200,15 @@ TEST_CASE("planted faults: labels whose sides are swapped are caught") {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   for (Tissue& tissue : figure.tissues.tissues) {
-    if (tissue.name.starts_with("Left"))
-      tissue.name.replace(0, 4, "Right");
-    else if (tissue.name.starts_with("Right"))
-      tissue.name.replace(0, 5, "Left");
+    if (tissue.name.starts_with("Left")) tissue.name.replace(0, 4, "Right");
+    else if (tissue.name.starts_with("Right")) tissue.name.replace(0, 5, "Left");
   }
   write_figure(figure, folder.path());
   check_caught(resample(folder, {}), folder, "left and right are swapped");
 }
 
-TEST_CASE("planted faults: a grey image in place of labels is refused before anything is written"
-          * doctest::test_suite("slow")) {
+TEST_CASE("planted faults: a grey image in place of labels is refused before anything is written" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   write_figure(figure, folder.path());
@@ -239,7 +237,8 @@ TEST_CASE("planted faults: a grey image in place of labels is refused before any
     const auto run = run_limber(command);
     INFO(command[0], ": ", run.err);
     CHECK(run.exit_code == 1);
-    CHECK(run.err.find("this looks like a grey image, not a label volume (it has 300 values, and ") != std::string::npos);
+    CHECK(run.err.find("this looks like a grey image, not a label volume (it has 300 values, and ") !=
+          std::string::npos);
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
     int written = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
@@ -273,8 +272,8 @@ TEST_CASE("planted faults: an organ that vanished and a muscle that fell apart a
 
 TEST_CASE(
     "planted faults: a hand that grew to the hip is caught by the band that a raised arm pulls out, by a field of "
-    "another program"
-          * doctest::test_suite("slow")) {
+    "another program" *
+    doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   Figure figure = block_figure();
   fill_where(figure.volume, {44, 7, 46}, {48, 17, 54}, 0, kFigureMuscle);
@@ -313,7 +312,8 @@ TEST_CASE("strict: a job ends with exit code 5 as the command does, and without 
   rewrite_rig(figure, [](const glm::dvec3& p) { return p * glm::dvec3(-1, 1, 1); });
   write_figure(figure, folder.path());
   const char* kJob =
-      R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json", "method": "lbs", "strict": STRICT, "output": "posed.nrrd", "report": "report.json"})";
+      R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+        "method": "lbs", "strict": STRICT, "output": "posed.nrrd", "report": "report.json"})";
   for (const bool strict : {true, false}) {
     std::string job = kJob;
     std::ofstream(folder / "job.json") << job.replace(job.find("STRICT"), 6, strict ? "true" : "false");
@@ -340,8 +340,8 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
       }
 }
 
-TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass every gate of the body"
-          * doctest::test_suite("slow")) {
+TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass every gate of the body" *
+          doctest::test_suite("slow")) {
   struct Case {
     std::string body;  // arm, body: the phantoms; figure, block arm
     std::vector<std::string> flex;
@@ -368,10 +368,8 @@ TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass ev
     auto& folder = bodies[one.body];
     if (!folder) {
       folder = std::make_unique<TemporaryFolder>();
-      if (one.body == "figure")
-        write_figure(block_figure(), folder->path());
-      else if (one.body == "block arm")
-        write_figure(block_arm(), folder->path());
+      if (one.body == "figure") write_figure(block_figure(), folder->path());
+      else if (one.body == "block arm") write_figure(block_arm(), folder->path());
       else
         REQUIRE(run_limber({"phantom", one.body, "--spacing", one.body == "arm" ? "4" : "6", "-o", folder->path()})
                     .exit_code == 0);
@@ -387,8 +385,8 @@ TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass ev
   }
 }
 
-TEST_CASE("good cases: real bodies at rest and with bent elbows pass every gate of the body"
-          * doctest::test_suite("slow")) {
+TEST_CASE("good cases: real bodies at rest and with bent elbows pass every gate of the body" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_structures.nii.gz");
   struct Case {
     const char *volume, *rig, *tissues;

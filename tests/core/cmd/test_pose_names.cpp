@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
+#include <Eigen/Dense>
 
-#include "core/volume/tissue_table_io.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/tissue_table_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
 
@@ -58,8 +58,8 @@ double forward_of(const LongBone& bone) { return glm::degrees(std::atan2(-bone.a
 
 TEST_CASE(
     "pose names: a seated CT body has thighs 90 degrees forward of where they were in standing, and shanks as they "
-    "were"
-          * doctest::test_suite("slow")) {
+    "were" *
+    doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_structures.nii.gz");
   const TemporaryFolder folder;
   const auto shared = [](const char* name) { return shared_path(std::string("data/bp3d/") + name).string(); };
@@ -69,9 +69,9 @@ TEST_CASE(
   const std::vector<std::string> names = {"Left femur",  "Right femur",  "Left tibia",
                                           "Right tibia", "Left humerus", "Left ulna"};
   std::map<std::string, std::map<std::string, LongBone>> bones;
-  const auto coarser = run_limber({"prepare", shared("body_3mm_structures.nii.gz"), "--tissues",
-                                   shared("body_structures.labels.json"), "--spacing", "5", "-o",
-                                   folder / "coarse.nii.gz"});
+  const auto coarser =
+      run_limber({"prepare", shared("body_3mm_structures.nii.gz"), "--tissues", shared("body_structures.labels.json"),
+                  "--spacing", "5", "-o", folder / "coarse.nii.gz"});
   REQUIRE(coarser.exit_code == 0);
   for (const std::string pose : {"supine", "sit"}) {
     const auto run = run_limber({"resample", folder / "coarse.nii.gz", "--tissues",

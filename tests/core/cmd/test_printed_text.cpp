@@ -10,9 +10,9 @@
 #include "core/base/file.h"
 #include "core/base/module.h"
 #include "core/cmd/print.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/phantom.h"
-#include "core/volume/volume_io.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -63,8 +63,8 @@ TEST_CASE("printed text: control characters and broken UTF-8 are made visible, l
   CHECK(cmd::one_line("a\nb\tc\rd\x1b") == "a b c d?");
 }
 
-TEST_CASE("printed text: names from files give no orders to the terminal, and JSON keeps them whole"
-          * doctest::test_suite("slow")) {
+TEST_CASE("printed text: names from files give no orders to the terminal, and JSON keeps them whole" *
+          doctest::test_suite("slow")) {
   const HostileArm arm;
   const std::string volume = arm.folder / "volume.nrrd", rig = arm.folder / "rig.json",
                     tissues = arm.folder / "tissues.json";
@@ -101,8 +101,8 @@ TEST_CASE("printed text: names from files give no orders to the terminal, and JS
   CHECK(json["joints"][0]["name"].get<std::string>().ends_with(kHostile));
 }
 
-TEST_CASE("printed text: a full disk or a closed stdout is told, and no command says that it is done"
-          * doctest::test_suite("slow")) {
+TEST_CASE("printed text: a full disk or a closed stdout is told, and no command says that it is done" *
+          doctest::test_suite("slow")) {
   const HostileArm arm;
   const std::string program = LIMBER_PROGRAM, folder = arm.folder.path().string() + "/";
   for (const std::string& words : std::vector<std::string>{

@@ -23,9 +23,12 @@ ProgramRun project(const TemporaryFolder& folder, std::vector<std::string> words
 
 void make_arm(const TemporaryFolder& folder) {
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
-  const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json", weights = folder / "weights.nrrd";
-  REQUIRE(run_limber({"weights", volume, "--rig", rig, "--tissues", tissues, "--method", "rigid", "-o", weights}).exit_code == 0);
-  const auto made = project(folder, {"create", volume, "--rig", rig, "--tissues", tissues, "--weights", weights, "--motion", folder / "motion.bvh"});
+  const std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", tissues = folder / "tissues.json",
+                    weights = folder / "weights.nrrd";
+  REQUIRE(run_limber({"weights", volume, "--rig", rig, "--tissues", tissues, "--method", "rigid", "-o", weights})
+              .exit_code == 0);
+  const auto made = project(folder, {"create", volume, "--rig", rig, "--tissues", tissues, "--weights", weights,
+                                     "--motion", folder / "motion.bvh"});
   INFO(made.err);
   REQUIRE(made.exit_code == 0);
 }
@@ -42,8 +45,8 @@ std::string without_seams(std::string weights) {
 
 }  // namespace
 
-TEST_CASE("project command: what create puts in, inspect and info tell and export gives back"
-          * doctest::test_suite("slow")) {
+TEST_CASE("project command: what create puts in, inspect and info tell and export gives back" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   const auto inspected = project(folder, {"--json"});
@@ -82,12 +85,17 @@ TEST_CASE("project command: seams and a bone map are kept, told and given back" 
   REQUIRE(seams.size() > 3);
   write_seams(seams, volume.grid, folder / "seams.nrrd");
   const auto bones = nlohmann::json::parse(read_file(folder / "rig.json"))["bones"];
-  const TissueTable tissues = merge_tissue_tables(read_volume(folder / "volume.nrrd").tissues, std::make_unique<TissueTable>(read_tissue_table(folder / "tissues.json")).get());
-  const auto bone = std::find_if(tissues.tissues.begin(), tissues.tissues.end(), [](const Tissue& tissue) { return is_bone(tissue.kind); });
+  const TissueTable tissues =
+      merge_tissue_tables(read_volume(folder / "volume.nrrd").tissues,
+                          std::make_unique<TissueTable>(read_tissue_table(folder / "tissues.json")).get());
+  const auto bone = std::find_if(tissues.tissues.begin(), tissues.tissues.end(),
+                                 [](const Tissue& tissue) { return is_bone(tissue.kind); });
   REQUIRE(bone != tissues.tissues.end());
   write_bone_map({{map_key(*bone), bones[0]["name"].get<std::string>()}}, folder / "bones.json");
   const auto create = [&](const std::string& map) {
-    return run_limber({"project", folder / "two.limber", "create", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--rig", folder / "rig.json", "--seams", folder / "seams.nrrd", "--bone-map", folder / map, "--replace"});
+    return run_limber({"project", folder / "two.limber", "create", folder / "volume.nrrd", "--tissues",
+                       folder / "tissues.json", "--rig", folder / "rig.json", "--seams", folder / "seams.nrrd",
+                       "--bone-map", folder / map, "--replace"});
   };
   const auto made = create("bones.json");
   INFO(made.err);
@@ -95,17 +103,19 @@ TEST_CASE("project command: seams and a bone map are kept, told and given back" 
   const auto json = nlohmann::json::parse(run_limber({"project", folder / "two.limber", "--json"}).out);
   CHECK(json["seams"]["faces"] == seams.size());
   CHECK(json["bone_map"].size() == 1);
-  REQUIRE(run_limber({"project", folder / "two.limber", "export", "seams", "-o", folder / "again.nrrd"}).exit_code == 0);
+  REQUIRE(run_limber({"project", folder / "two.limber", "export", "seams", "-o", folder / "again.nrrd"}).exit_code ==
+          0);
   CHECK(read_seams(folder / "again.nrrd", volume) == seams);
-  REQUIRE(run_limber({"project", folder / "two.limber", "export", "bone-map", "-o", folder / "again.json"}).exit_code == 0);
+  REQUIRE(run_limber({"project", folder / "two.limber", "export", "bone-map", "-o", folder / "again.json"}).exit_code ==
+          0);
   CHECK(read_bone_map(folder / "again.json") == read_bone_map(folder / "bones.json"));
   write_bone_map({{map_key(*bone), "no such bone"}}, folder / "wrong.json");
   CHECK(create("wrong.json").exit_code == 1);
   CHECK(run_limber({"project", folder / "arm.limber", "export", "seams", "-o", folder / "none.nrrd"}).exit_code == 1);
 }
 
-TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project"
-          * doctest::test_suite("slow")) {
+TEST_CASE("project command: recover writes the edits that a crash left, or what is whole of a damaged project" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   {
@@ -136,8 +146,8 @@ TEST_CASE("project command: recover writes the edits that a crash left, or what 
   CHECK(run_limber({"project", folder / "saved.limber", "verify"}).exit_code == 0);
 }
 
-TEST_CASE("project command: what cannot be done is refused in one line and writes nothing"
-          * doctest::test_suite("slow")) {
+TEST_CASE("project command: what cannot be done is refused in one line and writes nothing" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   make_arm(folder);
   std::ofstream(folder / "text.limber") << "hello";
@@ -174,5 +184,6 @@ TEST_CASE("info: a JSON with a table of bones that holds no rotations is no pose
   CHECK(weights.out.find("pose") == std::string::npos);
   CHECK(nlohmann::json::parse(run_limber({"info", folder / "pose.json", "--json"}).out)["kind"] == "pose");
   NEEDS_SHARED("data/makehuman/surface_weights.json");
-  CHECK(run_limber({"info", shared_path("data/makehuman/surface_weights.json").string(), "--json"}).out.find("pose") == std::string::npos);
+  CHECK(run_limber({"info", shared_path("data/makehuman/surface_weights.json").string(), "--json"}).out.find("pose") ==
+        std::string::npos);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The guide's example: from a posed volume to the energy that it takes up from a field (assets/examples/sar_openems.py).
+// The guide's example: from a posed volume to the energy that it takes up from a field
+// (assets/examples/sar_openems.py).
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -18,7 +19,9 @@ ProgramRun sar(std::vector<std::string> words) {
   return run_program("/usr/bin/python3", words);
 }
 
-bool can_simulate() { return has_program("openEMS") && run_program("/usr/bin/python3", {"-c", "import h5py, numpy, scipy"}).exit_code == 0; }
+bool can_simulate() {
+  return has_program("openEMS") && run_program("/usr/bin/python3", {"-c", "import h5py, numpy, scipy"}).exit_code == 0;
+}
 
 nlohmann::json read(const std::filesystem::path& path) {
   std::ifstream in(path);
@@ -27,13 +30,17 @@ nlohmann::json read(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth, a study's posed arm has a peak over 10 g above its average, and the study's page shows both") {
+TEST_CASE(
+    "sar example: a ball takes up what Mie's solution says within a tenth, a study's posed arm has a peak over 10 g "
+    "above its average, and the study's page shows both") {
   if (!can_simulate()) {
     MESSAGE("SKIPPED: openEMS, or python's h5py, numpy or scipy, is not installed");
     return;
   }
   const TemporaryFolder folder;
-  std::ofstream(folder / "study.json") << R"({"phantom": "arm", "spacings_mm": [8], "methods": ["dqs"], "poses": [{"name": "bent", "flex": ["Forearm=60"]}]})";
+  std::ofstream(folder / "study.json")
+      << R"({"phantom": "arm", "spacings_mm": [8], "methods": ["dqs"], "poses": [{"name": "bent",
+        "flex": ["Forearm=60"]}]})";
   const std::vector<std::string> experiment{"experiment", folder / "study.json", "-o", folder / "out"};
   REQUIRE(run_limber(experiment).exit_code == 0);
   const auto study = sar({"study", folder / "out", "--limber", LIMBER_PROGRAM});
@@ -45,7 +52,8 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   CHECK(figures["poses"][0]["cell_mm"] == 8);
   CHECK(figures["poses"][0]["sar_peak_10g_w_per_kg"] > figures["poses"][0]["sar_average_w_per_kg"]);
   const auto counted = [](const nlohmann::json& of) {
-    return of["cells_valid"].get<int>() + of["cells_used"].get<int>() + of["cells_unused"].get<int>() + of["cells_without"].get<int>();
+    return of["cells_valid"].get<int>() + of["cells_used"].get<int>() + of["cells_unused"].get<int>() +
+           of["cells_without"].get<int>();
   };
   CHECK(counted(figures["poses"][0]) == figures["poses"][0]["cells"].get<int>());
   CHECK(figures["poses"][0]["cells_unused"] > 0);
@@ -58,7 +66,8 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   CHECK(none.exit_code == 1);
   CHECK(none.err.find("no such cells") != none.err.npos);
 
-  const auto posed = folder / "out" / read(folder / "out" / "cells.json")["cells"][0]["folder"].get<std::string>() / "posed.nrrd";
+  const auto posed =
+      folder / "out" / read(folder / "out" / "cells.json")["cells"][0]["folder"].get<std::string>() / "posed.nrrd";
   const auto deck = run_limber({"convert", posed, folder / "elbow.xml", "--frequency", "900e6"});
   REQUIRE_MESSAGE(deck.exit_code == 0, deck.err);
   const auto coarse = sar({"deck", folder / "elbow.xml", "--cell", "20", "-o", folder / "coarse.json"});
@@ -66,7 +75,8 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   const auto of_coarse = read(folder / "coarse.json")["elbow"];
   CHECK(of_coarse["cells_heavier_than_10g"] > 0);  // cortical bone: 15 g
   CHECK(coarse.err.find("make --cell smaller") != std::string::npos);
-  const auto arm = sar({"deck", folder / "elbow.xml", "--cell", "12", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});
+  const auto arm =
+      sar({"deck", folder / "elbow.xml", "--cell", "12", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});
   REQUIRE_MESSAGE(arm.exit_code == 0, arm.out, arm.err);
   const auto of_elbow = read(folder / "sar.json")["elbow"];
   CHECK(of_elbow["mass_kg"].get<double>() > 1);
@@ -76,5 +86,6 @@ TEST_CASE("sar example: a ball takes up what Mie's solution says within a tenth,
   const std::string svg{std::istreambuf_iterator<char>(figure), {}};
   CHECK(svg.starts_with("<svg"));
   CHECK(svg.ends_with("</svg>\n"));
-  for (const char* shown : {">elbow<", "average", "largest over 10 g"}) CHECK_MESSAGE(svg.find(shown) != std::string::npos, shown);
+  for (const char* shown : {">elbow<", "average", "largest over 10 g"})
+    CHECK_MESSAGE(svg.find(shown) != std::string::npos, shown);
 }

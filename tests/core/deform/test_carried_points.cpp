@@ -14,7 +14,8 @@ namespace {
 // 12 x 10 x 14 voxels of a mirrored and oblique grid, in cubes of 2.
 struct Block {
   Grid grid = test::oblique_grid();
-  std::shared_ptr<const TetMesh> mesh = std::make_shared<const TetMesh>(test::kuhn_mesh(grid, glm::dvec3(4), glm::dvec3(16, 14, 18), {6, 5, 7}));
+  std::shared_ptr<const TetMesh> mesh =
+      std::make_shared<const TetMesh>(test::kuhn_mesh(grid, glm::dvec3(4), glm::dvec3(16, 14, 18), {6, 5, 7}));
   AffineTransform world = world_from_voxel(grid), voxel = voxel_from_world(grid);
 
   template <class Motion>
@@ -33,7 +34,9 @@ struct Block {
 TEST_CASE("carried points: those in and near a mesh turn with it as one body, those too far are not carried") {
   const Block block;
   std::vector<PointToCarry> points;
-  for (const glm::dvec3& at : {glm::dvec3(9.3, 7.1, 12.9), glm::dvec3(4, 4, 4), glm::dvec3(2.5, 3, 12), glm::dvec3(17, 15, 19.5)}) points.push_back({at, at});
+  for (const glm::dvec3& at :
+       {glm::dvec3(9.3, 7.1, 12.9), glm::dvec3(4, 4, 4), glm::dvec3(2.5, 3, 12), glm::dvec3(17, 15, 19.5)})
+    points.push_back({at, at});
   points.push_back({{40, 10, 10}, {40, 10, 10}});
   points.push_back({{40, 10, 10}, {10, 10, 10}});  // far itself, but tied to the middle
   const double furthest = 4 * std::max({block.grid.spacing.x, block.grid.spacing.y, block.grid.spacing.z});
@@ -60,5 +63,6 @@ TEST_CASE("carried points: in a mesh that is stretched they keep their place in 
   CHECK(glm::distance(block.world * *posed[0], stretched(block.world * inside)) < 1e-9);
   // Beside the mesh nothing is stretched: 1.5 voxels from its border they stay.
   const glm::dvec3 border(16, 9, 11);
-  CHECK(glm::distance(block.world * *posed[1], stretched(block.world * border) + block.world.linear * (beside - border)) < 1e-9);
+  CHECK(glm::distance(block.world * *posed[1],
+                      stretched(block.world * border) + block.world.linear * (beside - border)) < 1e-9);
 }

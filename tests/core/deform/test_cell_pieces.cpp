@@ -42,7 +42,8 @@ TEST_CASE("cell pieces: what touches by faces within a cell is one piece, and ev
       CHECK(piece.stiff[0].places == piece.places);
     }
     CHECK(voxels == tissue.size());
-    CHECK(shares == doctest::Approx(1000.0 * kFullWeight * double(tissue.size())).epsilon(1e-4));  // of each voxel, over the corners
+    CHECK(shares == doctest::Approx(1000.0 * kFullWeight * double(tissue.size()))
+                        .epsilon(1e-4));  // of each voxel, over the corners
     // The gap lies at x = 8, the first voxel of a cell.
     const glm::ivec3 beside(8 / step, 8 / step, 24 / step);
     REQUIRE(by_cell.of(beside).size() == 1);

@@ -67,7 +67,8 @@ TEST_CASE("lattice: corners of one bone alone lie where its motion carries them,
         const glm::dvec3 moved = motions[1] * (world_from_voxel(bar.volume.grid) * rest);
         const glm::dvec3 expected = lattice.output().from_rest(voxel_from_world(bar.volume.grid) * moved);
         const glm::ivec3 at = v - first;
-        const glm::dvec3 off = glm::dvec3(corners[PosedLattice::place(at.x, at.y, at.z)]) / double(kFixedOne) - expected;
+        const glm::dvec3 off =
+            glm::dvec3(corners[PosedLattice::place(at.x, at.y, at.z)]) / double(kFixedOne) - expected;
         furthest = std::max(furthest, glm::length(off));
       });
     }

@@ -25,7 +25,8 @@ struct Carried {
   TetMesh mesh;
   TissueMask all;
 
-  explicit Carried(const Grid& grid = {}, const glm::dvec3& low = {-0.4, -0.3, -0.2}, const glm::dvec3& high = {23.3, 25.1, 44.6})
+  explicit Carried(const Grid& grid = {}, const glm::dvec3& low = {-0.4, -0.3, -0.2},
+                   const glm::dvec3& high = {23.3, 25.1, 44.6})
       : tube(test::bent_tube(grid)),
         lattice(tube.volume, tissue, tube.weights, {{}, {}}, Blend::Linear, glm::dvec3(1)),
         mesh(test::kuhn_mesh(tube.volume.grid, low, high, {4, 5, 9})) {
@@ -78,20 +79,25 @@ TEST_CASE("posed tets: a mesh at rest gives every voxel itself, exactly, and als
         const std::int64_t at = map.index(v);
         const bool is_tissue = body.tube.volume.at_or_air(v + base) != 0;
         same &= is_tissue == (map.cell[at] != InverseMap::kNoCell);
-        if (is_tissue) same &= map.cell[at] == body.tube.volume.grid.index(v + base) && map.rest[at] == glm::vec3(v + base);
+        if (is_tissue)
+          same &= map.cell[at] == body.tube.volume.grid.index(v + base) && map.rest[at] == glm::vec3(v + base);
       });
       CHECK(same);
       CHECK(covered(map) == body.tissue.size());
       CHECK(map.lost.empty());
 
       VoxelRange tissue{glm::ivec3(1000), glm::ivec3(-1000)};
-      body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) { tissue = {glm::min(tissue.low, v - base), glm::max(tissue.high, v - base)}; });
+      body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+        tissue = {glm::min(tissue.low, v - base), glm::max(tissue.high, v - base)};
+      });
       CHECK(tets.posed_tissue().low == tissue.low);
       CHECK(tets.posed_tissue().high == tissue.high);
     }
 }
 
-TEST_CASE("posed tets: an affine motion of the mesh is the affine motion of its voxels, of those that stick out as of the others' rotation") {
+TEST_CASE(
+    "posed tets: an affine motion of the mesh is the affine motion of its voxels, of those that stick out as of the "
+    "others' rotation") {
   const glm::dmat3 turn = glm::mat3_cast(glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 0.4, -0.3))));
   const glm::dmat3 stretch(1.2, 0.05, 0, 0, 0.9, 0, 0.02, 0, 1.1);
   for (const bool small : {false, true}) {
@@ -108,7 +114,8 @@ TEST_CASE("posed tets: an affine motion of the mesh is the affine motion of its 
       const glm::dvec3 off = glm::abs(glm::fract(rest) - 0.5);
       const std::int64_t at = map.index(v);
       const bool is_tissue = body.tube.volume.at_or_air(glm::ivec3(glm::floor(rest + 0.5))) != 0;
-      if (map.cell[at] != InverseMap::kNoCell) furthest = std::max(furthest, glm::length(glm::dvec3(map.rest[at]) - rest));
+      if (map.cell[at] != InverseMap::kNoCell)
+        furthest = std::max(furthest, glm::length(glm::dvec3(map.rest[at]) - rest));
       if (is_tissue != (map.cell[at] != InverseMap::kNoCell) && std::min({off.x, off.y, off.z}) > 1e-3) ++wrong;
     });
     CHECK(furthest < 1e-3);
@@ -135,7 +142,8 @@ TEST_CASE("posed tets: a bent bar has no holes, keeps its volume, and each voxel
   for_each_voxel({map.range.low + 1, map.range.high - 1}, [&](const glm::ivec3& v) {
     const std::int64_t at = map.index(v);
     if (map.cell[at] != InverseMap::kNoCell)
-      return void(furthest = std::max(furthest, glm::length(glm::dvec3(map.rest[at]) - unbend(glm::dvec3(v + body.lattice.output().base)))));
+      return void(furthest = std::max(furthest, glm::length(glm::dvec3(map.rest[at]) -
+                                                            unbend(glm::dvec3(v + body.lattice.output().base)))));
     int around = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (int step : {-1, 1}) {
@@ -156,7 +164,8 @@ TEST_CASE("posed tets: the map is the same in one piece, in tiles, and with two 
   const auto twist = [](const glm::dvec3& p) {
     const double angle = p.z / 25;
     const glm::dvec2 off(p.x - 11, p.y - 12);
-    return glm::dvec3(11 + std::cos(angle) * off.x - std::sin(angle) * off.y, 12 + std::sin(angle) * off.x + std::cos(angle) * off.y, p.z);
+    return glm::dvec3(11 + std::cos(angle) * off.x - std::sin(angle) * off.y,
+                      12 + std::sin(angle) * off.x + std::cos(angle) * off.y, p.z);
   };
   std::vector<InverseMap> whole;
   for (int threads : {1, 2}) {
@@ -170,7 +179,8 @@ TEST_CASE("posed tets: the map is the same in one piece, in tiles, and with two 
       for_each_voxel(tile, [&](const glm::ivec3& v) {
         const std::int64_t a = part.index(v), b = whole[0].index(v);
         same &= part.cell[a] == whole[0].cell[b] && part.flags[a] == whole[0].flags[b];
-        if (part.cell[a] != InverseMap::kNoCell) same &= part.rest[a] == whole[0].rest[b] && part.posed_per_rest[a] == whole[0].posed_per_rest[b];
+        if (part.cell[a] != InverseMap::kNoCell)
+          same &= part.rest[a] == whole[0].rest[b] && part.posed_per_rest[a] == whole[0].posed_per_rest[b];
       });
     }
     CHECK(same);
@@ -180,10 +190,13 @@ TEST_CASE("posed tets: the map is the same in one piece, in tiles, and with two 
   CHECK(covered(whole[0]) > 0.97 * body.tissue.size());
 }
 
-TEST_CASE("posed tets: of two parts that come to lie in one place only strangers count as overlap, and the deeper stays") {
+TEST_CASE(
+    "posed tets: of two parts that come to lie in one place only strangers count as overlap, and the deeper stays") {
   Carried body;
   // The upper half is pushed down into the lower one: each voxel of the fold is claimed from both.
-  const auto push = [](const glm::dvec3& p) { return p.z > 25 ? p - glm::dvec3(0, 0, 12) : p.z > 20 ? p - glm::dvec3(0, 0, 12 * (p.z - 20) / 5) : p; };
+  const auto push = [](const glm::dvec3& p) {
+    return p.z > 25 ? p - glm::dvec3(0, 0, 12) : p.z > 20 ? p - glm::dvec3(0, 0, 12 * (p.z - 20) / 5) : p;
+  };
   const PosedTets tets(body.mesh, body.moved(push), body.lattice, body.all);
   const InverseMap map = map_of(tets, grown(tets.posed_tissue()), &body.depth);
   CHECK(map.lost.size() > 500);
@@ -196,10 +209,12 @@ TEST_CASE("posed tets: of two parts that come to lie in one place only strangers
   CHECK(inverted == 0);  // whatever is inverted gives way
 }
 
-TEST_CASE("posed tets: what sticks out of two parts that are pressed together is pressed flat, and takes no place twice") {
-  // Voxels stick out of the lower part's top and of the upper part's bottom, by more than what is left of the air between them: first
-  // into the other part, then into what sticks out there, then both.
-  for (const auto& [top, bottom, air] : {std::array{20.2, 27.2, 0.1}, std::array{19.6, 27.2, 0.8}, std::array{19.7, 27.3, 0.9}}) {
+TEST_CASE(
+    "posed tets: what sticks out of two parts that are pressed together is pressed flat, and takes no place twice") {
+  // Voxels stick out of the lower part's top and of the upper part's bottom, by more than what is left of the air
+  // between them: first into the other part, then into what sticks out there, then both.
+  for (const auto& [top, bottom, air] :
+       {std::array{20.2, 27.2, 0.1}, std::array{19.6, 27.2, 0.8}, std::array{19.7, 27.3, 0.9}}) {
     CAPTURE(air);
     Carried body;
     const auto below = test::kuhn_mesh(body.tube.volume.grid, {-0.4, -0.3, -0.2}, {23.3, 25.1, top}, {4, 5, 5});
@@ -218,11 +233,14 @@ TEST_CASE("posed tets: what sticks out of two parts that are pressed together is
       ++tissue;
     });
     const double closed = bottom - top - air;
-    const PosedTets tets(body.mesh, body.moved([&](const glm::dvec3& p) { return p.z > 24 ? p - glm::dvec3(0, 0, closed) : p; }), body.lattice, part);
+    const PosedTets tets(body.mesh,
+                         body.moved([&](const glm::dvec3& p) { return p.z > 24 ? p - glm::dvec3(0, 0, closed) : p; }),
+                         body.lattice, part);
     CHECK(tets.rider_count() > 100);
     const InverseMap map = map_of(tets, grown(tets.posed_tissue()), &body.depth);
     CHECK(map.lost.empty());
-    CHECK(std::none_of(map.flags.begin(), map.flags.end(), [](std::uint8_t flags) { return flags & InverseMap::kInverted; }));
+    CHECK(std::none_of(map.flags.begin(), map.flags.end(),
+                       [](std::uint8_t flags) { return flags & InverseMap::kInverted; }));
     CHECK(covered(map) > 0.93 * double(tissue));  // but for a layer of each part
   }
 }
@@ -231,10 +249,12 @@ TEST_CASE("posed tets: where a mesh carries only a part, mesh and lattice meet w
   for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     Carried body(grid, {-0.4, -0.3, 17.7}, {23.3, 25.1, 33.2});
     const RigidTransform motion = rotation_about({4, 5, 6}, glm::angleAxis(0.6, glm::normalize(glm::dvec3(1, 2, -1))));
-    const PosedLattice lattice(body.tube.volume, body.tissue, body.tube.weights, {motion, motion}, Blend::Linear, glm::dvec3(1));
+    const PosedLattice lattice(body.tube.volume, body.tissue, body.tube.weights, {motion, motion}, Blend::Linear,
+                               glm::dvec3(1));
     TissueMask part(body.all.size(), std::array<std::uint64_t, 8>{});
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
-      if (v.z >= 19 && v.z <= 31) part[body.tissue.brick_at(v)][v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
+      if (v.z >= 19 && v.z <= 31)
+        part[body.tissue.brick_at(v)][v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
     });
     const PosedTets tets(body.mesh, body.moved([&](const glm::dvec3& p) { return motion * p; }), lattice, part);
     CHECK(tets.rider_count() == 0);

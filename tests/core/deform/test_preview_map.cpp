@@ -8,10 +8,10 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/binding/heat_diffusion.h"
 #include "core/deform/inverse_map.h"
 #include "core/deform/lattice.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
+#include "core/phantom/phantom.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/kuhn_mesh.h"
 
@@ -33,7 +33,8 @@ struct Sitter {
 
 Sitter tube_sitter(const Grid& grid = {}, int length = 60) {
   test::BentTube tube = test::bent_tube(grid, length);
-  Sitter sitter{std::make_shared<const LabelVolume>(tube.volume), tube.tissues, tube.rig, TissueVoxels(tube.volume), tube.weights};
+  Sitter sitter{std::make_shared<const LabelVolume>(tube.volume), tube.tissues, tube.rig, TissueVoxels(tube.volume),
+                tube.weights};
   return sitter;
 }
 
@@ -41,7 +42,11 @@ const Sitter& arm_sitter() {
   static const Sitter arm = [] {
     Phantom phantom = make_arm_phantom(2);
     SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
-    Sitter sitter{std::make_shared<const LabelVolume>(std::move(phantom.volume)), phantom.tissues, phantom.armature, {}, std::move(weights)};
+    Sitter sitter{std::make_shared<const LabelVolume>(std::move(phantom.volume)),
+                  phantom.tissues,
+                  phantom.armature,
+                  {},
+                  std::move(weights)};
     sitter.tissue = TissueVoxels(*sitter.volume);
     return sitter;
   }();
@@ -57,15 +62,18 @@ Pose flexed(const Sitter& sitter, const char* bone, double degrees) {
 Pose tube_pose(const Sitter& sitter, double degrees, double twist_degrees = 0) {
   Pose pose = rest_pose(sitter.rig);
   const double radians = std::numbers::pi / 180;
-  pose.rotation[1] = glm::angleAxis(degrees * radians, glm::normalize(sitter.volume->grid.direction[0])) *
-                     glm::angleAxis(twist_degrees * radians, glm::normalize(sitter.rig.bones[1].tail - sitter.rig.bones[1].head));
+  pose.rotation[1] =
+      glm::angleAxis(degrees * radians, glm::normalize(sitter.volume->grid.direction[0])) *
+      glm::angleAxis(twist_degrees * radians, glm::normalize(sitter.rig.bones[1].tail - sitter.rig.bones[1].head));
   return pose;
 }
 
 bool same(const PreviewMap& a, const PreviewMap& b) {
-  if (!(a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.apart == b.apart && a.cubes == b.cubes)) return false;
+  if (!(a.first == b.first && a.size == b.size && a.nodes == b.nodes && a.apart == b.apart && a.cubes == b.cubes))
+    return false;
   for (std::size_t i = 0; i < a.cubes.size(); ++i)
-    if (a.cubes[i] != PreviewMap::kNothing && !(a.reach[i].low == b.reach[i].low && a.reach[i].high == b.reach[i].high)) return false;
+    if (a.cubes[i] != PreviewMap::kNothing && !(a.reach[i].low == b.reach[i].low && a.reach[i].high == b.reach[i].high))
+      return false;
   return true;
 }
 
@@ -116,12 +124,14 @@ TEST_CASE("preview: when everything moves rigidly the map is that motion backwar
   }
 }
 
-TEST_CASE("preview: posing step by step gives the same map, bit for bit, as posing at once, for any number of threads") {
+TEST_CASE(
+    "preview: posing step by step gives the same map, bit for bit, as posing at once, for any number of threads") {
   const Sitter tube = tube_sitter({}, 200);
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
     LivePreview stepwise = tube.preview();
     std::shared_ptr<const PreviewMap> last;
-    std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>> held;  // maps that somebody goes on showing, and as they were
+    std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>>
+        held;  // maps that somebody goes on showing, and as they were
     for (const double degrees : {0.0, 25.0, 24.0, 24.5, 24.6, 24.7, 24.8, 80.0, 81.0, 80.5, 81.0}) {
       last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
       if (held.size() < 4 && degrees < 24.7) held.emplace_back(last, *last);
@@ -154,8 +164,9 @@ TEST_CASE("preview: after a pose that cannot be shown the next one is right agai
   CHECK(same(*preview.update(motions, Blend::Linear), *fresh.update(motions, Blend::Linear)));
 }
 
-TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice, away from folds to a tenth of a voxel"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "preview: an arm bent by 60 degrees is mapped as by the dense lattice, away from folds to a tenth of a voxel" *
+    doctest::test_suite("slow")) {
   const Sitter& arm = arm_sitter();
   const auto motions = arm.motions(flexed(arm, "Forearm", 60));
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
@@ -183,19 +194,23 @@ TEST_CASE("preview: an arm bent by 60 degrees is mapped as by the dense lattice,
           ++covered;
           const auto rest = map->rest_at(glm::dvec3(glm::ivec3(x, y, z) + lattice.output().base));
           missing += !rest;
-          if (rest && !(dense.flags[at] & InverseMap::kOverlap)) errors.push_back(glm::length(*rest - glm::dvec3(dense.rest[at])));
+          if (rest && !(dense.flags[at] & InverseMap::kOverlap))
+            errors.push_back(glm::length(*rest - glm::dvec3(dense.rest[at])));
         }
     std::sort(errors.begin(), errors.end());
     const double median = errors[errors.size() / 2];
-    const double near = double(std::lower_bound(errors.begin(), errors.end(), 0.5) - errors.begin()) / double(errors.size());
+    const double near =
+        double(std::lower_bound(errors.begin(), errors.end(), 0.5) - errors.begin()) / double(errors.size());
     CHECK(median < 0.1);
     CHECK(near > 0.95);  // the others lie around the elbow, where rigid bone touches flesh that bends
     CHECK(missing < covered / 1000);
   }
 }
 
-TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within half a millimetre of where their bone carries them"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "preview: bones stay stiff: nineteen voxels of twenty are read within half a millimetre of where their bone "
+    "carries them" *
+    doctest::test_suite("slow")) {
   const Sitter& arm = arm_sitter();
   const auto motions = arm.motions(flexed(arm, "Forearm", 60));
   const AffineTransform to_world = world_from_voxel(arm.volume->grid), to_voxel = voxel_from_world(arm.volume->grid);
@@ -219,7 +234,8 @@ TEST_CASE("preview: bones stay stiff: nineteen voxels of twenty are read within 
 
 namespace {
 
-// Two bars along z, a gap of air between them, joined at the bottom: each follows its own bone, as fingers of a hand do.
+// Two bars along z, a gap of air between them, joined at the bottom: each follows its own bone, as fingers of a hand
+// do.
 Sitter fork_sitter(int gap) {
   LabelVolume volume{Grid{}, {}};
   const glm::ivec3 size(40, 20, 72);
@@ -228,13 +244,16 @@ Sitter fork_sitter(int gap) {
   for (int z = 4; z < 68; ++z)
     for (int y = 4; y < 16; ++y)
       for (int x = 4; x < 28 + gap; ++x)
-        if (z < 12 || x < 16 || x >= 16 + gap) volume.voxels[x + std::int64_t{size.x} * (y + std::int64_t{size.y} * z)] = 1;
+        if (z < 12 || x < 16 || x >= 16 + gap)
+          volume.voxels[x + std::int64_t{size.x} * (y + std::int64_t{size.y} * z)] = 1;
   Sitter sitter{std::make_shared<const LabelVolume>(volume), {}, {}, TissueVoxels(volume), {}};
   sitter.weights = SkinWeights({"A", "B"}, sitter.tissue);
   for (std::int64_t brick = 0; brick < std::ssize(sitter.tissue.bricks()); ++brick) {
     SkinWeights::Influences chunk;
     sitter.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
-      const double b = v.z < 12 ? 0.5 : v.x < 16 ? std::max(0.0, 0.5 - (v.z - 12) / 16.0) : std::min(1.0, 0.5 + (v.z - 12) / 16.0);
+      const double b = v.z < 12   ? 0.5
+                       : v.x < 16 ? std::max(0.0, 0.5 - (v.z - 12) / 16.0)
+                                  : std::min(1.0, 0.5 + (v.z - 12) / 16.0);
       chunk.push_back(quantize({{0, 1 - b}, {1, b}}));
     });
     sitter.weights.set_chunk(brick, std::move(chunk));
@@ -244,22 +263,25 @@ Sitter fork_sitter(int gap) {
 
 }  // namespace
 
-TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and nothing is drawn between"
-          * doctest::test_suite("slow")) {
+TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and nothing is drawn between" *
+          doctest::test_suite("slow")) {
   for (const int step : {4, 8})
     for (const int gap : {1, 2, 3, 5}) {
       CAPTURE(step);
       CAPTURE(gap);
       const Sitter fork = fork_sitter(gap);
-      const RigidTransform still{glm::dquat(1, 0, 0, 0), {0, 0, 0}}, turned{glm::angleAxis(0.6, glm::dvec3(0, 1, 0)), {4, 0, 6}};
+      const RigidTransform still{glm::dquat(1, 0, 0, 0), {0, 0, 0}},
+          turned{glm::angleAxis(0.6, glm::dvec3(0, 1, 0)), {4, 0, 6}};
       const std::vector<RigidTransform> motions{still, turned};
       LivePreview preview = fork.preview(step);
-      CHECK(std::any_of(preview.lattice().has_sides.begin(), preview.lattice().has_sides.end(), [](std::uint8_t each) { return each; }));
+      CHECK(std::any_of(preview.lattice().has_sides.begin(), preview.lattice().has_sides.end(),
+                        [](std::uint8_t each) { return each; }));
       const auto map = preview.update(motions, Blend::DualQuaternion);
       const std::vector<SkinTransform> bones = skin_transforms(motions);
       const auto posed = [&](const glm::ivec3& v) {
         const std::int64_t brick = fork.tissue.brick_at(v);
-        const Influence& follows = fork.weights.chunk(brick)[fork.tissue.index_of(v) - fork.tissue.bricks()[brick].first];
+        const Influence& follows =
+            fork.weights.chunk(brick)[fork.tissue.index_of(v) - fork.tissue.bricks()[brick].first];
         const std::array<BoneWeight, 2> weights{{{0, follows.of(0)}, {1, follows.of(1)}}};
         return blend_point(Blend::DualQuaternion, bones, weights, glm::dvec3(v));
       };
@@ -293,7 +315,8 @@ TEST_CASE("preview: tissue goes where a tet mesh carries it, and what the bones 
   const auto rest_motions = tube.motions(rest_pose(tube.rig));
   LivePreview preview = tube.preview();
   const glm::dvec3 size(tube.volume->grid.size);
-  const auto mesh = std::make_shared<const TetMesh>(test::kuhn_mesh(tube.volume->grid, glm::dvec3(-4), size + 4.0, {10, 10, 20}));
+  const auto mesh =
+      std::make_shared<const TetMesh>(test::kuhn_mesh(tube.volume->grid, glm::dvec3(-4), size + 4.0, {10, 10, 20}));
   const auto still = std::make_shared<const Eigen::MatrixX3d>(mesh->V);
   const auto plain = preview.update(rest_motions, Blend::Linear);
   const PreviewMap before = *plain;
@@ -302,7 +325,9 @@ TEST_CASE("preview: tissue goes where a tet mesh carries it, and what the bones 
   // All swings aside along z, as no bone does.
   const glm::dvec3 across = tube.volume->grid.direction[0];
   const AffineTransform world = world_from_voxel(tube.volume->grid), voxel = voxel_from_world(tube.volume->grid);
-  const auto swung = [&](const glm::dvec3& p) { return p + 6 * tube.volume->grid.spacing.x * std::sin(0.08 * (voxel * p).z) * across; };
+  const auto swung = [&](const glm::dvec3& p) {
+    return p + 6 * tube.volume->grid.spacing.x * std::sin(0.08 * (voxel * p).z) * across;
+  };
   Eigen::MatrixX3d V = mesh->V;
   for (Eigen::Index v = 0; v < V.rows(); ++v) {
     const glm::dvec3 p = swung({V(v, 0), V(v, 1), V(v, 2)});

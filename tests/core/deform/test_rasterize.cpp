@@ -13,8 +13,8 @@ namespace {
 
 constexpr VoxelRange kEverywhere{glm::ivec3(-1000), glm::ivec3(1000)};
 
-// N^3 cubes with edges of three output voxels, their inner corners moved by whole numbers of `step`: coarse steps put many
-// voxel centres exactly on faces, edges and corners.
+// N^3 cubes with edges of three output voxels, their inner corners moved by whole numbers of `step`: coarse steps put
+// many voxel centres exactly on faces, edges and corners.
 template <class Claim>
 void rasterize_jittered(int n, int step, unsigned seed, const Claim& claim) {
   std::mt19937 random(seed);
@@ -48,8 +48,7 @@ TEST_CASE("rasterize: every voxel inside a jittered lattice is claimed exactly o
         inverted += claim.posed_per_rest <= 0;
         if (glm::any(glm::lessThan(v, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(v, glm::ivec3(kVoxels))))
           ++outside;
-        else
-          ++claims[v.x + kVoxels * (v.y + kVoxels * v.z)];
+        else ++claims[v.x + kVoxels * (v.y + kVoxels * v.z)];
       });
       CHECK(outside == 0);
       CHECK(inverted == 0);
@@ -57,10 +56,12 @@ TEST_CASE("rasterize: every voxel inside a jittered lattice is claimed exactly o
     }
 }
 
-TEST_CASE("rasterize: a tet with a face all but parallel to the rows of voxels has the voxels inside it, and no others") {
+TEST_CASE(
+    "rasterize: a tet with a face all but parallel to the rows of voxels has the voxels inside it, and no others") {
   for (int k = 0; k < 40; ++k) {
     const int s = 8 * kFixedOne + 12345 * k;
-    const std::array<FixedPoint, 4> tet{FixedPoint(0), FixedPoint(s, -1, -1), FixedPoint(0, s, s - 1), FixedPoint(s / 2, 0, s)};
+    const std::array<FixedPoint, 4> tet{FixedPoint(0), FixedPoint(s, -1, -1), FixedPoint(0, s, s - 1),
+                                        FixedPoint(s / 2, 0, s)};
     const VoxelRange box = voxels_in_box(tet);
     std::vector<glm::ivec3> expected, visited;
     const TetFaces<__int128> faces(tet);
@@ -86,7 +87,8 @@ TEST_CASE("rasterize: a turned cube gives back the rest points of its voxels, as
   int count = 0;
   double largest = 0;
   PosedCell(corners.data(), 2, 4, {4, 5, 6}).rasterize(kEverywhere, [&](const CellClaim& claim) {
-    const glm::dvec3 expected = glm::transpose(turn) * (glm::dvec3(claim.voxel) - glm::dvec3(0.3, 40.1, -7)) / 20.0 + glm::dvec3(4, 5, 6);
+    const glm::dvec3 expected =
+        glm::transpose(turn) * (glm::dvec3(claim.voxel) - glm::dvec3(0.3, 40.1, -7)) / 20.0 + glm::dvec3(4, 5, 6);
     largest = std::max(largest, glm::distance(claim.rest, expected));
     ++count;
   });
@@ -95,7 +97,8 @@ TEST_CASE("rasterize: a turned cube gives back the rest points of its voxels, as
 }
 
 TEST_CASE("rasterize: a large tet and its halves cover the same voxels, each once") {
-  const FixedPoint a(0, 0, 0), b(40 * kFixedOne, 3, 7), c(11, 40 * kFixedOne, 5), d(2, 9, 40 * kFixedOne), middle = (b + c) / 2;
+  const FixedPoint a(0, 0, 0), b(40 * kFixedOne, 3, 7), c(11, 40 * kFixedOne, 5), d(2, 9, 40 * kFixedOne),
+      middle = (b + c) / 2;
   auto cover = [](const std::vector<std::array<FixedPoint, 4>>& tets) {
     std::map<std::tuple<int, int, int>, int> claims;
     for (const auto& tet : tets)

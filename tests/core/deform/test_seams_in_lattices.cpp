@@ -11,7 +11,8 @@ using namespace limber;
 
 namespace {
 
-// A bar of 16 x 8 x 8 voxels; the first seven columns follow bone 0, the others bone 1, cut between them up to a height.
+// A bar of 16 x 8 x 8 voxels; the first seven columns follow bone 0, the others bone 1, cut between them up to a
+// height.
 struct Bar {
   static constexpr int kLeft = 6;  // last column of bone 0
   LabelVolume volume;
@@ -25,7 +26,8 @@ struct Bar {
     weights = SkinWeights({"left", "right"}, tissue);
     for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
       SkinWeights::Influences chunk;
-      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { chunk.push_back(rigid_influence(v.x > kLeft)); });
+      tissue.for_each(brick, brick + 1,
+                      [&](std::int64_t, const glm::ivec3& v) { chunk.push_back(rigid_influence(v.x > kLeft)); });
       weights.set_chunk(brick, chunk);
     }
     auto seams = std::make_shared<Seams>(volume.grid.size);
@@ -43,7 +45,8 @@ bool has_long_cell(const PosedLattice& lattice, double longest) {
     auto corners = std::make_unique<PosedLattice::SplitBrick>();
     lattice.split_corners(brick, *corners);
     for (int cell = 0; cell < 512; ++cell)
-      for (int c = 0; c < 8; c += 2) found |= std::abs((*corners)[8 * cell + c + 1].x - (*corners)[8 * cell + c].x) > longest * kFixedOne;
+      for (int c = 0; c < 8; c += 2)
+        found |= std::abs((*corners)[8 * cell + c + 1].x - (*corners)[8 * cell + c].x) > longest * kFixedOne;
   }
   return found;
 }

@@ -28,10 +28,12 @@ struct Ball {
     for (int z = 0; z < edge; ++z)
       for (int y = 0; y < edge; ++y)
         for (int x = 0; x < edge; ++x)
-          if (const double r = glm::length(world * glm::dvec3(x, y, z)); r < 11) volume.at({x, y, z}) = r < 8 ? kFlesh : kSkin;
+          if (const double r = glm::length(world * glm::dvec3(x, y, z)); r < 11)
+            volume.at({x, y, z}) = r < 8 ? kFlesh : kSkin;
     tissue = TissueVoxels(volume);
     weights = SkinWeights({"Lower", "Upper"}, tissue);
-    for (std::int64_t b = 0; b < weights.chunk_count(); ++b) weights.set_chunk(b, SkinWeights::Influences(weights.chunk(b).size(), rigid_influence(1)));
+    for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
+      weights.set_chunk(b, SkinWeights::Influences(weights.chunk(b).size(), rigid_influence(1)));
     shown[kFlesh] = shown[kSkin] = 1;
   }
 };
@@ -60,8 +62,8 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100).V.empty());
 }
 
-TEST_CASE("skinned surface: of a volume of many voxels it lies no further off and fills the vertices it may have"
-          * doctest::test_suite("slow")) {
+TEST_CASE("skinned surface: of a volume of many voxels it lies no further off and fills the vertices it may have" *
+          doctest::test_suite("slow")) {
   const Ball ball(270);
   const SkinnedSurface surface = skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 10'000);
   CHECK(surface.V.size() <= 10'000);
@@ -73,7 +75,8 @@ TEST_CASE("skinned surface: of a volume of many voxels it lies no further off an
 
 TEST_CASE("skinned surface: at rest it is where it is, a bone's motion carries all of it, and threads change nothing") {
   const Ball ball;
-  const auto surface = std::make_shared<const SkinnedSurface>(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100'000));
+  const auto surface = std::make_shared<const SkinnedSurface>(
+      skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100'000));
   const PosedSurface rest = posed_surface(surface, {{}, {}}, Blend::DualQuaternion);
   for (std::size_t i = 0; i < rest.V.size(); ++i) CHECK(glm::distance(glm::dvec3(rest.V[i]), surface->V[i]) < 1e-5);
 

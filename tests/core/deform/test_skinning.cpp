@@ -49,7 +49,8 @@ TEST_CASE("skinning: one bone moves its points rigidly, whatever the sum of weig
   const glm::dvec3 p(12, 340, -56);
   for (Blend blend : kBlends)
     for (double weight : {1.0, 0.25, 3.0})
-      CHECK(glm::distance(blend_point(blend, bones, std::vector<BoneWeight>{{0, weight}}, p), posed_from_rest * p) < 1e-10);
+      CHECK(glm::distance(blend_point(blend, bones, std::vector<BoneWeight>{{0, weight}}, p), posed_from_rest * p) <
+            1e-10);
 }
 
 TEST_CASE("skinning: no influence leaves the point at rest") {
@@ -61,13 +62,13 @@ TEST_CASE("skinning: no influence leaves the point at rest") {
 }
 
 TEST_CASE("skinning: twisting the forearm keeps its thickness with dual quaternions, not with linear blend") {
-  const std::vector<SkinTransform> bones =
-      skin_transforms({{}, turn(120, {0, 0, 1}, {0, 0, 0})});
+  const std::vector<SkinTransform> bones = skin_transforms({{}, turn(120, {0, 0, 1}, {0, 0, 0})});
   const std::vector<BoneWeight> half = {{0, 0.5}, {1, 0.5}};
   auto radius = [](const glm::dvec3& p) { return std::hypot(p.x, p.y); };
   CHECK(radius(blend_point(Blend::DualQuaternion, bones, half, {40, 0, 10})) == doctest::Approx(40).epsilon(1e-12));
   CHECK(radius(blend_point(Blend::Linear, bones, half, {40, 0, 10})) == doctest::Approx(20).epsilon(1e-12));
-  CHECK(radius(blend_point(Blend::Mixed, bones, half, {40, 0, 10})) > radius(blend_point(Blend::Linear, bones, half, {40, 0, 10})));
+  CHECK(radius(blend_point(Blend::Mixed, bones, half, {40, 0, 10})) >
+        radius(blend_point(Blend::Linear, bones, half, {40, 0, 10})));
 }
 
 TEST_CASE("skinning: dual quaternions blend alike when a bone's quaternion has the other sign") {
@@ -76,7 +77,8 @@ TEST_CASE("skinning: dual quaternions blend alike when a bone's quaternion has t
   const std::vector<BoneWeight> influences = {{0, 0.4}, {1, 0.6}};
   const glm::dvec3 once = blend_point(Blend::DualQuaternion, skin_transforms({a, b}), influences, {1, 2, 3});
   b.rotation = -b.rotation;
-  CHECK(glm::distance(once, blend_point(Blend::DualQuaternion, skin_transforms({a, b}), influences, {1, 2, 3})) < 1e-12);
+  CHECK(glm::distance(once, blend_point(Blend::DualQuaternion, skin_transforms({a, b}), influences, {1, 2, 3})) <
+        1e-12);
 }
 
 TEST_CASE("skinning: a matrix that stretches a bone moves a point of that bone alone like the matrix") {
@@ -92,7 +94,8 @@ TEST_CASE("skinning: a matrix that stretches a bone moves a point of that bone a
 }
 
 TEST_CASE("skinning: many points at once equal one at a time") {
-  const std::vector<SkinTransform> bones = skin_transforms({turn(10, {1, 0, 0}, {0, 0, 1}), turn(70, {0, 1, 1}, {2, 0, 0})});
+  const std::vector<SkinTransform> bones =
+      skin_transforms({turn(10, {1, 0, 0}, {0, 0, 1}), turn(70, {0, 1, 1}, {2, 0, 0})});
   std::vector<glm::dvec3> points;
   std::vector<BoneWeight> influences;
   std::vector<std::int64_t> offsets = {0};
@@ -106,13 +109,15 @@ TEST_CASE("skinning: many points at once equal one at a time") {
     blend_points(blend, bones, influences, offsets, points, posed);
     int differing = 0;
     for (size_t i = 0; i < points.size(); ++i)
-      differing += posed[i] != blend_point(blend, bones, std::span(influences).subspan(offsets[i], offsets[i + 1] - offsets[i]), points[i]);
+      differing +=
+          posed[i] !=
+          blend_point(blend, bones, std::span(influences).subspan(offsets[i], offsets[i + 1] - offsets[i]), points[i]);
     CHECK(differing == 0);
   }
 }
 
-TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of their extent"
-          * doctest::test_suite("slow")) {
+TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of their extent" *
+          doctest::test_suite("slow")) {
   for (const std::string name : {"elbow90", "man_arm", "scale", "twist170"}) {
     const std::string file = "reference/lbs_dq/" + name + ".json";
     NEEDS_SHARED(file);
@@ -124,8 +129,9 @@ TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of th
     }
     const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
     for (const std::string method : {"lbs", "dqs"}) {
-      const auto result = nlohmann::json::parse(output_of(
-          std::string(LIMBER_PROGRAM) + " skin-points " + test::shared_path(file).string() + " --json --method " + method));
+      const auto result =
+          nlohmann::json::parse(output_of(std::string(LIMBER_PROGRAM) + " skin-points " +
+                                          test::shared_path(file).string() + " --json --method " + method));
       const auto& expected = reference[std::string("deformed_") + (method[0] == 'l' ? "lbs" : "dq")];
       REQUIRE(result["points"].size() == expected.size());
       double largest = 0;
@@ -139,16 +145,22 @@ TEST_CASE("skinning: points of Blender's reference cases agree within 1e-6 of th
   }
 }
 
-TEST_CASE("skinning: mixed blending goes a fixed share of the way from linear blending to dual quaternions, with stretches too") {
-  std::vector<SkinTransform> bones = {skin_transform(turn(20, {0, 0, 1}, {5, 0, 0})), skin_transform(turn(130, {1, 0, 0.2}, {0, 8, 30}))};
+TEST_CASE(
+    "skinning: mixed blending goes a fixed share of the way from linear blending to dual quaternions, with stretches "
+    "too") {
+  std::vector<SkinTransform> bones = {skin_transform(turn(20, {0, 0, 1}, {5, 0, 0})),
+                                      skin_transform(turn(130, {1, 0, 0.2}, {0, 8, 30}))};
   const std::vector<BoneWeight> influences = {{0, 0.35}, {1, 0.65}};
   const auto expected = [&](const glm::dvec3& p) {
-    return glm::mix(blend_point(Blend::Linear, bones, influences, p), blend_point(Blend::DualQuaternion, bones, influences, p), kQuaternionShare);
+    return glm::mix(blend_point(Blend::Linear, bones, influences, p),
+                    blend_point(Blend::DualQuaternion, bones, influences, p), kQuaternionShare);
   };
-  for (const glm::dvec3& p : {glm::dvec3(10, -4, 55), glm::dvec3(-30, 2, 0)}) CHECK(glm::distance(blend_point(Blend::Mixed, bones, influences, p), expected(p)) < 1e-10);
+  for (const glm::dvec3& p : {glm::dvec3(10, -4, 55), glm::dvec3(-30, 2, 0)})
+    CHECK(glm::distance(blend_point(Blend::Mixed, bones, influences, p), expected(p)) < 1e-10);
   const SkinTransform together = blended_transform(Blend::Mixed, bones, influences);
   const BoneWeight whole{0, 1};
-  CHECK(glm::distance(blend_point(Blend::Mixed, {&together, 1}, {&whole, 1}, {10, -4, 55}), expected({10, -4, 55})) < 1e-10);
+  CHECK(glm::distance(blend_point(Blend::Mixed, {&together, 1}, {&whole, 1}, {10, -4, 55}), expected({10, -4, 55})) <
+        1e-10);
   glm::dmat4 stretched(1);
   stretched[1][1] = 1.5;
   bones[1] = skin_transform(stretched, glm::dmat4(1));

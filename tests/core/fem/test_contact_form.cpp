@@ -70,7 +70,8 @@ TEST_CASE("contact: the nearest points are the nearest of all, for points and tr
       for (int k = 0; k < 50; ++k) {
         double s = share(random), t = share(random);
         if (kind == Kind::PointTriangle && s + t > 1) s = 1 - s, t = 1 - t;
-        const Eigen::Vector4d w = kind == Kind::PointTriangle ? Eigen::Vector4d(1, s + t - 1, -s, -t) : Eigen::Vector4d(1 - s, s, t - 1, -t);
+        const Eigen::Vector4d w =
+            kind == Kind::PointTriangle ? Eigen::Vector4d(1, s + t - 1, -s, -t) : Eigen::Vector4d(1 - s, s, t - 1, -t);
         CHECK(nearest.distance <= (x.transpose() * w).norm() + 1e-12);
       }
     }
@@ -81,7 +82,8 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   Places x(4, 3), step = Places::Zero(4, 3);
   x << 0.2, 0.2, 3, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   step(0, 2) = -1;
-  const auto bound = [](const ContactPair& pair, const Places& from, const Places& by, double limit, double near = INFINITY) {
+  const auto bound = [](const ContactPair& pair, const Places& from, const Places& by, double limit,
+                        double near = INFINITY) {
     return largest_step(pair, approach(pair, from, by), from, by, limit, near);
   };
   const ContactPair point{{0, 1, 2, 3}, Kind::PointTriangle};
@@ -100,7 +102,8 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
       for (const double near : {double(INFINITY), 0.3}) {
         const double length = bound(pair, from, by, 1, near), kept = 0.5 * std::min(before, near);
         CHECK(length > 0);
-        for (int k = 0; k <= 200; ++k) CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.48 * kept);
+        for (int k = 0; k <= 200; ++k)
+          CHECK(nearest_points(pair, from + k / 200.0 * length * by).distance > 0.48 * kept);
         double least = before;
         for (int k = 1; k <= 1000; ++k) least = std::min(least, nearest_points(pair, from + k / 1000.0 * by).distance);
         const bool is = is_too_far(pair, approach(pair, from, by), from, by, near);
@@ -135,7 +138,8 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
       if ((F.array() == v).any() && (f.array() != v).all()) consider(Kind::PointTriangle, {v, f[0], f[1], f[2]});
   for (std::size_t a = 0; a < edges.size(); ++a)
     for (std::size_t b = a + 1; b < edges.size(); ++b)
-      if (edges[a][0] != edges[b][0] && edges[a][0] != edges[b][1] && edges[a][1] != edges[b][0] && edges[a][1] != edges[b][1])
+      if (edges[a][0] != edges[b][0] && edges[a][0] != edges[b][1] && edges[a][1] != edges[b][0] &&
+          edges[a][1] != edges[b][1])
         consider(Kind::EdgeEdge, {edges[a][0], edges[a][1], edges[b][0], edges[b][1]});
   REQUIRE(expected.size() > 50);
 
@@ -143,7 +147,8 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
   for (const int threads : {1, 2}) {
     const ThreadCount count(threads);
     std::vector<Key> found;
-    for (const ContactPair& pair : ContactSurface(F, boxes.rest, boxes.free()).near(boxes.rest, step, 1, {1})) found.push_back(key(pair));
+    for (const ContactPair& pair : ContactSurface(F, boxes.rest, boxes.free()).near(boxes.rest, step, 1, {1}))
+      found.push_back(key(pair));
     if (threads == 1) first = found;
     CHECK(found == first);
     std::sort(found.begin(), found.end());
@@ -186,15 +191,16 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // sums are exact, so that both ways end in the same bits
   ContactForm form(boxes.F, boxes.rest, boxes.free());
   // To a place high above from the side, which is free, and from below, through the other box.
-  const Places above = boxes.rest + boxes.upper_by({0, 0, 20}), beside = boxes.rest + boxes.upper_by({50, 0, 20}), below = boxes.rest - boxes.upper_by({0, 0, 20});
+  const Places above = boxes.rest + boxes.upper_by({0, 0, 20}), beside = boxes.rest + boxes.upper_by({50, 0, 20}),
+               below = boxes.rest - boxes.upper_by({0, 0, 20});
   form.watch(beside, above - beside, 1);
   CHECK(form.largest_step(beside, above - beside, 1).length == 1);
   form.watch(below, above - below, 1);
   CHECK(form.largest_step(below, above - below, 1).length < 1);
 }
 
-TEST_CASE("contact: what is known of one way serves the next, and is all that there is to know of it"
-          * doctest::test_suite("slow")) {
+TEST_CASE("contact: what is known of one way serves the next, and is all that there is to know of it" *
+          doctest::test_suite("slow")) {
   const TwoBoxes boxes(1);
   const int count = int(boxes.rest.rows());
   ContactForm form(boxes.F, boxes.rest, boxes.free());
@@ -204,7 +210,11 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
   std::int64_t touching = 0;
   for (unsigned k = 0; k < 60; ++k) {
     // Far, near, or as before but for a node or two; from where the last way led, or from elsewhere.
-    Places step = boxes.upper_by({0, 0, k % 4 == 0 ? -0.9 : k % 4 == 2 ? 0.7 : -0.1}) + random_places(count, k % 3 ? 0.05 : 0.5, k);
+    Places step = boxes.upper_by({0, 0,
+                                  k % 4 == 0   ? -0.9
+                                  : k % 4 == 2 ? 0.7
+                                               : -0.1}) +
+                  random_places(count, k % 3 ? 0.05 : 0.5, k);
     if (k % 7 == 0) x += boxes.upper_by({0.4, 0, 0.1});
     double along = 0;
     for (int again = 0; again < 3; ++again, step.row(any_node(random)) *= -2) {
@@ -212,7 +222,8 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
       form.watch(x, step, limit);
       ContactForm fresh(boxes.F, boxes.rest, boxes.free());
       fresh.watch(x, step, limit);
-      const double of_form = form.largest_step(x, step, limit).length, of_fresh = fresh.largest_step(x, step, limit).length;
+      const double of_form = form.largest_step(x, step, limit).length,
+                   of_fresh = fresh.largest_step(x, step, limit).length;
       CHECK((of_form < limit) == (of_fresh < limit));
       CHECK(of_form > 0.5 * of_fresh);
       CHECK(of_form < 2 * of_fresh);
@@ -231,7 +242,9 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
   CHECK(touching > 1000);
 }
 
-TEST_CASE("contact: nothing pushes at rest, however close skin is, nearer it does, by a force that is the slope of its energy") {
+TEST_CASE(
+    "contact: nothing pushes at rest, however close skin is, nearer it does, by a force that is the slope of its "
+    "energy") {
   const TwoBoxes boxes(0.3);
   ContactForm form(boxes.F, boxes.rest, boxes.free());
   const Places still = Places::Zero(boxes.rest.rows(), 3);

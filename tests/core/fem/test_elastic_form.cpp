@@ -4,8 +4,8 @@
 #include <numeric>
 #include <random>
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
+#include <Eigen/Dense>
 
 #include "core/base/parallel.h"
 #include "core/fem/material.h"
@@ -88,7 +88,8 @@ struct Shaken {
         if (matrix.rank(a) < matrix.rank(b)) continue;
         const auto place = matrix.place(a, b);
         for (int c = 0; c < 3; ++c)
-          for (int r = a == b ? c : 0; r < 3; ++r) H(3 * a + r, 3 * b + c) = H(3 * b + c, 3 * a + r) = matrix.values()[place.at + c * place.stride + r];
+          for (int r = a == b ? c : 0; r < 3; ++r)
+            H(3 * a + r, 3 * b + c) = H(3 * b + c, 3 * a + r) = matrix.values()[place.at + c * place.stride + r];
       }
     return H;
   }
@@ -130,21 +131,26 @@ TEST_CASE("elastic form: curvature is the slope of the forces, whether or not th
   }
 }
 
-TEST_CASE("elastic form: projected curvature has nothing negative, and is the exact one where that has nothing negative either") {
+TEST_CASE(
+    "elastic form: projected curvature has nothing negative, and is the exact one where that has nothing negative "
+    "either") {
   for (unsigned seed = 0; seed < 6; ++seed) {
     Shaken shaken(seed < 3 ? 0.3 : 3.0, seed, 0.4);
     Places g;
-    const Eigen::MatrixXd exact = shaken.hessian(shaken.x, Curvature::Exact, g), projected = shaken.hessian(shaken.x, Curvature::Projected, g);
+    const Eigen::MatrixXd exact = shaken.hessian(shaken.x, Curvature::Exact, g),
+                          projected = shaken.hessian(shaken.x, Curvature::Projected, g);
     const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected).eigenvalues();
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
-    CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >= -1e-10 * std::max(1.0, values[80]));
+    CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >=
+          -1e-10 * std::max(1.0, values[80]));
     CHECK((projected - exact).norm() > 1e-6);  // the shaken box has some
   }
   // Nor with patches, whose pressures may be anything.
   for (unsigned seed = 0; seed < 3; ++seed) {
     Shaken shaken(2.0, seed);
     Places g;
-    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shaken.hessian(shaken.x, Curvature::Projected, g)).eigenvalues();
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shaken.hessian(shaken.x, Curvature::Projected, g)).eigenvalues();
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
   }
   // Blown up a little and evenly, every curvature is positive: nothing to leave out.
@@ -154,10 +160,13 @@ TEST_CASE("elastic form: projected curvature has nothing negative, and is the ex
   CHECK((blown.hessian(blown.x, Curvature::Projected, g) - blown.hessian(blown.x, Curvature::Exact, g)).norm() < 1e-10);
 }
 
-TEST_CASE("elastic form: in a large body, too, some of whose nodes are no unknowns, in any order of the matrix, with one thread and two") {
+TEST_CASE(
+    "elastic form: in a large body, too, some of whose nodes are no unknowns, in any order of the matrix, with one "
+    "thread and two") {
   const TetMesh mesh = kuhn_box(9, 8, 7, {0, 0, 0}, {9, 8, 7});
   const int nodes = int(mesh.V.rows());
-  const PatchOrder order = grow_patches(mesh.V, mesh.T, std::vector<double>(mesh.T.rows(), 90), std::vector<double>(mesh.T.rows(), 1));
+  const PatchOrder order =
+      grow_patches(mesh.V, mesh.T, std::vector<double>(mesh.T.rows(), 90), std::vector<double>(mesh.T.rows(), 1));
   Eigen::MatrixX4i T(mesh.T.rows(), 4);
   for (Eigen::Index k = 0; k < T.rows(); ++k) T.row(k) = mesh.T.row(order.tet[k]);
   ElasticForm tets(mesh.V, T, std::vector<TetEnergy>(T.rows(), {1, 2, 5, 0.7}), order.first);
@@ -292,11 +301,13 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
       REQUIRE(bound.length > 0);
       const auto share = [&](Eigen::Index t, double length) {
         const Places there = x + length * step;
-        return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
+        return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) /
+               determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
       };
       for (int k = 1; k <= 40; ++k)
         for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) REQUIRE(share(t, bound.length * k / 40) >= least[t] - 1e-9);
-      if (bound.length < limit) CHECK(share(bound.tet, bound.length) == doctest::Approx(least[bound.tet]).epsilon(1e-6));
+      if (bound.length < limit)
+        CHECK(share(bound.tet, bound.length) == doctest::Approx(least[bound.tet]).epsilon(1e-6));
     }
   }
 }

@@ -108,19 +108,21 @@ TEST_CASE("solve pose: the same for one thread and two, bit for bit") {
 TEST_CASE("solve pose: from a neighbouring pose it ends where it ends from rest") {
   const BarModel bar;
   const SolveSettings accurate{.tolerance_mm = 0.0001};
-  const SolvedPose near = solve_pose(bar.fem, bar.bend(8), 8, accurate), far = solve_pose(bar.fem, bar.bend(16), 16, accurate);
+  const SolvedPose near = solve_pose(bar.fem, bar.bend(8), 8, accurate),
+                   far = solve_pose(bar.fem, bar.bend(16), 16, accurate);
   const SolvedPose further = solve_pose(bar.fem, bar.bend(16, 8), 8, accurate, no_progress(), {}, &near.V);
   CHECK(further.converged);
   CHECK(further.steps == 1);
   CHECK((further.V - far.V).rowwise().norm().maxCoeff() < 0.001);
 }
 
-TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the shape is the same in the end"
-          * doctest::test_suite("slow")) {
+TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the shape is the same in the end" *
+          doctest::test_suite("slow")) {
   const BarModel bar;
   FemModel waits = bar.fem;
   for (int v = 0; v < int(waits.mesh.V.rows()); ++v)
-    if (waits.held_by[v] < 0 && std::abs(waits.mesh.V(v, 2)) > 30) waits.waiting.push_back({v, waits.mesh.V(v, 2) < 0 ? 0 : 1, 0.5});
+    if (waits.held_by[v] < 0 && std::abs(waits.mesh.V(v, 2)) > 30)
+      waits.waiting.push_back({v, waits.mesh.V(v, 2) < 0 ? 0 : 1, 0.5});
   const SolveSettings accurate{.contact = true, .step_degrees = 10, .tolerance_mm = 0.0001};
   const BonePath path = bar.bend(40);
   double furthest = 0;
@@ -128,7 +130,8 @@ TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the s
   const SolvedPose solved = solve_pose(waits, path, 40, accurate, no_progress(), [&](const SolveStep& step) {
     double off = 0;
     for (const auto& [node, bone, until] : waits.waiting) {
-      const glm::dvec3 to = path(step.reached)[bone] * glm::dvec3(waits.mesh.V(node, 0), waits.mesh.V(node, 1), waits.mesh.V(node, 2));
+      const glm::dvec3 to =
+          path(step.reached)[bone] * glm::dvec3(waits.mesh.V(node, 0), waits.mesh.V(node, 1), waits.mesh.V(node, 2));
       off = std::max(off, (step.V.row(node) - Eigen::RowVector3d(to.x, to.y, to.z)).norm());
     }
     if (step.reached <= 0.5) furthest = std::max(furthest, off), ++before;
@@ -147,7 +150,8 @@ TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the s
     CHECK(solve_pose(waits, path, 40, accurate).V == solved.V);
   }
   SUBCASE("a node that a bone holds cannot wait") {
-    waits.waiting.push_back({int(std::find(waits.held_by.begin(), waits.held_by.end(), 0) - waits.held_by.begin()), 0, 0.5});
+    waits.waiting.push_back(
+        {int(std::find(waits.held_by.begin(), waits.held_by.end(), 0) - waits.held_by.begin()), 0, 0.5});
     CHECK_THROWS_AS(solve_pose(waits, path, 40), Error);
   }
 }
@@ -159,13 +163,16 @@ TEST_CASE("solve pose: a flap that hangs by an edge, and what hangs by nothing, 
   const auto first = mesh.V.rows(), tets = mesh.T.rows();
   std::vector<int> edge;
   for (int v = 0; v < int(first) && edge.size() < 2; ++v)
-    if (mesh.V(v, 0) > 0.49 * bar.width && mesh.V(v, 2) > 40 && (edge.empty() || std::abs(mesh.V(v, 2) - mesh.V(edge[0], 2)) < 1e-9)) edge.push_back(v);
+    if (mesh.V(v, 0) > 0.49 * bar.width && mesh.V(v, 2) > 40 &&
+        (edge.empty() || std::abs(mesh.V(v, 2) - mesh.V(edge[0], 2)) < 1e-9))
+      edge.push_back(v);
   REQUIRE(edge.size() == 2);
   mesh.V.conservativeResize(first + 6, 3);
   const Eigen::RowVector3d middle = 0.5 * (mesh.V.row(edge[0]) + mesh.V.row(edge[1]));
   mesh.V.row(first) = middle + Eigen::RowVector3d(8, 0, -3);
   mesh.V.row(first + 1) = middle + Eigen::RowVector3d(8, 0, 3);
-  for (int k = 0; k < 4; ++k) mesh.V.row(first + 2 + k) = middle + Eigen::RowVector3d(20 + 6 * (k == 1), 6 * (k == 2), 6 * (k == 3));
+  for (int k = 0; k < 4; ++k)
+    mesh.V.row(first + 2 + k) = middle + Eigen::RowVector3d(20 + 6 * (k == 1), 6 * (k == 2), 6 * (k == 3));
   mesh.T.conservativeResize(tets + 2, 4);
   mesh.T.row(tets) << edge[0], edge[1], first, first + 1;
   mesh.T.row(tets + 1) << first + 2, first + 3, first + 4, first + 5;

@@ -38,7 +38,8 @@ struct RandomTets {
   }
 };
 
-// The block between nodes a and b as the energy's second derivatives have it: along dF, mu dF:dF' + h (C:dF)(C:dF') + g d2J.
+// The block between nodes a and b as the energy's second derivatives have it: along dF, mu dF:dF' + h (C:dF)(C:dF') + g
+// d2J.
 Eigen::Matrix3d block(const TetState& tet, int a, int b) {
   const auto cofactor = [](const Eigen::Matrix3d& F) {
     Eigen::Matrix3d C;
@@ -48,7 +49,8 @@ Eigen::Matrix3d block(const TetState& tet, int a, int b) {
   Eigen::Matrix3d H;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      const Eigen::Matrix3d A = Eigen::Vector3d::Unit(i) * (*tet.slopes)[a].transpose(), B = Eigen::Vector3d::Unit(j) * (*tet.slopes)[b].transpose();
+      const Eigen::Matrix3d A = Eigen::Vector3d::Unit(i) * (*tet.slopes)[a].transpose(),
+                            B = Eigen::Vector3d::Unit(j) * (*tet.slopes)[b].transpose();
       const auto along = [](const Eigen::Matrix3d& P, const Eigen::Matrix3d& Q) { return P.cwiseProduct(Q).sum(); };
       const Eigen::Matrix3d C = cofactor(tet.F);
       // The cofactors are quadratic in F: their derivative along B is exact by a difference.

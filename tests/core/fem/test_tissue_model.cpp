@@ -19,10 +19,14 @@ struct Body {
   TissueVoxels tissue;
   LabelSet is_bone = LabelSet(65536, 0);
 
-  explicit Body(const Grid& grid = {}, int length = 44) : tube(test::bent_tube(grid, length)), tissue(tube.volume) { is_bone[test::kBone] = 1; }
+  explicit Body(const Grid& grid = {}, int length = 44) : tube(test::bent_tube(grid, length)), tissue(tube.volume) {
+    is_bone[test::kBone] = 1;
+  }
 
   BonePath path(double degrees) const {
-    return [this, degrees](double t) { return bone_motions(tube.weights.bones(), tube.rig, part_of_pose(tube.pose(degrees), t)); };
+    return [this, degrees](double t) {
+      return bone_motions(tube.weights.bones(), tube.rig, part_of_pose(tube.pose(degrees), t));
+    };
   }
   MovingTissue moving(double degrees, const MovingSettings& settings = {}) const {
     return moving_tissue(tube.volume, tissue, tube.weights, path(degrees), settings);
@@ -42,7 +46,8 @@ bool has(const TissueMask& mask, const TissueVoxels& tissue, const glm::ivec3& v
 
 TissueModel model_of(const Body& body, const MovingTissue& moving, int side) {
   const LabelVolume regions = regions_to_mesh(body.tube.volume, body.tissue, body.is_bone, body.tube.weights, moving);
-  return tissue_model(body.tube.volume, body.tissue, body.tube.tissues, body.tube.weights, moving, test::kuhn_mesh_of(regions, side));
+  return tissue_model(body.tube.volume, body.tissue, body.tube.tissues, body.tube.weights, moving,
+                      test::kuhn_mesh_of(regions, side));
 }
 
 }  // namespace
@@ -53,7 +58,9 @@ TEST_CASE("moving tissue: nothing bends at rest or when the whole body turns") {
   Pose turned = rest_pose(body.tube.rig);
   turned.rotation[0] = glm::angleAxis(1.0, glm::normalize(glm::dvec3(1, 2, 3)));
   turned.root_translation = {5, 6, 7};
-  const BonePath path = [&](double t) { return bone_motions(body.tube.weights.bones(), body.tube.rig, part_of_pose(turned, t)); };
+  const BonePath path = [&](double t) {
+    return bone_motions(body.tube.weights.bones(), body.tube.rig, part_of_pose(turned, t));
+  };
   const MovingTissue moving = moving_tissue(body.tube.volume, body.tissue, body.tube.weights, path);
   CHECK(moving.empty());
   CHECK(moving.moves_as == std::vector<int>{0, 0});
@@ -88,10 +95,8 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
       auto now = rigid.chunk(b).begin();
       auto before = body.tube.weights.chunk(b).begin();
       body.tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
-        if (has(moving.free, body.tissue, v))
-          kept &= *now == *before;
-        else
-          whole &= (*now).weight[0] == kFullWeight;
+        if (has(moving.free, body.tissue, v)) kept &= *now == *before;
+        else whole &= (*now).weight[0] == kFullWeight;
         ++now;
         ++before;
       });
@@ -133,7 +138,9 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
     // A pose no further than that has it not.
     const MovingTissue part = body.moving(kWhole * from, settings);
     bool still = true;
-    body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) { still &= whole.free_from_at(body.tissue, v) != from || !has(part.free, body.tissue, v); });
+    body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+      still &= whole.free_from_at(body.tissue, v) != from || !has(part.free, body.tissue, v);
+    });
     CHECK(still);
   }
 
@@ -146,7 +153,8 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
   }
 }
 
-TEST_CASE("tissue model: bones hold the nodes of their tets, the rim is held, and what lies between two bones is the joint") {
+TEST_CASE(
+    "tissue model: bones hold the nodes of their tets, the rim is held, and what lies between two bones is the joint") {
   for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const Body body(grid, 120);
     const MovingTissue moving = body.moving(50, {.margin_mm = 12, .rim_mm = 10});
@@ -204,7 +212,9 @@ TEST_CASE("tissue model: bones hold the nodes of their tets, the rim is held, an
   CHECK(joint > 0);
 }
 
-TEST_CASE("tissue model: a tet is as stiff as its tissue in the mean and as full as it is, and a mesh that grows says so for each label") {
+TEST_CASE(
+    "tissue model: a tet is as stiff as its tissue in the mean and as full as it is, and a mesh that grows says so for "
+    "each label") {
   Body body;
   for (Tissue& tissue : body.tube.tissues.tissues)
     if (tissue.label == test::kFat) {
@@ -215,7 +225,8 @@ TEST_CASE("tissue model: a tet is as stiff as its tissue in the mean and as full
       tissue.poisson_ratio = 0.25;
     }
   const TissueModel model = model_of(body, body.moving(50), 4);
-  const double fat = 6 / (2 * 1.4999), skin = 30 / 2.5, fat_lambda = lame_lambda(fat, 0.4999), skin_lambda = lame_lambda(skin, 0.25);
+  const double fat = 6 / (2 * 1.4999), skin = 30 / 2.5, fat_lambda = lame_lambda(fat, 0.4999),
+               skin_lambda = lame_lambda(skin, 0.25);
   int fat_only = 0, mixed = 0, empty = 0;
   double whole = 0;
   for (int t = 0; t < model.fem.mesh.T.rows(); ++t) {
@@ -227,7 +238,8 @@ TEST_CASE("tissue model: a tet is as stiff as its tissue in the mean and as full
     }
     if (model.fem.mesh.region[t] != TetMesh::kSoft) continue;
     const TetMaterial& material = model.fem.material[t];
-    CHECK(material.filled == doctest::Approx(std::max(0.1, (fats + skins) / signed_volume(model.fem.mesh.V, model.fem.mesh.T.row(t)))));
+    CHECK(material.filled ==
+          doctest::Approx(std::max(0.1, (fats + skins) / signed_volume(model.fem.mesh.V, model.fem.mesh.T.row(t)))));
     if (fats + skins == 0) {
       ++empty;
       CHECK((material.shear_modulus == doctest::Approx(fat) || material.shear_modulus == doctest::Approx(skin)));
@@ -235,7 +247,8 @@ TEST_CASE("tissue model: a tet is as stiff as its tissue in the mean and as full
     }
     (skins == 0 ? fat_only : mixed) += 1;
     CHECK(material.shear_modulus == doctest::Approx((fats * fat + skins * skin) / (fats + skins)));
-    CHECK(lame_lambda(material.shear_modulus, material.poisson_ratio) == doctest::Approx((fats * fat_lambda + skins * skin_lambda) / (fats + skins)));
+    CHECK(lame_lambda(material.shear_modulus, material.poisson_ratio) ==
+          doctest::Approx((fats * fat_lambda + skins * skin_lambda) / (fats + skins)));
   }
   CHECK(fat_only > 0);
   CHECK(mixed > 0);
@@ -245,10 +258,12 @@ TEST_CASE("tissue model: a tet is as stiff as its tissue in the mean and as full
   Eigen::MatrixX3d grown = model.fem.mesh.V;
   for (const auto& [label, percent] : volume_change_percent(model, grown)) CHECK(std::abs(percent) < 1e-10);
   grown.col(2) *= 1.03;
-  for (const Label label : {test::kSkin, test::kFat, test::kBone}) CHECK(volume_change_percent(model, grown).at(label) == doctest::Approx(3));
+  for (const Label label : {test::kSkin, test::kFat, test::kBone})
+    CHECK(volume_change_percent(model, grown).at(label) == doctest::Approx(3));
 }
 
-TEST_CASE("tissue model: no soft tissue counts as stiffer than a solid of its width could be, whatever the table says") {
+TEST_CASE(
+    "tissue model: no soft tissue counts as stiffer than a solid of its width could be, whatever the table says") {
   Body body;
   for (Tissue& tissue : body.tube.tissues.tissues)
     if (tissue.label == test::kFat) tissue.young_modulus = 1.2e6;  // a tendon's, along its fibres

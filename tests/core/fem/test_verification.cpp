@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
 #include <doctest/doctest.h>
+#include <Eigen/Dense>
 
 #include "core/fem/newton.h"
 #include "tests/support/tet_shapes.h"
@@ -43,8 +43,8 @@ Places pull(const PinForm& pins, const Places& x) {
 
 constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
-// Pressure that blows a shell's inner surface up to radius a (times its place): work of the springs there over the volume
-// gained, on the shell as meshed.
+// Pressure that blows a shell's inner surface up to radius a (times its place): work of the springs there over the
+// volume gained, on the shell as meshed.
 //   axial  a tube that does not get longer; else an eighth of a sphere, its cuts held in their planes
 double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int patch_size, bool axial) {
   const Places rest = mesh.V;
@@ -74,7 +74,8 @@ double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int p
       for (int c = 0; c < (axial ? 2 : 3); ++c) work += force(v, c) * rest(v, c) / inner;
   // What a surface of radius r encloses as meshed is `unit` r^n.
   double solid = 0;
-  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) solid += determinant(rest, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    solid += determinant(rest, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;
   double outer = 0;
   for (Eigen::Index v = 0; v < rest.rows(); ++v) outer = std::max(outer, radius(rest.row(v)));
   const double n = axial ? 2 : 3, unit = solid / (std::pow(outer, n) - std::pow(inner, n));
@@ -86,8 +87,8 @@ TEST_CASE("verification: a bar pulled out or pressed has the stress and the volu
   struct Row {
     double nu, stretch, stress, J;
   };
-  for (const Row& row : {Row{.45, 1.5, 1.04069265, 1.03344155}, Row{.49, .7, -1.32332664, .99143005}, Row{.49, 1.5, 1.05259220, 1.00666755},
-                         Row{.49, 2, 1.74749950, 1.01000198}}) {
+  for (const Row& row : {Row{.45, 1.5, 1.04069265, 1.03344155}, Row{.49, .7, -1.32332664, .99143005},
+                         Row{.49, 1.5, 1.05259220, 1.00666755}, Row{.49, 2, 1.74749950, 1.01000198}}) {
     INFO("Poisson ratio ", row.nu, ", stretch ", row.stretch);
     const TetMesh mesh = kuhn_box(3, 3, 3, {0, 0, 0}, {1, 1, 1});
     const Places rest = mesh.V;
@@ -102,7 +103,8 @@ TEST_CASE("verification: a bar pulled out or pressed has the stress and the volu
     double top = 0, volume = 0;
     for (const int v : pins.node)
       if (rest(v, 2) == 1) top += force(v, 2);
-    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) volume += determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;
+    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+      volume += determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;
     CHECK(std::abs(top - row.stress) < 2e-6);
     CHECK(std::abs(volume - row.J) < 2e-6);
   }
@@ -119,7 +121,9 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
   for (const double nu : {0.3, 0.499}) {
     FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, nu}), 5);
     const auto skin = [](const Eigen::RowVector3d& p) { return (p.array() == 0).any() || (p.array() == 1).any(); };
-    PinForm pins = held(rest, [&](const Eigen::RowVector3d& p) { return skin(p) ? Eigen::RowVector3d(p * A.transpose()) : Eigen::RowVector3d::Constant(kFree); });
+    PinForm pins = held(rest, [&](const Eigen::RowVector3d& p) {
+      return skin(p) ? Eigen::RowVector3d(p * A.transpose()) : Eigen::RowVector3d::Constant(kFree);
+    });
     energy.hold(pins, {}, {});
     Places x = rest;
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-11, .iterations = 80}).converged);
@@ -128,8 +132,8 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
   }
 }
 
-TEST_CASE("verification: blowing up a thick incompressible tube takes the pressure on paper, with patches"
-          * doctest::test_suite("slow")) {
+TEST_CASE("verification: blowing up a thick incompressible tube takes the pressure on paper, with patches" *
+          doctest::test_suite("slow")) {
   const TetMesh mesh = thick_cylinder(1, 2, 0.1, 10, 80, 1);
   for (const auto& [a, pressure] : {std::pair{1.1, .131562}, {1.25, .275712}, {1.5, .428228}}) {
     INFO("inner radius ", a);
@@ -142,8 +146,10 @@ TEST_CASE("verification: blowing up a thick incompressible tube takes the pressu
   CHECK(std::abs(without / .131562 - 1) > 2 * std::abs(pressure_at(mesh, .499, 1, 1.1, 8, true) / .131562 - 1));
 }
 
-TEST_CASE("verification: blowing up a thick incompressible sphere takes the pressure on paper, with patches, plain tets lock"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "verification: blowing up a thick incompressible sphere takes the pressure on paper, with patches, plain tets "
+    "lock" *
+    doctest::test_suite("slow")) {
   const TetMesh mesh = thick_sphere_eighth(1, 2, 12, 8);
   for (const auto& [a, pressure] : {std::pair{1.1, .287155}, {1.25, .551869}, {1.5, .755433}}) {
     INFO("inner radius ", a);

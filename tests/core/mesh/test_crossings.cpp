@@ -14,7 +14,8 @@ namespace {
 
 using Pairs = std::vector<std::array<int, 2>>;
 
-Pairs crossings(std::initializer_list<std::array<double, 3>> places, std::initializer_list<std::array<int, 3>> triangles) {
+Pairs crossings(std::initializer_list<std::array<double, 3>> places,
+                std::initializer_list<std::array<int, 3>> triangles) {
   Eigen::MatrixX3d V(places.size(), 3);
   Eigen::MatrixX3i F(triangles.size(), 3);
   int row = 0;
@@ -42,14 +43,19 @@ TEST_CASE("crossings: the side of a point is exact where rounding would decide o
   std::uniform_int_distribution<int> step(0, 40);
   int flat = 0;
   for (int i = 0; i < 20000; ++i) {
-    // Places near (0.5, 0.5, 0.5) in steps of one unit in the last place: nearly always too flat for rounded arithmetic.
+    // Places near (0.5, 0.5, 0.5) in steps of one unit in the last place: nearly always too flat for rounded
+    // arithmetic.
     std::array<std::array<double, 3>, 4> p;
     std::array<std::array<long, 3>, 4> whole;
     for (int k = 0; k < 4; ++k)
-      for (int axis = 0; axis < 3; ++axis) whole[k][axis] = step(random), p[k][axis] = 0.5 + std::ldexp(double(whole[k][axis]), -53);
+      for (int axis = 0; axis < 3; ++axis)
+        whole[k][axis] = step(random), p[k][axis] = 0.5 + std::ldexp(double(whole[k][axis]), -53);
     long u[3], v[3], w[3];
-    for (int axis = 0; axis < 3; ++axis) u[axis] = whole[1][axis] - whole[0][axis], v[axis] = whole[2][axis] - whole[0][axis], w[axis] = whole[3][axis] - whole[0][axis];
-    const long det = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2];
+    for (int axis = 0; axis < 3; ++axis)
+      u[axis] = whole[1][axis] - whole[0][axis], v[axis] = whole[2][axis] - whole[0][axis],
+      w[axis] = whole[3][axis] - whole[0][axis];
+    const long det =
+        (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] + (u[0] * v[1] - u[1] * v[0]) * w[2];
     const int side = det > 0 ? 1 : det < 0 ? -1 : 0;
     flat += side == 0;
     CHECK(side_3d(p[0], p[1], p[2], p[3]) == side);
@@ -60,21 +66,30 @@ TEST_CASE("crossings: the side of a point is exact where rounding would decide o
 
 TEST_CASE("crossings: triangles that pierce, touch or lie upon each other cross, neighbours and strangers do not") {
   const std::initializer_list<std::array<int, 3>> two = {{0, 1, 2}, {3, 4, 5}};
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}}, two) == Pairs{{0, 1}});  // pierced
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 2, 1}}, two) == Pairs{{0, 1}});   // touched by a corner
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, two) == Pairs{{0, 1}});   // one upon the other
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {3, 3, 0}, {4, 3, 0}, {3, 4, 0}}, two).empty());            // beside it, on its plane
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1e-12}, {1, 1, 1}, {5, 5, 1}}, two).empty());        // a hair above
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 1, 3}}).empty());               // one edge in common
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}) == Pairs{{0, 1}});      // folded flat
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}).empty());              // unfolded flat
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {-1, 0, 1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 3, 4}}).empty());  // one corner in common
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}}, two) ==
+        Pairs{{0, 1}});  // pierced
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 2, 1}}, two) ==
+        Pairs{{0, 1}});  // touched by a corner
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, two) ==
+        Pairs{{0, 1}});  // one upon the other
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {3, 3, 0}, {4, 3, 0}, {3, 4, 0}}, two)
+            .empty());  // beside it, on its plane
+  CHECK(
+      crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1e-12}, {1, 1, 1}, {5, 5, 1}}, two).empty());  // a hair above
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // one edge in common
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}) ==
+        Pairs{{0, 1}});                                                                             // folded flat
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // unfolded flat
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {-1, 0, 1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 3, 4}})
+            .empty());  // one corner in common
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 1, 1}, {2, 1, -1}}, {{0, 1, 2}, {0, 3, 4}}) == Pairs{{0, 1}});
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}) == Pairs{{0, 1}});                  // the same twice
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}) == Pairs{{0, 1}});  // the same twice
   CHECK(crossings({}, {}).empty());
 }
 
-TEST_CASE("crossings: of many triangles, small and large, each pair is found once, as by asking every pair, with one thread and two") {
+TEST_CASE(
+    "crossings: of many triangles, small and large, each pair is found once, as by asking every pair, with one thread "
+    "and two") {
   std::mt19937 random(9);
   const auto any = [&](double most) { return std::uniform_real_distribution<double>(-most, most)(random); };
   constexpr int kCount = 400;

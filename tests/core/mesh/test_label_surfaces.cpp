@@ -12,7 +12,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/mesh/surface_files.h"
+#include "core/export/surface_files.h"
 #include "tests/support/program.h"
 #include "tests/support/read_back.h"
 
@@ -56,7 +56,8 @@ void check_manifold(const LabelSurface& surface) {
 }
 
 const LabelSurface& of_label(const LabelSurfaces& all, Label label) {
-  return *std::find_if(all.surfaces.begin(), all.surfaces.end(), [&](const LabelSurface& s) { return s.label == label; });
+  return *std::find_if(all.surfaces.begin(), all.surfaces.end(),
+                       [&](const LabelSurface& s) { return s.label == label; });
 }
 
 // Of the border between two tissues, as sets of three places: each triangle of one must be the other's, turned round.
@@ -72,8 +73,11 @@ std::set<std::vector<int>> triangles_of(const LabelSurface& surface) {
 
 }  // namespace
 
-TEST_CASE("label surfaces: a ball, a ring and a hollow ball have their Euler numbers, enclosed volumes are near the voxels'") {
-  const auto solid = volume_of({14, 14, 14}, [](const glm::ivec3& v) { return glm::length(glm::dvec3(v) - 6.5) < 5 ? 3 : 0; });
+TEST_CASE(
+    "label surfaces: a ball, a ring and a hollow ball have their Euler numbers, enclosed volumes are near the "
+    "voxels'") {
+  const auto solid =
+      volume_of({14, 14, 14}, [](const glm::ivec3& v) { return glm::length(glm::dvec3(v) - 6.5) < 5 ? 3 : 0; });
   const LabelSurfaces ball = label_surfaces(solid);
   REQUIRE(ball.surfaces.size() == 1);
   CHECK(ball.surfaces[0].euler_number() == 2);
@@ -81,7 +85,12 @@ TEST_CASE("label surfaces: a ball, a ring and a hollow ball have their Euler num
   const double voxels = double(std::count(solid.voxels.begin(), solid.voxels.end(), Label{3}));
   CHECK(enclosed_volume(ball, ball.surfaces[0]) == doctest::Approx(voxels).epsilon(0.05));
   // Unrelaxed it is made of whole voxels, cut at their corners and edges only.
-  const LabelSurfaces plain = label_surfaces(volume_of({6, 6, 6}, [](const glm::ivec3& v) { return glm::all(glm::greaterThan(v, glm::ivec3(0))) && glm::all(glm::lessThan(v, glm::ivec3(5))); }), {.relaxations = 0});
+  const LabelSurfaces plain = label_surfaces(volume_of({6, 6, 6},
+                                                       [](const glm::ivec3& v) {
+                                                         return glm::all(glm::greaterThan(v, glm::ivec3(0))) &&
+                                                                glm::all(glm::lessThan(v, glm::ivec3(5)));
+                                                       }),
+                                             {.relaxations = 0});
   CHECK(enclosed_volume(plain, plain.surfaces[0]) == doctest::Approx(64));
 
   const auto ring = label_surfaces(volume_of({16, 16, 7}, [](const glm::ivec3& v) {
@@ -101,11 +110,14 @@ TEST_CASE("label surfaces: a ball, a ring and a hollow ball have their Euler num
   CHECK(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end()));
 }
 
-TEST_CASE("label surfaces: voxels that touch by an edge or a corner are taken apart, and every edge lies in two triangles whatever the labels") {
+TEST_CASE(
+    "label surfaces: voxels that touch by an edge or a corner are taken apart, and every edge lies in two triangles "
+    "whatever the labels") {
   const auto edge = label_surfaces(volume_of({2, 2, 1}, [](const glm::ivec3& v) { return v.x == v.y ? 1 : 0; }));
   CHECK(edge.surfaces[0].euler_number() == 4);  // two balls
   check_manifold(edge.surfaces[0]);
-  const auto corner = label_surfaces(volume_of({2, 2, 2}, [](const glm::ivec3& v) { return v.x == v.y && v.y == v.z ? 1 : 0; }));
+  const auto corner =
+      label_surfaces(volume_of({2, 2, 2}, [](const glm::ivec3& v) { return v.x == v.y && v.y == v.z ? 1 : 0; }));
   CHECK(corner.surfaces[0].euler_number() == 4);
   check_manifold(corner.surfaces[0]);
   const auto crossed = label_surfaces(volume_of({2, 2, 1}, [](const glm::ivec3& v) { return v.x == v.y ? 1 : 2; }));
@@ -127,16 +139,20 @@ TEST_CASE("label surfaces: voxels that touch by an edge or a corner are taken ap
       // Tissues share their borders, so what air leaves over is theirs: the same as all of them merged to one.
       auto merged = noise;
       for (Label& label : merged.voxels) label = label != 0;
-      const LabelSurfaces whole = label_surfaces(merged, {.relaxations = 0}), parts = label_surfaces(noise, {.relaxations = 0});
+      const LabelSurfaces whole = label_surfaces(merged, {.relaxations = 0}),
+                          parts = label_surfaces(noise, {.relaxations = 0});
       double of_parts = 0;
       for (const LabelSurface& surface : parts.surfaces) of_parts += enclosed_volume(parts, surface);
-      if (!whole.surfaces.empty()) CHECK(of_parts == doctest::Approx(enclosed_volume(whole, whole.surfaces[0])).epsilon(0.02));
+      if (!whole.surfaces.empty())
+        CHECK(of_parts == doctest::Approx(enclosed_volume(whole, whole.surfaces[0])).epsilon(0.02));
     }
   CHECK(label_surfaces(volume_of({2, 2, 2}, [](const glm::ivec3&) { return 0; })).surfaces.empty());
 }
 
 TEST_CASE("label surfaces: outside is outside on a mirrored grid, too, and spacing and origin are followed") {
-  auto volume = volume_of({6, 6, 6}, [](const glm::ivec3& v) { return glm::all(glm::greaterThan(v, glm::ivec3(0))) && glm::all(glm::lessThan(v, glm::ivec3(5))); });
+  auto volume = volume_of({6, 6, 6}, [](const glm::ivec3& v) {
+    return glm::all(glm::greaterThan(v, glm::ivec3(0))) && glm::all(glm::lessThan(v, glm::ivec3(5)));
+  });
   volume.grid.spacing = {1, 2, 3};
   volume.grid.origin = {100, 0, 0};
   volume.grid.direction[0] = {-1, 0, 0};
@@ -147,8 +163,10 @@ TEST_CASE("label surfaces: outside is outside on a mirrored grid, too, and spaci
   CHECK(least == doctest::Approx(100 - 4.5));
 }
 
-TEST_CASE("surfaces command: one OBJ with groups that share vertices, one glTF with a named node each, STL and PLY a file a tissue, watertight for VTK"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "surfaces command: one OBJ with groups that share vertices, one glTF with a named node each, STL and PLY a file a "
+    "tissue, watertight for VTK" *
+    doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   const std::string volume = folder / "volume.nrrd", tissues = folder / "tissues.json", nifti = folder / "v.nii.gz";
@@ -171,7 +189,9 @@ TEST_CASE("surfaces command: one OBJ with groups that share vertices, one glTF w
   CHECK(highest == vertices);
   READ_BACK("surface", folder / "arm.obj", nifti);
 
-  REQUIRE(run_limber({"surfaces", volume, "--tissues", tissues, "--only", "skin,cortical bone", "-o", folder / "arm.ply"}).exit_code == 0);
+  REQUIRE(
+      run_limber({"surfaces", volume, "--tissues", tissues, "--only", "skin,cortical bone", "-o", folder / "arm.ply"})
+          .exit_code == 0);
   REQUIRE(run_limber({"convert", volume, folder / "all.stl", "--tissues", tissues}).exit_code == 0);
   int plys = 0, stls = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include <Eigen/Geometry>
 #include <doctest/doctest.h>
+#include <Eigen/Geometry>
 
 #include "core/base/parallel.h"
 #include "core/mesh/crossings.h"
@@ -79,7 +79,8 @@ void check_boxes(const LatticeNet& net) {
 
 }  // namespace
 
-TEST_CASE("lattice net: a limb of two bones is closed around each region, encloses its voxels and little more, on any grid") {
+TEST_CASE(
+    "lattice net: a limb of two bones is closed around each region, encloses its voxels and little more, on any grid") {
   glm::dmat3 mirrored(1);
   mirrored[1] *= -1.0;
   const glm::dmat3 turned(glm::rotate(glm::dmat4(1), 0.7, glm::normalize(glm::dvec3(1, 2, 3))));
@@ -133,7 +134,8 @@ TEST_CASE("lattice net: around joints it is finer, without a crack, and TetGen f
   double near = 0, far = 0;
   int nears = 0, fars = 0;
   for (const auto& f : net.surface.F.rowwise()) {
-    const double length = (net.surface.V.row(f[1]) - net.surface.V.row(f[2])).norm(), x = std::abs(net.surface.V(f[0], 0));
+    const double length = (net.surface.V.row(f[1]) - net.surface.V.row(f[2])).norm(),
+                 x = std::abs(net.surface.V(f[0], 0));
     if (x < 15) near += length, ++nears;
     if (x > 50) far += length, ++fars;
   }
@@ -154,7 +156,9 @@ TEST_CASE("lattice net: what it says it covers is what its tets cover, and TetGe
     REQUIRE(filled.mesh);
     CAPTURE(fine);
     CHECK(net.covered < 1);
-    for (const TetMesh* mesh : {&net.mesh, &*filled.mesh}) CHECK(quality_of(*mesh, body.voxels().grid, body.voxels().tissue).covered == doctest::Approx(net.covered).epsilon(1e-9));
+    for (const TetMesh* mesh : {&net.mesh, &*filled.mesh})
+      CHECK(quality_of(*mesh, body.voxels().grid, body.voxels().tissue).covered ==
+            doctest::Approx(net.covered).epsilon(1e-9));
   }
 }
 
@@ -165,7 +169,9 @@ TEST_CASE("lattice net: random bodies are enclosed by a closed surface and fille
     CAPTURE(seed);
     CAPTURE(random.kind);
     LatticeNetSettings settings{.spacing_mm = 3.0 + seed % 7};
-    if (seed % 3 == 0) settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)}, settings.fine_radius_mm = 12;
+    if (seed % 3 == 0)
+      settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)},
+      settings.fine_radius_mm = 12;
     const LatticeNet net = lattice_net(body.voxels(), settings);
     if (body.tissue.size() == 0) {
       CHECK(net.surface.F.rows() == 0);
@@ -183,7 +189,8 @@ TEST_CASE("lattice net: random bodies are enclosed by a closed surface and fille
   }
 }
 
-// As far as they may, each node of the surface to a corner of its box or somewhere in it: what the improvement of tets relies on.
+// As far as they may, each node of the surface to a corner of its box or somewhere in it: what the improvement of tets
+// relies on.
 TEST_CASE("lattice net: its tets stay positive and its skin uncrossed wherever the nodes lie in their boxes") {
   std::mt19937 random(5);
   for (const bool fine : {false, true}) {
@@ -221,7 +228,8 @@ TEST_CASE("lattice net: far from the surface its tets are those of the body-cent
 }
 
 TEST_CASE("lattice net: deep inside a body its tets are larger, step by step, also where a joint makes them small") {
-  const Body ball = body_of({{60, 60, 60}, {2, 2, 2}, {-59, -59, -59}, glm::dmat3(1)}, [](const glm::dvec3& p) { return glm::length(p) < 58 ? 1 : 0; });
+  const Body ball = body_of({{60, 60, 60}, {2, 2, 2}, {-59, -59, -59}, glm::dmat3(1)},
+                            [](const glm::dvec3& p) { return glm::length(p) < 58 ? 1 : 0; });
   for (const bool fine : {false, true}) {
     CAPTURE(fine);
     LatticeNetSettings settings{.spacing_mm = 5};

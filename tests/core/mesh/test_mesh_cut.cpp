@@ -19,7 +19,9 @@ TEST_CASE("mesh cut: every face is there once") {
   CHECK(2 * F.rows() == 4 * box.T.rows() + boundary_of(box.T).rows());
 }
 
-TEST_CASE("mesh cut: the lines of a plane lie in it, close around each tet, and their border has the length of the section's") {
+TEST_CASE(
+    "mesh cut: the lines of a plane lie in it, close around each tet, and their border has the length of the "
+    "section's") {
   const TetMesh box = kuhn_box(5, 4, 6, {-5, -4, -6}, {5, 4, 6});
   const glm::dvec3 point(0.13, -0.2, 0.31);
   for (const glm::dvec3 normal : {glm::dvec3(0, 0, 2), glm::dvec3(1, 0, 0), glm::normalize(glm::dvec3(1, 2, 3))}) {
@@ -34,19 +36,22 @@ TEST_CASE("mesh cut: the lines of a plane lie in it, close around each tet, and 
     for (const auto& [place, lines_there] : ends) CHECK(lines_there >= 2);  // no line ends in nothing
   }
   double border = 0;
-  for (const Segment& line : plane_cut(box.V, boundary_of(box.T), point, {0, 0, 1})) border += glm::distance(line[0], line[1]);
+  for (const Segment& line : plane_cut(box.V, boundary_of(box.T), point, {0, 0, 1}))
+    border += glm::distance(line[0], line[1]);
   CHECK(border == doctest::Approx(2 * (10 + 8)));
 }
 
 TEST_CASE("mesh cut: a plane through nodes draws each line once") {
   const TetMesh box = kuhn_box(2, 2, 2, {0, 0, 0}, {2, 2, 2});
   double length = 0;
-  for (const Segment& line : plane_cut(box.V, boundary_of(box.T), {1, 1, 1}, {0, 0, 1})) length += glm::distance(line[0], line[1]);
+  for (const Segment& line : plane_cut(box.V, boundary_of(box.T), {1, 1, 1}, {0, 0, 1}))
+    length += glm::distance(line[0], line[1]);
   CHECK(length == doctest::Approx(8));
 }
 
 TEST_CASE("mesh cut: what lies before another plane is cut off") {
-  std::vector<Segment> lines{{{{0, 0, 0}, {2, 0, 0}}}, {{{3, 0, 0}, {4, 0, 0}}}, {{{2, 5, 0}, {-2, 5, 0}}}, {{{0, 1, 0}, {1, 1, 0}}}};
+  std::vector<Segment> lines{
+      {{{0, 0, 0}, {2, 0, 0}}}, {{{3, 0, 0}, {4, 0, 0}}}, {{{2, 5, 0}, {-2, 5, 0}}}, {{{0, 1, 0}, {1, 1, 0}}}};
   keep_behind(lines, {1, 0, 0}, {1, 0, 0});
   REQUIRE(lines.size() == 3);
   CHECK(lines[0][1] == glm::dvec3(1, 0, 0));

@@ -11,13 +11,13 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
-#include "core/mesh/crossings.h"
-#include "core/rig/armature_io.h"
 #include "core/bones/bone_parts.h"
 #include "core/bones/guess_bone_labels.h"
-#include "core/volume/phantom.h"
-#include "core/volume/tissue_table_io.h"
-#include "core/volume/volume_io.h"
+#include "core/mesh/crossings.h"
+#include "core/phantom/phantom.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/tissue_table_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/random_bodies.h"
 #include "tests/support/shared_data.h"
 
@@ -58,7 +58,9 @@ void check_quality(const MeshQuality& quality) {
   CHECK(quality.share_below_5_degrees <= 0.0005);
 }
 
-MeshQuality quality_of(const TissueMesh& result, const LabelVolume& regions) { return limber::quality_of(result.mesh, regions.grid, TissueVoxels(regions)); }
+MeshQuality quality_of(const TissueMesh& result, const LabelVolume& regions) {
+  return limber::quality_of(result.mesh, regions.grid, TissueVoxels(regions));
+}
 
 struct Regions {
   LabelVolume volume;
@@ -69,19 +71,22 @@ struct Regions {
 
 // Bones as the rig has them.
 Regions regions_of(LabelVolume volume, TissueTable table, const Armature& rig) {
-  if (const auto guess = guess_bone_tissue(volume, table, rig)) table = with_bones(std::move(table), {table.find(guess->label)->file_value});
+  if (const auto guess = guess_bone_tissue(volume, table, rig))
+    table = with_bones(std::move(table), {table.find(guess->label)->file_value});
   Regions regions{std::move(volume), {}, {}};
   regions.tissue = TissueVoxels(regions.volume);
   const BoneParts parts = split_bones(regions.volume, regions.tissue, table, rig);
-  for (const std::uint16_t part : parts.part_of) regions.region.push_back(part == 0 ? 0 : 1 + parts.parts[part - 1].bone);
+  for (const std::uint16_t part : parts.part_of)
+    regions.region.push_back(part == 0 ? 0 : 1 + parts.parts[part - 1].bone);
   return regions;
 }
 
 void check_body(const Regions& regions, const std::string& name, MeshSettings settings = {}) {
   const TissueMesh result = mesh_tissue(regions.voxels(), settings);
   const MeshQuality quality = limber::quality_of(result.mesh, regions.volume.grid, regions.tissue);
-  MESSAGE(name, ", ", settings.spacing_mm, " mm: ", result.mesh.V.rows(), " nodes, ", result.mesh.T.rows(), " tets, covered ", 100 * quality.covered,
-          " %, smallest angle ", quality.min_dihedral_degrees, ", below 5 degrees ", 100 * quality.share_below_5_degrees, " %, ", result.seconds, " s");
+  MESSAGE(name, ", ", settings.spacing_mm, " mm: ", result.mesh.V.rows(), " nodes, ", result.mesh.T.rows(),
+          " tets, covered ", 100 * quality.covered, " %, smallest angle ", quality.min_dihedral_degrees,
+          ", below 5 degrees ", 100 * quality.share_below_5_degrees, " %, ", result.seconds, " s");
   CHECK(result.warning == "");
   check_sound(result);
   check_quality(quality);
@@ -93,7 +98,9 @@ void check_body(const Regions& regions, const std::string& name, MeshSettings se
 // For tests: how often it was asked, counted also where the asking is done in child processes.
 class SharedCount {
  public:
-  SharedCount() : count_(static_cast<int*>(::mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
+  SharedCount()
+      : count_(static_cast<int*>(
+            ::mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
   ~SharedCount() { ::munmap(count_, sizeof(int)); }
   int next() const { return (*count_)++; }
   int count() const { return *count_; }
@@ -132,8 +139,8 @@ TEST_CASE("mesh tissue: TetGen fills the same surface where it is asked to") {
   check_quality(quality_of(result, regions));
 }
 
-TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own tets stand, and that is said"
-          * doctest::test_suite("slow")) {
+TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own tets stand, and that is said" *
+          doctest::test_suite("slow")) {
   const LabelVolume regions = ball();
   const auto with = [&](double seconds, std::function<void()> at_start) {
     const SharedCount calls;
@@ -150,8 +157,10 @@ TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own t
     check_quality(quality_of(result, regions));
     return result.warning;
   };
-  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("TetGen failed on its surface: it crashed (signal 11)") != std::string::npos);
-  CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") != std::string::npos);
+  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("TetGen failed on its surface: it crashed (signal 11)") !=
+        std::string::npos);
+  CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") !=
+        std::string::npos);
   CHECK(with(120, [] { std::_Exit(3); }).find("it gave up (exit code 3)") != std::string::npos);
 }
 
@@ -195,7 +204,9 @@ TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::
     CAPTURE(seed);
     CAPTURE(body.kind);
     MeshSettings settings{.spacing_mm = 3.0 + seed % 7};
-    if (seed % 3 == 0) settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)}, settings.fine_radius_mm = 12;
+    if (seed % 3 == 0)
+      settings.fine_around = {world_from_voxel(body.regions.grid) * (glm::dvec3(body.regions.grid.size) * 0.5)},
+      settings.fine_radius_mm = 12;
     for (const Mesher mesher : {Mesher::lattice, Mesher::tetgen}) {
       if (mesher == Mesher::tetgen && seed % 4 != 0) continue;
       settings.mesher = mesher;
@@ -230,8 +241,8 @@ TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {
   CHECK(find_fault(twice, volumes) != "");
 }
 
-TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm also finer at its elbow"
-          * doctest::test_suite("slow")) {
+TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm also finer at its elbow" *
+          doctest::test_suite("slow")) {
   const Phantom arm = make_arm_phantom();
   const Regions of_arm = regions_of(arm.volume, arm.tissues, arm.armature);
   check_body(of_arm, "procedural arm");
@@ -244,27 +255,30 @@ TEST_CASE("mesh tissue: the procedural arm and body are meshed well, the arm als
   check_body(regions_of(body.volume, body.tissues, body.armature), "procedural body", {.spacing_mm = 12});
 }
 
-TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, and finer at its elbow"
-          * doctest::test_suite("slow")) {
+TEST_CASE("mesh tissue: the Visible Man's arm is meshed well at 12, 8 and 6 mm, and finer at its elbow" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(test::shared_path("data/bender/man-arm-2mm.mha"));
   const Armature rig = read_armature(test::shared_path("data/bender/man-arm-2mm-armature.vtk"));
   const Regions regions = regions_of(std::move(file.volume), merge_tissue_tables(file.tissues, nullptr), rig);
   for (const double spacing : {12.0, 8.0, 6.0}) check_body(regions, "Visible Man's arm", {.spacing_mm = spacing});
   for (const Bone& bone : rig.bones)
-    if (bone.name == "Forearm") check_body(regions, "Visible Man's arm, finer at the elbow", {.fine_around = {bone.head}});
+    if (bone.name == "Forearm")
+      check_body(regions, "Visible Man's arm, finer at the elbow", {.fine_around = {bone.head}});
 }
 
-TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans are meshed well"
-          * doctest::test_suite("slow")) {
+TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans are meshed well" *
+          doctest::test_suite("slow")) {
   struct Case {
     const char *name, *volume, *rig, *tissues;
     double spacing_mm;
   };
   const Case cases[] = {
-      {"arm and shoulder", "data/bp3d/arm_shoulder_1mm_tissue.mha", "data/bp3d/arm_shoulder.armature.json", "data/bp3d/tissue.labels.json", 8},
+      {"arm and shoulder", "data/bp3d/arm_shoulder_1mm_tissue.mha", "data/bp3d/arm_shoulder.armature.json",
+       "data/bp3d/tissue.labels.json", 8},
       {"MakeHuman's body", "data/makehuman/body_4mm.nrrd", "data/makehuman/body.armature.json", nullptr, 12},
-      {"body of structures", "data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json", "data/bp3d/tissue.labels.json", 12},
+      {"body of structures", "data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json",
+       "data/bp3d/tissue.labels.json", 12},
       {"knee atlas", "data/spl/knee_seg.nrrd", nullptr, nullptr, 8},
   };
   NEEDS_SHARED("data/spl/knee_seg.nrrd");
@@ -282,6 +296,7 @@ TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans
       const TissueTable user = read_tissue_table(test::shared_path(one.tissues));
       table = merge_tissue_tables(file.tissues, &user);
     }
-    check_body(regions_of(std::move(file.volume), table, read_armature(test::shared_path(one.rig))), one.name, {.spacing_mm = one.spacing_mm});
+    check_body(regions_of(std::move(file.volume), table, read_armature(test::shared_path(one.rig))), one.name,
+               {.spacing_mm = one.spacing_mm});
   }
 }

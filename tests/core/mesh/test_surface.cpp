@@ -19,7 +19,9 @@ LabelVolume volume_of(const Grid& grid, const auto& inside) {
   return volume;
 }
 
-TriangleMesh mesh_of(const LabelVolume& volume, double step = 1) { return surface_of(occupancy_of(volume, {0, 1}, step)); }
+TriangleMesh mesh_of(const LabelVolume& volume, double step = 1) {
+  return surface_of(occupancy_of(volume, {0, 1}, step));
+}
 
 bool is_closed(const TriangleMesh& mesh) {
   std::map<std::pair<int, int>, int> passes;
@@ -49,13 +51,16 @@ TEST_CASE("surface: a ball's is closed, faces outwards, lies on the ball and hol
       const AffineTransform to_world = world_from_voxel(grid);
       const glm::dvec3 centre = to_world * glm::dvec3(24.5, 19.5, 29.5);
       const double radius = 18;
-      const TriangleMesh mesh = mesh_of(volume_of(grid, [&](const glm::ivec3& v) { return glm::length(to_world * glm::dvec3(v) - centre) < radius; }), step);
+      const TriangleMesh mesh = mesh_of(
+          volume_of(grid, [&](const glm::ivec3& v) { return glm::length(to_world * glm::dvec3(v) - centre) < radius; }),
+          step);
       CAPTURE(mirror);
       CAPTURE(step);
       CHECK(is_closed(mesh));
       // The blur draws a ball in by h^2 / 2R, flat triangles by a sixth of that.
       const double h = std::max(step, 1.25);
-      CHECK(volume_inside(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius).epsilon(0.005 + 1.75 * h * h / (radius * radius)));
+      CHECK(volume_inside(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius)
+                                       .epsilon(0.005 + 1.75 * h * h / (radius * radius)));
       const auto normals = vertex_normals(mesh);
       double farthest = 0, least = 1;
       for (std::size_t i = 0; i < mesh.V.size(); ++i) {
@@ -73,6 +78,7 @@ TEST_CASE("surface: whatever the voxels, it is closed, also at the border of the
     const unsigned filled = 1 + round % 4;
     CHECK(is_closed(mesh_of(volume_of({{9, 7, 8}}, [&](const glm::ivec3&) { return random() % 5 < filled; }))));
   }
-  CHECK(volume_inside(mesh_of(volume_of({{12, 12, 12}}, [](const glm::ivec3&) { return true; }))) == doctest::Approx(12 * 12 * 12).epsilon(0.06));
+  CHECK(volume_inside(mesh_of(volume_of({{12, 12, 12}}, [](const glm::ivec3&) { return true; }))) ==
+        doctest::Approx(12 * 12 * 12).epsilon(0.06));
   CHECK(mesh_of(volume_of({{4, 4, 4}}, [](const glm::ivec3&) { return false; })).F.empty());
 }

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <doctest/doctest.h>
+#include <Eigen/Geometry>
 
 using namespace limber;
 

@@ -17,12 +17,15 @@ namespace {
 constexpr auto kAir = RegionSurface::kAir;
 
 // A box of twelve triangles that face outwards.
-void add_box(RegionSurface& surface, const Eigen::RowVector3d& low, const Eigen::RowVector3d& high, std::uint16_t inside, std::uint16_t outside) {
+void add_box(RegionSurface& surface, const Eigen::RowVector3d& low, const Eigen::RowVector3d& high,
+             std::uint16_t inside, std::uint16_t outside) {
   const Eigen::Index v = surface.V.rows(), f = surface.F.rows();
   surface.V.conservativeResize(v + 8, 3);
-  for (int i = 0; i < 8; ++i) surface.V.row(v + i) << (i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2];
+  for (int i = 0; i < 8; ++i)
+    surface.V.row(v + i) << (i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2];
   surface.F.conservativeResize(f + 12, 3);
-  surface.F.bottomRows(12) << 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6;
+  surface.F.bottomRows(12) << 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1,
+      4, 5, 7, 4, 7, 6;
   surface.F.bottomRows(12).array() += static_cast<int>(v);
   surface.sides.insert(surface.sides.end(), 12, {outside, inside});
 }
@@ -39,7 +42,9 @@ RegionSurface ball(double radius, const Eigen::RowVector3d& centre, int n = 8) {
   std::map<std::array<int, 3>, int> number;
   const auto corner = [&](const Eigen::RowVector3i& p) {
     const auto [at, is_new] = number.emplace(std::array{p[0], p[1], p[2]}, static_cast<int>(number.size()));
-    if (is_new) surface.V.conservativeResize(number.size(), 3), surface.V.row(at->second) = centre + radius * p.cast<double>().normalized();
+    if (is_new)
+      surface.V.conservativeResize(number.size(), 3),
+          surface.V.row(at->second) = centre + radius * p.cast<double>().normalized();
     return at->second;
   };
   for (int octant = 0; octant < 8; ++octant) {
@@ -63,7 +68,10 @@ RegionSurface ball(double radius, const Eigen::RowVector3d& centre, int n = 8) {
 
 double volume_inside(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
   double sum = 0;
-  for (const auto& f : F.rowwise()) sum += signed_volume((Eigen::MatrixX3d(4, 3) << Eigen::RowVector3d::Zero(), V.row(f[0]), V.row(f[1]), V.row(f[2])).finished(), {0, 1, 2, 3});
+  for (const auto& f : F.rowwise())
+    sum += signed_volume(
+        (Eigen::MatrixX3d(4, 3) << Eigen::RowVector3d::Zero(), V.row(f[0]), V.row(f[1]), V.row(f[2])).finished(),
+        {0, 1, 2, 3});
   return sum;
 }
 
@@ -79,7 +87,8 @@ std::map<int, double> volumes_by_region(const TetMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("tetrahedralize: a box with a bone in it and a pocket of air beside the bone has the three volumes that it has") {
+TEST_CASE(
+    "tetrahedralize: a box with a bone in it and a pocket of air beside the bone has the three volumes that it has") {
   RegionSurface surface = box(10);
   add_box(surface, {1, 1, 1}, {4, 4, 4}, 3, TetMesh::kSoft);
   add_box(surface, {5, 5, 5}, {8, 7, 9}, kAir, TetMesh::kSoft);
@@ -102,14 +111,16 @@ TEST_CASE("tetrahedralize: a ball is filled with good tetrahedra, the same ones 
   INFO(result.failure);
   REQUIRE(result.mesh);
   CHECK(result.mesh->V.rows() > surface.V.rows());
-  CHECK(volumes_by_region(*result.mesh).at(TetMesh::kSoft) == doctest::Approx(volume_inside(surface.V, surface.F)).epsilon(1e-9));
+  CHECK(volumes_by_region(*result.mesh).at(TetMesh::kSoft) ==
+        doctest::Approx(volume_inside(surface.V, surface.F)).epsilon(1e-9));
   const Tetrahedralized again = tetrahedralize_inside(surface);
   REQUIRE(again.mesh);
   CHECK(again.mesh->V == result.mesh->V);
   CHECK(again.mesh->T == result.mesh->T);
 }
 
-TEST_CASE("tetrahedralize: a crash, a hang, an exit, a failure or too much memory in TetGen is an answer with a reason") {
+TEST_CASE(
+    "tetrahedralize: a crash, a hang, an exit, a failure or too much memory in TetGen is an answer with a reason") {
   const RegionSurface surface = box(10);
   const auto why = [&](TetrahedralizeLimits limits) {
     const Tetrahedralized inside = tetrahedralize_inside(surface, limits);
@@ -117,7 +128,8 @@ TEST_CASE("tetrahedralize: a crash, a hang, an exit, a failure or too much memor
     return inside.failure;
   };
   CHECK(why({.at_start = [] { ::raise(SIGSEGV); }}) == "it crashed (signal 11)");
-  CHECK(why({.seconds = 0.05, .at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}) == "it took too long");
+  CHECK(why({.seconds = 0.05, .at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}) ==
+        "it took too long");
   CHECK(why({.at_start = [] { std::_Exit(7); }}) == "it gave up (exit code 7)");
   CHECK(why({.at_start = [] { std::_Exit(0); }}) == "it ended without an answer");
   CHECK(why({.at_start = [] { throw 2; }}) == "it gave up (exit code 1)");
@@ -128,7 +140,8 @@ TEST_CASE("tetrahedralize: a crash, a hang, an exit, a failure or too much memor
       while (std::malloc(size)) {
       }
   };
-  CHECK(tetrahedralize_inside(ball(40, {0, 0, 0}, 40), {.memory_bytes = 16 << 20, .at_start = eat}).failure == "it ran out of memory");
+  CHECK(tetrahedralize_inside(ball(40, {0, 0, 0}, 40), {.memory_bytes = 16 << 20, .at_start = eat}).failure ==
+        "it ran out of memory");
 #endif
 }
 
@@ -156,5 +169,7 @@ TEST_CASE("tetrahedralize: a cancel while TetGen works is heard") {
   struct : Progress {
   } progress;
   progress.cancel();
-  CHECK_THROWS_AS(tetrahedralize_inside(box(10), {.at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}, progress), Cancelled);
+  CHECK_THROWS_AS(tetrahedralize_inside(
+                      box(10), {.at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}, progress),
+                  Cancelled);
 }

@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/rig/armature_io.h"
+#include "core/rig_io/rig_io.h"
 #include "tests/support/body_rig.h"
 #include "tests/support/shared_data.h"
 
@@ -257,7 +257,9 @@ TEST_CASE("body poses: joints bend the way that their words say, on both sides, 
   }
 }
 
-TEST_CASE("body poses: a raised arm takes a sixth of what is beyond 30 degrees from the collarbone, unless its girdle is named") {
+TEST_CASE(
+    "body poses: a raised arm takes a sixth of what is beyond 30 degrees from the collarbone, unless its girdle is "
+    "named") {
   const Armature rig = body_rig();
   const auto turned = [&](const std::vector<std::string>& joints, const std::string& bone) {
     return posed_from_rest(rig, posed(rig, "", joints))[static_cast<std::size_t>(require_bone(rig, bone))].rotation;
@@ -271,9 +273,11 @@ TEST_CASE("body poses: a raised arm takes a sixth of what is beyond 30 degrees f
   CHECK(degrees(turned({"left shoulder abduction=120", "left shoulder girdle elevation=0"}, "LeftClavicle")) < 1e-6);
   CHECK(degrees(turned({"left shoulder abduction=120"}, "RightClavicle")) < 1e-6);
   // The arm itself ends where it was asked to, and the blade glides: what lies in its plane stays in it.
-  for (const auto& [word, s, side] : {std::tuple{std::string("left "), std::string("Left"), 1.0}, {"right ", "Right", -1.0}}) {
+  for (const auto& [word, s, side] :
+       {std::tuple{std::string("left "), std::string("Left"), 1.0}, {"right ", "Right", -1.0}}) {
     const Pose pose = posed(rig, "", {word + "shoulder abduction=120"});
-    CHECK(degrees_between(between(rig, pose, s + "UpperArm", s + "Forearm"), glm::dvec3(side * std::sin(glm::radians(120.0)), 0, 0.5)) < 0.01);
+    CHECK(degrees_between(between(rig, pose, s + "UpperArm", s + "Forearm"),
+                          glm::dvec3(side * std::sin(glm::radians(120.0)), 0, 0.5)) < 0.01);
     const double blade = glm::radians(35.0);
     const glm::dvec3 square(side * std::sin(blade), std::cos(blade), 0);
     CHECK(degrees_between(turned({word + "shoulder abduction=120"}, s + "Clavicle") * square, square) < 0.01);

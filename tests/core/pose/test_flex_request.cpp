@@ -8,9 +8,8 @@
 namespace limber {
 
 TEST_CASE("flex request: a bone and an angle are read, by the last equals sign") {
-  for (const auto& [text, bone, degrees] : {std::tuple{"Forearm=45", "Forearm", 45.0},
-                                            {"Shin=-360", "Shin", -360.0},
-                                            {"a=b=+7.5", "a=b", 7.5}}) {
+  for (const auto& [text, bone, degrees] :
+       {std::tuple{"Forearm=45", "Forearm", 45.0}, {"Shin=-360", "Shin", -360.0}, {"a=b=+7.5", "a=b", 7.5}}) {
     CAPTURE(text);
     const FlexRequest request = parse_flex_request(text, "--flex");
     CHECK(request.bone == bone);

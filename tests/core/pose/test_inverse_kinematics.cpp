@@ -34,9 +34,16 @@ class Chance {
 
 JointLimits any_limits(Chance& chance) {
   const double kind = chance(0, 1);
-  if (kind < 0.4) return {.type = JointLimits::Type::Hinge, .axis = chance.direction(), .minimum = chance(-1.5, 0), .maximum = chance(0.3, 2.5)};
+  if (kind < 0.4)
+    return {.type = JointLimits::Type::Hinge,
+            .axis = chance.direction(),
+            .minimum = chance(-1.5, 0),
+            .maximum = chance(0.3, 2.5)};
   if (kind < 0.9)
-    return {.type = JointLimits::Type::Ball, .cone = chance(0.4, 2.2), .twist_minimum = chance(-1.2, -0.1), .twist_maximum = chance(0.1, 1.2)};
+    return {.type = JointLimits::Type::Ball,
+            .cone = chance(0.4, 2.2),
+            .twist_minimum = chance(-1.2, -0.1),
+            .twist_maximum = chance(0.1, 1.2)};
   return {};
 }
 
@@ -45,7 +52,11 @@ Armature any_chain(Chance& chance, int bones) {
   glm::dvec3 head(chance(-100, 100), chance(-100, 100), chance(-100, 100));
   for (int b = 0; b < bones; ++b) {
     const glm::dvec3 tail = head + chance(30, 300) * chance.direction();
-    armature.bones.push_back({.name = "bone" + std::to_string(b), .parent = b - 1, .head = head, .tail = tail, .limits = any_limits(chance)});
+    armature.bones.push_back({.name = "bone" + std::to_string(b),
+                              .parent = b - 1,
+                              .head = head,
+                              .tail = tail,
+                              .limits = any_limits(chance)});
     head = tail;
   }
   return armature;
@@ -56,27 +67,33 @@ Pose any_legal_pose(Chance& chance, const Armature& armature) {
   for (size_t b = 0; b < armature.bones.size(); ++b) {
     const Bone& bone = armature.bones[b];
     const JointLimits& limits = bone.limits;
-    if (limits.type == JointLimits::Type::Hinge) pose.rotation[b] = exponential(chance(limits.minimum, limits.maximum) * limits.axis);
+    if (limits.type == JointLimits::Type::Hinge)
+      pose.rotation[b] = exponential(chance(limits.minimum, limits.maximum) * limits.axis);
     if (limits.type == JointLimits::Type::Free) pose.rotation[b] = exponential(chance(0, 3) * chance.direction());
     if (limits.type == JointLimits::Type::Ball) {
       const glm::dvec3 axis = twist_axis(bone), across = glm::normalize(glm::cross(axis, chance.direction()));
-      pose.rotation[b] = rotation_of({chance(0, limits.cone) * across, chance(limits.twist_minimum, limits.twist_maximum)}, axis);
+      pose.rotation[b] =
+          rotation_of({chance(0, limits.cone) * across, chance(limits.twist_minimum, limits.twist_maximum)}, axis);
     }
   }
   return pose;
 }
 
-glm::dvec3 tail_of(const Armature& armature, const Pose& pose, int bone) { return posed_from_rest(armature, pose)[bone] * armature.bones[bone].tail; }
+glm::dvec3 tail_of(const Armature& armature, const Pose& pose, int bone) {
+  return posed_from_rest(armature, pose)[bone] * armature.bones[bone].tail;
+}
 
 double worst_excess(const Armature& armature, const Pose& pose) {
   double worst = 0;
-  for (size_t b = 0; b < armature.bones.size(); ++b) worst = std::max(worst, limit_excess(armature.bones[b], pose.rotation[b]));
+  for (size_t b = 0; b < armature.bones.size(); ++b)
+    worst = std::max(worst, limit_excess(armature.bones[b], pose.rotation[b]));
   return worst;
 }
 
 bool is_finite(const Pose& pose) {
   bool finite = true;
-  for (const glm::dquat& q : pose.rotation) finite &= std::isfinite(q.w + q.x + q.y + q.z) && std::abs(glm::length(q) - 1) < 1e-9;
+  for (const glm::dquat& q : pose.rotation)
+    finite &= std::isfinite(q.w + q.x + q.y + q.z) && std::abs(glm::length(q) - 1) < 1e-9;
   return finite;
 }
 
@@ -100,13 +117,14 @@ TEST_CASE("inverse kinematics: targets that a legal pose has are reached, and no
     CHECK(found.distance == doctest::Approx(glm::distance(tail_of(armature, found.pose, 3), target)).epsilon(1e-6));
     reached += found.distance < 0.1;
   }
-  MESSAGE(reached, " of ", kTargets, " reached, ", 1e6 * seconds / kTargets, " us each, ", slow, " over 1 ms, largest excess ", worst);
+  MESSAGE(reached, " of ", kTargets, " reached, ", 1e6 * seconds / kTargets, " us each, ", slow,
+          " over 1 ms, largest excess ", worst);
   CHECK(reached >= 0.99 * kTargets);
   CHECK(worst < 1e-6);
 }
 
-TEST_CASE("inverse kinematics: what lies out of reach comes as near as it can, and is said"
-          * doctest::test_suite("slow")) {
+TEST_CASE("inverse kinematics: what lies out of reach comes as near as it can, and is said" *
+          doctest::test_suite("slow")) {
   Chance chance(2);
   double furthest = 0;
   int said = 0;
@@ -133,7 +151,8 @@ TEST_CASE("inverse kinematics: out of reach within limits, a small step of the t
   int jumps = 0, steps = 0;
   for (int i = 0; i < 100; ++i) {
     const Armature armature = any_chain(chance, 4);
-    const glm::dvec3 base = armature.bones[0].head, off = 1500.0 * chance.direction(), along = glm::cross(off, chance.direction()) / 1000.0;
+    const glm::dvec3 base = armature.bones[0].head, off = 1500.0 * chance.direction(),
+                     along = glm::cross(off, chance.direction()) / 1000.0;
     Pose pose = reach(armature, rest_pose(armature), {{.bone = 3, .target = base + off}}).pose;
     for (int step = 1; step <= 10; ++step, ++steps) {
       const Reach next = reach(armature, pose, {{.bone = 3, .target = base + off + double(step) * along}});
@@ -148,8 +167,8 @@ TEST_CASE("inverse kinematics: out of reach within limits, a small step of the t
   CHECK(jumps <= steps / 50);
 }
 
-TEST_CASE("inverse kinematics: out of reach within limits, no pose near the one found comes nearer"
-          * doctest::test_suite("slow")) {
+TEST_CASE("inverse kinematics: out of reach within limits, no pose near the one found comes nearer" *
+          doctest::test_suite("slow")) {
   Chance chance(4);
   int reached = 0, nearer = 0, slow = 0;
   constexpr int kTargets = 10000;
@@ -170,7 +189,8 @@ TEST_CASE("inverse kinematics: out of reach within limits, no pose near the one 
     for (int k = 0; k < 20; ++k) {
       Pose other = found.pose;
       for (size_t b = 0; b < 4; ++b)
-        other.rotation[b] = within_limits(armature.bones[b], exponential(chance(0, 0.02) * chance.direction()) * other.rotation[b]);
+        other.rotation[b] =
+            within_limits(armature.bones[b], exponential(chance(0, 0.02) * chance.direction()) * other.rotation[b]);
       if (glm::distance(tail_of(armature, other, 3), target) < found.distance - 1e-3 * length) {
         ++nearer;
         break;
@@ -189,7 +209,9 @@ TEST_CASE("inverse kinematics: a pinned foot stays while the hip is dragged, and
                {.name = "Shin", .parent = 1, .head = {0, 0, 480}, .tail = {0, 0, 80}}};
   ReachSettings settings;
   settings.move_root = true;
-  const Reach crouched = reach(leg, rest_pose(leg), {{.bone = 0, .target = {0, 0, 900}}, {.bone = 2, .target = {0, 0, 80}, .weight = 10}}, settings);
+  const Reach crouched =
+      reach(leg, rest_pose(leg), {{.bone = 0, .target = {0, 0, 900}}, {.bone = 2, .target = {0, 0, 80}, .weight = 10}},
+            settings);
   CHECK(crouched.reached);
   CHECK(glm::distance(tail_of(leg, crouched.pose, 2), glm::dvec3(0, 0, 80)) < 0.02);
   CHECK(glm::distance(tail_of(leg, crouched.pose, 0), glm::dvec3(0, 0, 900)) < 0.02);

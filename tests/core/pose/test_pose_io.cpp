@@ -11,9 +11,7 @@
 using namespace limber;
 
 namespace {
-Armature two_bones() {
-  return {{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}};
-}
+Armature two_bones() { return {{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}}; }
 }  // namespace
 
 TEST_CASE("pose: what is written reads back equal, bit for bit") {

@@ -5,8 +5,11 @@
 
 using namespace limber;
 
-TEST_CASE("pose library: a named pose gives its bones back, and leaves alone what it does not name or is not asked for") {
-  const Armature rig{{{"Root", -1, {0, 0, 0}, {0, 0, 10}}, {"Upper", 0, {0, 0, 10}, {0, 0, 20}}, {"Lower", 1, {0, 0, 20}, {0, 0, 30}}}};
+TEST_CASE(
+    "pose library: a named pose gives its bones back, and leaves alone what it does not name or is not asked for") {
+  const Armature rig{{{"Root", -1, {0, 0, 0}, {0, 0, 10}},
+                      {"Upper", 0, {0, 0, 10}, {0, 0, 20}},
+                      {"Lower", 1, {0, 0, 20}, {0, 0, 30}}}};
   Pose pose = rest_pose(rig);
   for (int bone = 0; bone < 3; ++bone) pose.rotation[bone] = glm::angleAxis(0.1 * (bone + 1), glm::dvec3(1, 0, 0));
   pose.root_translation = {1, 2, 3};

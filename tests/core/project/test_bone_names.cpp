@@ -27,7 +27,8 @@ double largest_difference(const ClipOnRig& a, const ClipOnRig& b) {
   double largest = 0;
   for (int frame = 0; frame < a.clip()->motion->frame_count; ++frame) {
     const Pose ours = a.at(frame), theirs = b.at(frame);
-    for (std::size_t bone = 0; bone < ours.rotation.size(); ++bone) largest = std::max(largest, 1 - std::abs(glm::dot(ours.rotation[bone], theirs.rotation[bone])));
+    for (std::size_t bone = 0; bone < ours.rotation.size(); ++bone)
+      largest = std::max(largest, 1 - std::abs(glm::dot(ours.rotation[bone], theirs.rotation[bone])));
     largest = std::max(largest, glm::length(ours.root_translation - theirs.root_translation));
   }
   return largest;
@@ -35,11 +36,14 @@ double largest_difference(const ClipOnRig& a, const ClipOnRig& b) {
 
 }  // namespace
 
-TEST_CASE("bone names: a clip moves the rig as before, whatever bones are called, and names that still say all are left to speak") {
+TEST_CASE(
+    "bone names: a clip moves the rig as before, whatever bones are called, and names that still say all are left to "
+    "speak") {
   for (const Travel travel : {Travel::Locked, Travel::Free}) {
     Document document;
     document.armature = std::make_shared<const Armature>(hanging_body());
-    Clip clip = clip_of(std::make_shared<const Motion>(t_pose_body({{0, 0, 0}, {5, -8, 3}, {11, 4, -6}, {2, 9, 14}})), "walk");
+    Clip clip =
+        clip_of(std::make_shared<const Motion>(t_pose_body({{0, 0, 0}, {5, -8, 3}, {11, 4, -6}, {2, 9, 14}})), "walk");
     clip.retarget.travel = travel;
     document.clips = {std::make_shared<const Clip>(clip)};
     const ClipOnRig before(document.clips[0], document.armature);
@@ -49,7 +53,13 @@ TEST_CASE("bone names: a clip moves the rig as before, whatever bones are called
     CHECK(document.clips[0]->map.sources.empty());
     CHECK(largest_difference(before, ClipOnRig(document.clips[0], document.armature)) < 1e-12);
     // Names that say nothing, and one that says something else.
-    for (const auto& [bone, name] : {std::pair{"LeftThigh", "a"}, {"RightFoot", "b"}, {"SpineMiddle", "c"}, {"RightHand", "Tail"}, {"Pelvis", "d"}, {"LeftShank", "Head"}, {"SpineTop", "e"}}) {
+    for (const auto& [bone, name] : {std::pair{"LeftThigh", "a"},
+                                     {"RightFoot", "b"},
+                                     {"SpineMiddle", "c"},
+                                     {"RightHand", "Tail"},
+                                     {"Pelvis", "d"},
+                                     {"LeftShank", "Head"},
+                                     {"SpineTop", "e"}}) {
       CAPTURE(bone);
       rename(document, bone, name);
       CHECK(!document.clips[0]->map.sources.empty());
@@ -61,7 +71,8 @@ TEST_CASE("bone names: a clip moves the rig as before, whatever bones are called
 TEST_CASE("bone names: a bone that gets a name the motion knows is moved by it") {
   Document document;
   document.armature = with_name(hanging_body(), "LeftHand", "unknown");
-  document.clips = {std::make_shared<const Clip>(clip_of(std::make_shared<const Motion>(t_pose_body({{5, -8, 3}})), "walk"))};
+  document.clips = {
+      std::make_shared<const Clip>(clip_of(std::make_shared<const Motion>(t_pose_body({{5, -8, 3}})), "walk"))};
   const int hand = require_bone(*document.armature, "unknown");
   CHECK(ClipOnRig(document.clips[0], document.armature).retarget()->joint_of(hand) < 0);
   rename(document, "unknown", "LeftHand");
@@ -78,7 +89,8 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   CHECK(clip.keys.bones.at("Upper") == old.keys.bones.at("Lower"));
   CHECK(!clip.keys.bones.contains("Lower"));
   CHECK(clip.map.sources.at("Upper") == old.map.sources.at("Lower"));
-  CHECK(document.poses[0]->rotation == std::map<std::string, glm::dquat>{{"Upper", before.poses[0]->rotation.at("Lower")}});
+  CHECK(document.poses[0]->rotation ==
+        std::map<std::string, glm::dquat>{{"Upper", before.poses[0]->rotation.at("Lower")}});
   CHECK(document.anchors->pins == std::set<std::string>{"Upper", "gone \xff"});
   CHECK(document.anchors->poles.begin()->first == "Upper");
   CHECK(document.locks->bones == std::set<std::string>{"Upper", "gone \xff"});

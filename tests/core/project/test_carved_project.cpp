@@ -119,8 +119,8 @@ Document rich_document(int chunks, unsigned run) {
 
 }  // namespace
 
-TEST_CASE("carved project: with a tenth of its pages lost, every chunk none of whose pages were lost comes back"
-          * doctest::test_suite("slow")) {
+TEST_CASE("carved project: with a tenth of its pages lost, every chunk none of whose pages were lost comes back" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path whole = folder / "whole.limber", hit = folder / "hit.limber", out = folder / "out.limber";
   std::size_t untouched = 0, back = 0, in_file = 0, runs = 0;
@@ -227,8 +227,8 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(folder / "out.limber"));
 }
 
-TEST_CASE("carved project: the volume it was made from, or an earlier copy, gives back what was lost"
-          * doctest::test_suite("slow")) {
+TEST_CASE("carved project: the volume it was made from, or an earlier copy, gives back what was lost" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const std::string whole = folder / "whole.limber", hit = folder / "hit.limber", volume = folder / "volume.nrrd";
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "4", "-o", folder.path()}).exit_code == 0);

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/base/error.h"
 #include "core/base/bytes.h"
+#include "core/base/error.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -205,7 +205,8 @@ TEST_CASE("project: seams that are damaged are refused, whatever is wrong with t
   for (std::size_t cut = 0; cut < whole.size(); ++cut) CHECK_THROWS_AS(read(whole.substr(0, cut)), Error);
   for (int i = 0; i < 3000; ++i) {
     std::string bytes = whole;
-    for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes) bytes[random() % bytes.size()] = static_cast<char>(random());
+    for (int changes = 1 + static_cast<int>(random() % 3); changes > 0; --changes)
+      bytes[random() % bytes.size()] = static_cast<char>(random());
     try {
       const Seams changed = read(bytes);
       ByteWriter again;

@@ -17,7 +17,8 @@ Document with_pose(Document document, double x) {
 }
 }  // namespace
 
-TEST_CASE("history: after 1000 random edits, undoing all gives the first document bit for bit and redoing all the last") {
+TEST_CASE(
+    "history: after 1000 random edits, undoing all gives the first document bit for bit and redoing all the last") {
   std::mt19937 random(1);
   const Document first = small_document();
   History history(first);
@@ -127,7 +128,8 @@ TEST_CASE("history: over the limit the oldest states go, the memory stays under 
   }
   CHECK(history.dropped() > 0);
   CHECK(history.dropped() + std::ssize(history.steps()) == 1001);
-  CHECK(history.note() == "The " + std::to_string(history.dropped()) + " oldest steps were dropped to keep undo within 16 MB.");
+  CHECK(history.note() ==
+        "The " + std::to_string(history.dropped()) + " oldest steps were dropped to keep undo within 16 MB.");
   CHECK(history.steps().size() > 300);
 
   // Adding up again what is left gives the same sum.

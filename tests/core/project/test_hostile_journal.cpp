@@ -93,8 +93,8 @@ struct PlainConnection {
 }  // namespace
 
 TEST_CASE(
-    "hostile journal: one that names another file is refused by whoever opens the project, and nothing is deleted"
-          * doctest::test_suite("slow")) {
+    "hostile journal: one that names another file is refused by whoever opens the project, and nothing is deleted" *
+    doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path project = folder / "x.limber", victim = folder / "precious.txt";
   make_project(project);
@@ -234,8 +234,8 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(copy.string() + "-wal"));
 }
 
-TEST_CASE("project locks: looking at a project while it is saved takes no lock from the save"
-          * doctest::test_suite("slow")) {
+TEST_CASE("project locks: looking at a project while it is saved takes no lock from the save" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   const Path project = folder / "x.limber";
   make_project(project);

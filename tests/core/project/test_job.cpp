@@ -47,7 +47,8 @@ Edit work_until_cancelled(Progress& progress) {
 
 }  // namespace
 
-TEST_CASE("job: its edit is applied to the document of the moment when it is done, so what was done meanwhile is kept") {
+TEST_CASE(
+    "job: its edit is applied to the document of the moment when it is done, so what was done meanwhile is kept") {
   History history(small_document());
   std::atomic<bool> go = false;
   Jobs jobs;
@@ -71,7 +72,8 @@ TEST_CASE("job: whatever is thrown becomes a message, and the document stays as 
   History history(small_document());
   const Document before = history.current();
   Jobs jobs(4);
-  const int error = jobs.start("A", [](Progress&) -> Edit { throw Error("no tissue", "arm.mha", "choose another volume"); });
+  const int error =
+      jobs.start("A", [](Progress&) -> Edit { throw Error("no tissue", "arm.mha", "choose another volume"); });
   const int memory = jobs.start("B", [](Progress&) -> Edit {
     std::vector<char> huge;
     huge.reserve(huge.max_size() + 1);
@@ -79,7 +81,9 @@ TEST_CASE("job: whatever is thrown becomes a message, and the document stays as 
   });
   const int mistake = jobs.start("C", [](Progress&) -> Edit { throw std::runtime_error("bad index"); });
   const int unknown = jobs.start("D", [](Progress&) -> Edit { throw 42; });
-  const int edit = jobs.start("E", [](Progress&) -> Edit { return [](const Document&) -> Document { throw Error("the volume has gone", "here", "open it again"); }; });
+  const int edit = jobs.start("E", [](Progress&) -> Edit {
+    return [](const Document&) -> Document { throw Error("the volume has gone", "here", "open it again"); };
+  });
   const int too_much = jobs.start("F", [](Progress&) -> Edit { throw std::bad_alloc(); });
   REQUIRE(finish(jobs, history));
   CHECK(jobs.status(error).message == "no tissue: arm.mha: choose another volume");
@@ -121,8 +125,9 @@ TEST_CASE("job: a cancel ends it soon, is no error, and what it would have chang
   CHECK(history.current() == before);
 }
 
-TEST_CASE("job: one that hangs after its cancel is shown as stopping, lets the next one start and is left behind in the end"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "job: one that hangs after its cancel is shown as stopping, lets the next one start and is left behind in the end" *
+    doctest::test_suite("slow")) {
   static std::atomic<bool> release = false, gone = false;
   std::atomic<int> calls = 0;
   History history;

@@ -65,7 +65,8 @@ TEST_CASE("edit script: run by another test, to be killed" * doctest::skip()) {
   const char* folder = std::getenv("LIMBER_EDIT_SCRIPT");
   if (!folder) return;
   const int log = ::open((Path(folder) / "log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  EditScript script{.pause = number_from("LIMBER_EDIT_PAUSE", 0.01), .seed = static_cast<std::uint32_t>(number_from("LIMBER_EDIT_SEED", 0))};
+  EditScript script{.pause = number_from("LIMBER_EDIT_PAUSE", 0.01),
+                    .seed = static_cast<std::uint32_t>(number_from("LIMBER_EDIT_SEED", 0))};
   script.after_edit = [&](int edit) {
     const std::string line = std::to_string(edit) + " " + std::to_string(nanoseconds_now()) + "\n";
     CHECK(::write(log, line.data(), line.size()) == std::ssize(line));
@@ -73,8 +74,8 @@ TEST_CASE("edit script: run by another test, to be killed" * doctest::skip()) {
   run_edit_script(Path(folder) / "a.limber", {.edits_folder = Path(folder) / "state"}, script);
 }
 
-TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but at most the last second's"
-          * doctest::test_suite("slow")) {
+TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but at most the last second's" *
+          doctest::test_suite("slow")) {
   const int kills = static_cast<int>(number_from("LIMBER_KILLS", 12));
   const double pause = number_from("LIMBER_KILL_PAUSE", 0.003);
   std::mt19937 random(4);

@@ -27,8 +27,10 @@ int work_until_the_cut(const TemporaryFolder& folder, PowerCut& power, std::uint
     if (all_kept) kept = edit;
   };
   try {
-    run_edit_script(folder / "a.limber", {.edits_folder = folder / "state", .open_log = power.open_log(), .retry_seconds = 0.01, .watch_seconds = 0.1},
-                    script);
+    run_edit_script(
+        folder / "a.limber",
+        {.edits_folder = folder / "state", .open_log = power.open_log(), .retry_seconds = 0.01, .watch_seconds = 0.1},
+        script);
   } catch (const PowerGone&) {
   } catch (const Error&) {
     CHECK(power.happened());
@@ -43,8 +45,9 @@ void make_project(const TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("power cut: whatever the disk lost of what was not synced, a project opens whole with every edit that was kept"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "power cut: whatever the disk lost of what was not synced, a project opens whole with every edit that was kept" *
+    doctest::test_suite("slow")) {
   const char* wanted = std::getenv("LIMBER_POWER_CUTS");
   const int cuts = wanted ? std::atoi(wanted) : 20;
   std::mt19937 random(9);
@@ -66,11 +69,14 @@ TEST_CASE("power cut: whatever the disk lost of what was not synced, a project o
     int kept = 0;
     bool happened = false;
     {
-      PowerCut power(folder.path(), 1 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(operations)), random());
+      PowerCut power(folder.path(), 1 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(operations)),
+                     random());
       kept = work_until_the_cut(folder, power, static_cast<std::uint32_t>(round));
       happened = power.happened();
       if (happened) power.restore();
-      else operations = std::min(operations, power.operations());  // how often is synced depends on how fast the machine is
+      else
+        operations =
+            std::min(operations, power.operations());  // how often is synced depends on how fast the machine is
     }
     if (!happened) continue;
     ++struck;

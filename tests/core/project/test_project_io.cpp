@@ -34,7 +34,10 @@ std::string bytes_of_file(const Path& path) { return read_file(path); }
 
 void write_bytes(const Path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
-Project small_project() { return {.document = small_document(), .editor = "{\"workspace\": \"Pose\"}", .thumbnail = std::string("\x89PNG\0x", 6)}; }
+Project small_project() {
+  return {
+      .document = small_document(), .editor = "{\"workspace\": \"Pose\"}", .thumbnail = std::string("\x89PNG\0x", 6)};
+}
 
 }  // namespace
 
@@ -132,12 +135,16 @@ TEST_CASE("project: one that another program changed, replaced or removed is not
   Project project = small_project();
   const SaveMark mark = create_project(project, path, writer);
   const SaveMark other = update_project({}, path, mark, Unused::Remove, other_writer);
-  CHECK(message_of([&] { update_project(project, path, mark, Unused::Remove, writer); }).starts_with("another program has changed the project"));
+  CHECK(message_of([&] {
+          update_project(project, path, mark, Unused::Remove, writer);
+        }).starts_with("another program has changed the project"));
   CHECK(read_project(path).document == Document{});
   CHECK(read_mark(path) == other);
 
   fs::remove(path);
-  CHECK(message_of([&] { update_project(project, path, other, Unused::Remove, writer); }).starts_with("the project does not exist"));
+  CHECK(message_of([&] {
+          update_project(project, path, other, Unused::Remove, writer);
+        }).starts_with("the project does not exist"));
   CHECK_FALSE(fs::exists(path));
 }
 
@@ -165,7 +172,7 @@ TEST_CASE("project: what is none, is newer, cut or damaged is refused in one lin
   CHECK_FALSE(message_of([&] { read_project(folder.path()); }).empty());
 
   std::string newer = whole, foreign = whole;
-  newer[63] = 2;     // user_version
+  newer[63] = 2;      // user_version
   foreign[71] = 'c';  // application_id
   CHECK(read_copy(newer).find("newer version") != std::string::npos);
   CHECK(read_copy(foreign).find("not a Limber project") != std::string::npos);
@@ -215,10 +222,12 @@ TEST_CASE("project: a volume that would not fit into memory is refused before it
   create_project({.document = large_document(1)}, folder / "a.limber", writer);
   ReadLimits limits;
   limits.most_bytes = 100'000;
-  CHECK(message_of([&] { read_project(folder / "a.limber", no_progress(), limits); }).find("MB of memory") != std::string::npos);
+  CHECK(message_of([&] { read_project(folder / "a.limber", no_progress(), limits); }).find("MB of memory") !=
+        std::string::npos);
 }
 
-TEST_CASE("project: weights, seams and a pose that fit no volume or rig are left out with a word, not the whole project") {
+TEST_CASE(
+    "project: weights, seams and a pose that fit no volume or rig are left out with a word, not the whole project") {
   const TemporaryFolder folder;
   DocumentWriter writer;
   Project project = small_project();
@@ -266,7 +275,8 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   const std::string update = message_of([&] { update_project(project, path, mark, Unused::Remove, writer); });
   const std::string create = message_of([&] { create_project(project, folder / "b.limber", writer); });
   ::setrlimit(RLIMIT_FSIZE, &old);
-  CHECK(update == "the project cannot be written: " + path.string() + ": check that the disk has room and works, or save elsewhere");
+  CHECK(update == "the project cannot be written: " + path.string() +
+                      ": check that the disk has room and works, or save elsewhere");
   CHECK(create.find((folder / "b.limber").string()) != std::string::npos);
   CHECK(bytes_of_file(path) == before);
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);
@@ -280,8 +290,10 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   CHECK(read_project(path).document == Document{});
   if (root) REQUIRE(::seteuid(0) == 0);
   fs::permissions(folder.path(), fs::perms(0755));
-  CHECK(in_read_only == "the project cannot be written: it or its folder is read-only: " + path.string() + ": save elsewhere");
-  CHECK(new_in_read_only == "the project cannot be opened: " + (folder / "b.limber").string() + ": check that it and its folder may be read and written");
+  CHECK(in_read_only ==
+        "the project cannot be written: it or its folder is read-only: " + path.string() + ": save elsewhere");
+  CHECK(new_in_read_only == "the project cannot be opened: " + (folder / "b.limber").string() +
+                                ": check that it and its folder may be read and written");
   CHECK(bytes_of_file(path) == before);
   update_project(project, path, mark, Unused::Remove, writer);
   CHECK(same_contents(read_project(path).document, project.document));

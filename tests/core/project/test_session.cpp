@@ -45,7 +45,8 @@ std::string message_of(const std::function<void()>& work) {
 
 // What a session leaves when its process dies: its files, without the locks.
 void copy_as_after_a_crash(const TemporaryFolder& from, const TemporaryFolder& to) {
-  fs::copy(from.path(), to.path(), fs::copy_options::recursive | fs::copy_options::copy_symlinks | fs::copy_options::overwrite_existing);
+  fs::copy(from.path(), to.path(),
+           fs::copy_options::recursive | fs::copy_options::copy_symlinks | fs::copy_options::overwrite_existing);
 }
 
 Path make_project(const TemporaryFolder& folder, const Document& document = small_document()) {
@@ -144,7 +145,8 @@ TEST_CASE("session: save as gives it a file, and later saves write there") {
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 3);
 }
 
-TEST_CASE("session: edits made while the project is being saved are kept, and undone ones need nothing the save removed") {
+TEST_CASE(
+    "session: edits made while the project is being saved are kept, and undone ones need nothing the save removed") {
   const TemporaryFolder folder;
   const Document first = small_document(), second = with_pose(first, 1);
   const Path path = make_project(folder, first);
@@ -169,7 +171,8 @@ TEST_CASE("session: two of them never have one project") {
   const Path path = make_project(folder);
   Project project, other;
   auto session = Session::open(path, project, no_progress(), settings_in(folder));
-  const std::string expected = "the project is open in another Limber: " + fs::canonical(path).string() + ": close it there, or work on a copy";
+  const std::string expected =
+      "the project is open in another Limber: " + fs::canonical(path).string() + ": close it there, or work on a copy";
   CHECK(message_of([&] { Session::open(path, other, no_progress(), settings_in(folder)); }) == expected);
   auto unsaved = Session::start(settings_in(folder));
   CHECK(message_of([&] { unsaved->save_as({}, path); }) == expected);
@@ -224,7 +227,8 @@ TEST_CASE("session: a journal that cannot be read, as one of another version, is
   CHECK(session->flush(kLong));
 }
 
-TEST_CASE("session: a project removed underneath loses nothing: the journal holds all of it, and a save writes it anew") {
+TEST_CASE(
+    "session: a project removed underneath loses nothing: the journal holds all of it, and a save writes it anew") {
   const TemporaryFolder folder;
   const Path path = make_project(folder);
   Project project;
@@ -361,7 +365,9 @@ TEST_CASE("session: of a project in a folder that may not be written the edits a
     CHECK(message_of([&] { session->save({.document = edited}); }) ==
           "the project cannot be written: it or its folder is read-only: " + path.string() + ": save elsewhere");
     Project other;
-    CHECK(message_of([&] { Session::open(path, other, no_progress(), settings_in(folder)); }).starts_with("the project is open in another"));
+    CHECK(message_of([&] {
+            Session::open(path, other, no_progress(), settings_in(folder));
+          }).starts_with("the project is open in another"));
     session->save_as({.document = edited}, folder / "mine.limber");
     CHECK(same_contents(read_project(folder / "mine.limber").document, edited));
   }

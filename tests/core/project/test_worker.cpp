@@ -64,8 +64,10 @@ bool alive(const Path& pid_file) {
 // An arm to be bent; at 0.8 mm that takes long and needs much memory.
 void write_job(const TemporaryFolder& folder, const std::string& spacing = "8") {
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
-  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
-    "flex": ["Forearm=60"], "method": "dqs", "threads": 1, "output": "posed.nrrd", "spacing": )" << spacing << "}";
+  std::ofstream(folder / "job.json")
+      << R"({"command": "resample", "volume": "volume.nrrd", "rig": "rig.json", "tissues": "tissues.json",
+    "flex": ["Forearm=60"], "method": "dqs", "threads": 1, "output": "posed.nrrd", "spacing": )"
+      << spacing << "}";
 }
 
 }  // namespace
@@ -82,7 +84,9 @@ TEST_CASE("worker: a job file is run by the program itself in a process of its o
 
 TEST_CASE("worker: its own error comes through word for word") {
   const TemporaryFolder folder;
-  std::ofstream(folder / "job.json") << R"({"command": "resample", "volume": "no-such.nrrd", "rig": "rig.json", "output": "posed.nrrd", "method": "dqs"})";
+  std::ofstream(folder / "job.json")
+      << R"({"command": "resample", "volume": "no-such.nrrd", "rig": "rig.json", "output": "posed.nrrd",
+        "method": "dqs"})";
   const auto direct = run_limber({"job", folder / "job.json"});
   Progress quiet;
   std::string message;
@@ -112,9 +116,10 @@ TEST_CASE("worker: what it tells of a solve comes whole") {
   const TemporaryFolder folder;
   std::vector<WorkerProgress> told;
   Progress quiet;
-  run_worker("job.json", quiet, {.program = script(folder, R"(echo '{"stage": "mesh", "fraction": 0.25}' >&2
-echo '{"stage": "solving", "fraction": 0.5, "angle_degrees": 45.5, "iteration": 7, "residual_mm": 0.125, "seconds_left": 12}' >&2)"),
-                                 .on_progress = [&](const WorkerProgress& progress) { told.push_back(progress); }});
+  run_worker("job.json", quiet,
+             {.program = script(folder, R"(echo '{"stage": "mesh", "fraction": 0.25}' >&2
+echo '{"stage":"solving","fraction":0.5,"angle_degrees":45.5,"iteration":7,"residual_mm":0.125,"seconds_left":12}' >&2)"),
+              .on_progress = [&](const WorkerProgress& progress) { told.push_back(progress); }});
   REQUIRE(told.size() == 2);
   CHECK(told[0].stage == "mesh");
   CHECK(told[0].fraction == 0.25);
@@ -139,7 +144,8 @@ TEST_CASE("worker: one that yields is given only what all others leave of the ma
       ::_exit(1);
     }
     const auto policy_of = [&] { return ::sched_getscheduler(worker); };
-    for (int i = 0; i < (yields ? 2000 : 60) && policy_of() != SCHED_IDLE; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    for (int i = 0; i < (yields ? 2000 : 60) && policy_of() != SCHED_IDLE; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     CHECK((policy_of() == SCHED_IDLE) == yields);
     ::kill(worker, SIGKILL);
     ::waitpid(worker, nullptr, 0);
@@ -159,8 +165,8 @@ TEST_CASE("worker: a crash, a kill and a failure without a word become clear mes
   CHECK_THROWS_AS(run_worker("job.json", quiet, {.program = "/no/such/program"}), Error);
 }
 
-TEST_CASE("worker: one that is frozen is said not to answer, not to have a few seconds left, and is ended by a limit"
-          * doctest::test_suite("slow")) {
+TEST_CASE("worker: one that is frozen is said not to answer, not to have a few seconds left, and is ended by a limit" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   std::vector<WorkerProgress> told;
@@ -190,8 +196,8 @@ TEST_CASE("worker: one that is frozen is said not to answer, not to have a few s
   CHECK_FALSE(alive(folder / "pid"));
 }
 
-TEST_CASE("worker: one that answers again is shown as before, and a slow one that works is not ended"
-          * doctest::test_suite("slow")) {
+TEST_CASE("worker: one that answers again is shown as before, and a slow one that works is not ended" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   std::vector<std::string> stages;
   Progress quiet;
@@ -211,8 +217,8 @@ sleep 0.1)";
   CHECK(message_of(folder, waits, {.silence_limit = 0.5}).starts_with("the worker stopped answering"));
 }
 
-TEST_CASE("worker: a job that someone listens to tells every second what it has taken of the processor"
-          * doctest::test_suite("slow")) {
+TEST_CASE("worker: a job that someone listens to tells every second what it has taken of the processor" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   const std::string job = std::string(LIMBER_PROGRAM) + " job " + (folder / "job.json").string() + " --progress json";
@@ -244,7 +250,8 @@ TEST_CASE("worker: a job that wants more memory than it may have ends with a mes
 TEST_CASE("worker: a cancel ends it within a moment, also when it does not listen, and its children with it") {
   const TemporaryFolder folder;
   const std::string pid = folder / "pid", child = folder / "child";
-  const Path program = script(folder, "trap '' TERM\nsleep 60 & echo $! > " + child + "\necho $$ > " + pid + "\nwhile true; do sleep 1; done");
+  const Path program = script(
+      folder, "trap '' TERM\nsleep 60 & echo $! > " + child + "\necho $$ > " + pid + "\nwhile true; do sleep 1; done");
   Progress progress;
   std::atomic<bool> cancelled = false;
   std::thread waiting([&] {
@@ -263,12 +270,13 @@ TEST_CASE("worker: a cancel ends it within a moment, also when it does not liste
   CHECK_FALSE(alive(pid));
   for (int i = 0; i < 200 && alive(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK_FALSE(alive(child));
-  for (int i = 0; i < 200 && ::waitpid(-1, nullptr, WNOHANG) != -1; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  for (int i = 0; i < 200 && ::waitpid(-1, nullptr, WNOHANG) != -1; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // nothing unburied
 }
 
-TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields"
-          * doctest::test_suite("slow")) {
+TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields" *
+          doctest::test_suite("slow")) {
   const TemporaryFolder folder;
   write_job(folder, "0.8");
   std::atomic<bool> over = false;
@@ -280,7 +288,10 @@ TEST_CASE("worker: a cancel does not wait until a busy machine has time to end o
   std::thread waiting([&] { CHECK_THROWS_AS(run_worker(folder / "job.json", progress, settings), Cancelled); });
   while (!told) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   for (unsigned i = 0; i < 2 * std::thread::hardware_concurrency(); ++i)
-    busy.emplace_back([&] { while (!over) {} });
+    busy.emplace_back([&] {
+      while (!over) {
+      }
+    });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto asked = Clock::now();
   progress.cancel();

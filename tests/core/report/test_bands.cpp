@@ -4,10 +4,10 @@
 #include <random>
 #include <set>
 
-#include <Eigen/SVD>
 #include <doctest/doctest.h>
+#include <Eigen/SVD>
 
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;

@@ -82,8 +82,8 @@ TEST_CASE("exposure: a body at rest exposes nothing and closes no air in") {
 }
 
 TEST_CASE(
-    "exposure: a notch cut into a body bares what lay deep, voxel by voxel as the distance to the outside air says"
-          * doctest::test_suite("slow")) {
+    "exposure: a notch cut into a body bares what lay deep, voxel by voxel as the distance to the outside air says" *
+    doctest::test_suite("slow")) {
   const TissueTable tissues = skin_flesh_bone();
   for (const glm::dvec3 spacing : {glm::dvec3(2), glm::dvec3(2, 2, 5)}) {
     const LabelVolume rest = block(spacing);

@@ -42,13 +42,15 @@ TEST_CASE("fem measures: stretch, shear and turn have the volume ratio and the e
   const double lambda = 2 * 2 * 0.3 / (1 - 0.6);
   const Measured stretched = measured(Eigen::Vector3d(1.5, 1, 0.8).asDiagonal(), fat);
   CHECK(stretched.J == doctest::Approx(1.2));
-  CHECK(stretched.W == doctest::Approx(1.0 * (2.25 + 1 + 0.64 - 3) - 2 * std::log(1.2) + lambda / 2 * 0.04).epsilon(1e-5));
+  CHECK(stretched.W ==
+        doctest::Approx(1.0 * (2.25 + 1 + 0.64 - 3) - 2 * std::log(1.2) + lambda / 2 * 0.04).epsilon(1e-5));
   Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
   shear(0, 1) = 0.7;
   const Measured sheared = measured(shear, muscle);
   CHECK(sheared.J == doctest::Approx(1));
   CHECK(sheared.W == doctest::Approx(0.5 * 5 * 0.49).epsilon(1e-5));  // whatever the Poisson ratio
-  const Measured turned = measured(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), muscle);
+  const Measured turned =
+      measured(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), muscle);
   CHECK(turned.J == doctest::Approx(1));
   CHECK(turned.W == doctest::Approx(0));
   const Measured inverted = measured(Eigen::Vector3d(1, 1, -1).asDiagonal(), fat);

@@ -13,7 +13,7 @@
 #include "core/report/dice.h"
 #include "core/report/report.h"
 #include "core/resample/resample.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/bent_tube.h"
 #include "tests/support/program.h"
 #include "tests/support/random_blobs.h"
@@ -25,8 +25,8 @@ namespace {
 constexpr Label kStays = 2, kTurns = 3;
 constexpr double kHalfTurn = std::numbers::pi;
 
-// Two boxes of 8 x 8 x 8 voxels of 1 mm, each on a bone of its own. Half a turn about z at x = `axis` takes the second, at
-// x = 24 .. 31, to x = 2 axis - 31 .. 2 axis - 24; the first lies at x = 4 .. 11.
+// Two boxes of 8 x 8 x 8 voxels of 1 mm, each on a bone of its own. Half a turn about z at x = `axis` takes the second,
+// at x = 24 .. 31, to x = 2 axis - 31 .. 2 axis - 24; the first lies at x = 4 .. 11.
 struct TwoBoxes {
   LabelVolume volume{{.size = {40, 12, 12}}, ZeroedVector<Label>(40 * 12 * 12)};
   TissueTable tissues;
@@ -39,26 +39,36 @@ struct TwoBoxes {
       for (int z = 2; z < 10; ++z)
         for (int y = 2; y < 10; ++y)
           for (int x = from; x < from + 8; ++x) volume.at({x, y, z}) = label;
-    for (const Label label : {kStays, kTurns}) tissues.tissues.push_back({.label = label, .file_value = double(label), .name = label == kStays ? "stays" : "turns", .kind = kind});
-    rig.bones = {{.name = "Still", .head = {8, 5.5, 5.5}, .tail = {12, 5.5, 5.5}}, {.name = "Turning", .parent = 0, .head = {axis, 5.5, 5.5}, .tail = {32, 5.5, 5.5}}};
+    for (const Label label : {kStays, kTurns})
+      tissues.tissues.push_back(
+          {.label = label, .file_value = double(label), .name = label == kStays ? "stays" : "turns", .kind = kind});
+    rig.bones = {{.name = "Still", .head = {8, 5.5, 5.5}, .tail = {12, 5.5, 5.5}},
+                 {.name = "Turning", .parent = 0, .head = {axis, 5.5, 5.5}, .tail = {32, 5.5, 5.5}}};
     const TissueVoxels tissue(volume);
     weights = SkinWeights({"Still", "Turning"}, tissue);
     for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
       SkinWeights::Influences chunk;
-      tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) { chunk.push_back(rigid_influence(volume.at(v) == kTurns ? 1 : 0)); });
+      tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+        chunk.push_back(rigid_influence(volume.at(v) == kTurns ? 1 : 0));
+      });
       weights.set_chunk(b, chunk);
     }
     pose = rest_pose(rig);
     pose.rotation[1] = glm::angleAxis(kHalfTurn, glm::dvec3(0, 0, 1));
   }
-  Posed posed(const ResampleSettings& settings = {.nearest = true, .overlap = true}) const { return resample(volume, tissues, rig, weights, pose, LinearBlend{}, settings); }
+  Posed posed(const ResampleSettings& settings = {.nearest = true, .overlap = true}) const {
+    return resample(volume, tissues, rig, weights, pose, LinearBlend{}, settings);
+  }
 };
 
-std::int64_t count(const ZeroedVector<Label>& voxels, Label value) { return std::count(voxels.begin(), voxels.end(), value); }
+std::int64_t count(const ZeroedVector<Label>& voxels, Label value) {
+  return std::count(voxels.begin(), voxels.end(), value);
+}
 
 }  // namespace
 
-TEST_CASE("known figures: a box laid over another shares as many voxels as paper and pencil say, and the map shows which") {
+TEST_CASE(
+    "known figures: a box laid over another shares as many voxels as paper and pencil say, and the map shows which") {
   for (const auto& [axis, slices] : {std::pair{21.5, 0}, {20.0, 3}, {18.5, 6}, {17.5, 8}}) {
     const TwoBoxes boxes(axis, TissueKind::Fat);
     const Posed posed = boxes.posed();
@@ -111,7 +121,7 @@ TEST_CASE("known figures: a torn-off piece is one more component, a hole inside 
   for (int y = 2; y < 10; ++y)
     for (int z = 2; z < 10; ++z)
       for (const int x : {27, 28}) after.at({x, y, z}) = 0;  // the second box in two, of 3 and 3 slices
-  after.at({8, 5, 5}) = after.at({8, 6, 5}) = 0;            // a hole in the first
+  after.at({8, 5, 5}) = after.at({8, 6, 5}) = 0;             // a hole in the first
   const VolumeMetrics metrics = compare(boxes.volume, after, boxes.tissues);
   REQUIRE(metrics.tissues.size() == 2);
   CHECK(metrics.tissues[0].components_after == 1);
@@ -124,8 +134,9 @@ TEST_CASE("known figures: a torn-off piece is one more component, a hole inside 
   CHECK(dice[7] == 0);
 }
 
-TEST_CASE("known figures: numpy and scipy find the same voxels, pieces, surface, enclosed air, Dice and bone residuals"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "known figures: numpy and scipy find the same voxels, pieces, surface, enclosed air, Dice and bone residuals" *
+    doctest::test_suite("slow")) {
   if (test::run_program("/usr/bin/python3", {"-c", "import scipy.ndimage, scipy.spatial"}).exit_code != 0) {
     MESSAGE("SKIPPED: /usr/bin/python3 has no scipy (Debian's python3-scipy)");
     return;
@@ -147,21 +158,28 @@ TEST_CASE("known figures: numpy and scipy find the same voxels, pieces, surface,
     }
     return figures;
   };
-  const auto check = [&](const LabelVolume& before, const LabelVolume& after, const TissueTable& tissues, const auto& theirs) {
+  const auto check = [&](const LabelVolume& before, const LabelVolume& after, const TissueTable& tissues,
+                         const auto& theirs) {
     const VolumeMetrics ours = compare(before, after, tissues);
     const LabelCensus census[] = {take_census(before), take_census(after)};
     for (const TissueChange& tissue : ours.tissues) {
       INFO("label ", tissue.label);
-      CHECK(theirs.at({"voxels", tissue.label}) == std::vector<double>{double(tissue.voxels_before), double(tissue.voxels_after)});
-      CHECK(theirs.at({"components", tissue.label}) == std::vector<double>{double(tissue.components_before), double(tissue.components_after)});
-      CHECK(theirs.at({"surface", tissue.label}) == std::vector<double>{double(census[0].surface_voxels[tissue.label]), double(census[1].surface_voxels[tissue.label])});
+      CHECK(theirs.at({"voxels", tissue.label}) ==
+            std::vector<double>{double(tissue.voxels_before), double(tissue.voxels_after)});
+      CHECK(theirs.at({"components", tissue.label}) ==
+            std::vector<double>{double(tissue.components_before), double(tissue.components_after)});
+      CHECK(theirs.at({"surface", tissue.label}) ==
+            std::vector<double>{double(census[0].surface_voxels[tissue.label]),
+                                double(census[1].surface_voxels[tissue.label])});
     }
-    CHECK(theirs.at({"enclosed", 0}) == std::vector<double>{double(ours.enclosed_air_before), double(ours.enclosed_air_after)});
+    CHECK(theirs.at({"enclosed", 0}) ==
+          std::vector<double>{double(ours.enclosed_air_before), double(ours.enclosed_air_after)});
   };
 
   std::mt19937 random(7);
   TissueTable table;
-  for (Label label = 1; label < 6; ++label) table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
+  for (Label label = 1; label < 6; ++label)
+    table.tissues.push_back({.label = label, .file_value = double(label), .name = std::to_string(label)});
   std::vector<LabelVolume> blobs;
   for (int which = 0; which < 2; ++which) {
     LabelVolume volume = test::random_blobs(random, {40, 30, 24}, 400, 5);

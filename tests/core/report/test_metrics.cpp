@@ -46,7 +46,8 @@ std::int64_t flood(const LabelVolume& volume, std::vector<char>& seen, const glm
 }
 
 LabelCensus census_by_flooding(const LabelVolume& volume, std::int64_t smallest) {
-  LabelCensus census{std::vector<std::int64_t>(65536), std::vector<int>(65536), std::vector<int>(65536), std::vector<std::int64_t>(65536)};
+  LabelCensus census{std::vector<std::int64_t>(65536), std::vector<int>(65536), std::vector<int>(65536),
+                     std::vector<std::int64_t>(65536)};
   std::vector<char> seen(volume.voxels.size());
   const glm::ivec3 size = volume.grid.size;
   for (int z = 0; z < size.z; ++z)
@@ -87,9 +88,10 @@ void fill(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, La
 }
 }  // namespace
 
-TEST_CASE("metrics: voxels, components, surface and enclosed air equal what flooding voxel by voxel finds"
-          * doctest::test_suite("slow")) {
-  for (const glm::ivec3 size : {glm::ivec3(17, 13, 11), glm::ivec3(1, 1, 1), glm::ivec3(1, 30, 5), glm::ivec3(40, 3, 9)})
+TEST_CASE("metrics: voxels, components, surface and enclosed air equal what flooding voxel by voxel finds" *
+          doctest::test_suite("slow")) {
+  for (const glm::ivec3 size :
+       {glm::ivec3(17, 13, 11), glm::ivec3(1, 1, 1), glm::ivec3(1, 30, 5), glm::ivec3(40, 3, 9)})
     for (const double air : {0.05, 0.3, 0.7, 0.95})
       for (const int labels : {1, 3}) {
         const LabelVolume volume = random_volume(size, labels, air, static_cast<unsigned>(100 * air + labels));
@@ -99,7 +101,9 @@ TEST_CASE("metrics: voxels, components, surface and enclosed air equal what floo
           CHECK(census.enclosed_air_voxels == truth.enclosed_air_voxels);
           bool equal = true;
           for (int label = 1; label < 65536; ++label)
-            equal &= census.components[label] == truth.components[label] && census.half_components[label] == truth.half_components[label] && census.voxels[label] == truth.voxels[label];
+            equal &= census.components[label] == truth.components[label] &&
+                     census.half_components[label] == truth.half_components[label] &&
+                     census.voxels[label] == truth.voxels[label];
           CHECK(equal);
         }
       }
@@ -163,10 +167,14 @@ TEST_CASE("metrics: air that a fold has closed off is trapped") {
   CHECK(compare(before, after, table()).trapped_air_voxels == 8);
 }
 
-TEST_CASE("metrics: a label that fell apart is torn, one whose piece grew by a voxel or was parted by a single voxel is not") {
+TEST_CASE(
+    "metrics: a label that fell apart is torn, one whose piece grew by a voxel or was parted by a single voxel is "
+    "not") {
   LabelVolume whole{{.size = {30, 12, 12}}, ZeroedVector<Label>(30 * 12 * 12)};
   fill(whole, {2, 3, 3}, {26, 8, 8}, 1);
-  const auto torn = [&](const LabelVolume& before, const LabelVolume& after) { return compare(before, after, table()).tissues.at(0).torn_parts; };
+  const auto torn = [&](const LabelVolume& before, const LabelVolume& after) {
+    return compare(before, after, table()).tissues.at(0).torn_parts;
+  };
   LabelVolume gap = whole, tear = whole;
   fill(gap, {13, 3, 3}, {14, 8, 8}, 0);
   fill(tear, {13, 3, 3}, {15, 8, 8}, 0);

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/pose/pose.h"
+#include "core/rig/pose.h"
 #include "tests/support/figure.h"
 
 using namespace limber;
@@ -156,7 +156,8 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   CHECK(measure_posed_bones(left.judged()).limbs.at(0).direction_degrees == doctest::Approx(40).epsilon(0.001));
 }
 
-TEST_CASE("posed bones: where no label has a name, another bone that passes beside a limb's shaft does not turn the limb") {
+TEST_CASE(
+    "posed bones: where no label has a name, another bone that passes beside a limb's shaft does not turn the limb") {
   PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) {
     return label == kLeftFemur && (v.x + v.y) % 3 == 0 ? 0 : own_bone(label, v);  // a third stays
   });

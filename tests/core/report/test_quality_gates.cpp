@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "core/pose/pose.h"
 #include "core/report/report.h"
 #include "core/report/solve_gates.h"
+#include "core/rig/pose.h"
 
 using namespace limber;
 
@@ -21,7 +21,8 @@ QualityGate gate(const std::string& report, const std::string& id) {
 }  // namespace
 
 TEST_CASE("quality gates: what a report has no figures for is neither passed nor failed") {
-  for (const char* report : {"", "no report", "[1, 2]", "{}", R"({"tissues": 3, "bones": {"a": 1}, "mesh": [], "total": null, "joints": "x"})"}) {
+  for (const char* report : {"", "no report", "[1, 2]", "{}",
+                             R"({"tissues": 3, "bones": {"a": 1}, "mesh": [], "total": null, "joints": "x"})"}) {
     INFO(std::string(report));
     CHECK(body_gates(report).size() == 11);
     CHECK(quality_gates(report).size() == 7);
@@ -38,16 +39,25 @@ TEST_CASE("quality gates: what a report has no figures for is neither passed nor
   }
 }
 
-TEST_CASE("quality gates: tissues are judged by the one of 5 000 voxels or more that changed most, and small ones where none is large") {
-  const std::string report = R"({"tissues": [{"name": "Nerve", "label": 1, "voxels_before": 900, "volume_change_percent": 7.5},
-    {"name": "Fat", "label": 2, "voxels_before": 50000, "volume_change_percent": 0.2}, {"name": "Skin", "label": 3, "voxels_before": 5000, "volume_change_percent": CHANGE}]})";
-  const auto with = [&](const char* change) { return gate(std::string(report).replace(report.find("CHANGE"), 6, change), "tissues"); };
+TEST_CASE(
+    "quality gates: tissues are judged by the one of 5 000 voxels or more that changed most, and small ones where none "
+    "is large") {
+  const std::string report =
+      R"({"tissues": [{"name": "Nerve", "label": 1, "voxels_before": 900, "volume_change_percent": 7.5},
+    {"name": "Fat", "label": 2, "voxels_before": 50000, "volume_change_percent": 0.2}, {"name": "Skin", "label": 3,
+      "voxels_before": 5000, "volume_change_percent": CHANGE}]})";
+  const auto with = [&](const char* change) {
+    return gate(std::string(report).replace(report.find("CHANGE"), 6, change), "tissues");
+  };
   CHECK(with("-0.99").state == GateState::Passed);
   CHECK(with("-0.99").worst == "Skin");
   CHECK(with("-1.01").state == GateState::Failed);
   CHECK(with("-1.01").figure == "-1.01 %");
   CHECK(with("0.1").worst == "Fat");
-  const QualityGate small = gate(R"({"tissues": [{"name": "Nerve", "voxels_before": 900, "volume_change_percent": 7.5}, {"name": "Nail", "voxels_before": 9, "volume_change_percent": -8}]})", "tissues");
+  const QualityGate small = gate(
+      R"({"tissues": [{"name": "Nerve", "voxels_before": 900, "volume_change_percent": 7.5}, {"name": "Nail",
+        "voxels_before": 9, "volume_change_percent": -8}]})",
+      "tissues");
   CHECK(small.state == GateState::Failed);
   CHECK(small.worst == "Nail");
 }
@@ -58,33 +68,66 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
   };
   const Case kCases[] = {
       {"inputs", R"({"doubts": []})", R"({"doubts": ["the rig lies outside the body"]})", "1 doubt"},
-      {"whole", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 0.049}]})", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 82}, {"name": "Rib", "residual_mm": 0}]})", "82.000 mm"},
-      {"whole", R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur", "residual_mm": 1.49}]})",
-       R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur", "residual_mm": 1.51}]})", "1.510 mm"},
+      {"whole", R"({"whole_bones": [{"name": "Left femur", "residual_mm": 0.049}]})",
+       R"({"whole_bones": [{"name": "Left femur", "residual_mm": 82}, {"name": "Rib", "residual_mm": 0}]})",
+       "82.000 mm"},
+      {"whole",
+       R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur",
+         "residual_mm": 1.49}]})",
+       R"({"tissues": [{"mm3_before": 2700, "voxels_before": 100}], "whole_bones": [{"name": "Left femur",
+         "residual_mm": 1.51}]})",
+       "1.510 mm"},
       {"follows", R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 1}]})",
-       R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 2, "went_with": "Pelvis", "belongs_to": "LeftThigh"}]})", "0.20 %"},
-      {"directions", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 0.99}]})", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 1.01}]})", "1.01\u00b0"},
-      {"exposed", R"({"exposure": {"voxels": 9, "percent": 0.09, "by_label": [{"name": "muscle", "voxels": 9}]}})", R"({"exposure": {"voxels": 11, "percent": 0.11}})", "0.11 %"},
+       R"({"whole_bones": [{"name": "Left femur", "voxels": 1000, "wrong_voxels": 2, "went_with": "Pelvis",
+         "belongs_to": "LeftThigh"}]})",
+       "0.20 %"},
+      {"directions", R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 0.99}]})",
+       R"({"limbs": [{"bone": "LeftThigh", "direction_off_degrees": 1.01}]})", "1.01\u00b0"},
+      {"exposed", R"({"exposure": {"voxels": 9, "percent": 0.09, "by_label": [{"name": "muscle", "voxels": 9}]}})",
+       R"({"exposure": {"voxels": 11, "percent": 0.11}})", "0.11 %"},
       {"trapped", R"({"total": {"trapped_air_voxels": 50}})", R"({"total": {"trapped_air_voxels": 51}})", "51 voxels"},
-      {"organs", R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -9.9}, {"name": "Duct", "kind": "organ", "voxels_before": 199, "volume_change_percent": -90}]})",
-       R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -10.1}]})", "-10.1 %"},
-      {"lost", R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -50}]})", R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -98}]})", "2 %"},
-      {"torn", R"({"tissues": [{"name": "Muscle", "torn_parts": 0}]})", R"({"tissues": [{"name": "Muscle", "torn_parts": 1, "components_before": 1, "components_after": 2}]})", "1 part"},
-      {"bands", R"({"bands": []})", R"({"bands": [{"voxels": 300, "stretch": 8.1, "place": [1, 2, 3], "between": ["LeftThigh", "LeftHand"]}]})", "1 band"},
-      {"volume", R"({"total": {"volume_change_percent": -2}})", R"({"total": {"volume_change_percent": 2.1}})", "+2.10 %"},
-      {"volume", R"({"whole_body": false, "total": {"volume_change_percent": -4.9}})", R"({"whole_body": true, "total": {"volume_change_percent": -4.9}})", "-4.90 %"},
-      {"bones", R"({"bones": [{"name": "Fore", "rigid_residual_mm": 0.05}]})", R"({"bones": [{"name": "Up", "rigid_residual_mm": 0}, {"name": "Fore", "rigid_residual_mm": 0.051}]})", "0.051 mm"},
-      {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
-      {"islands", R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5, "components_after": 4}]})",
-       R"({"total": {"new_hole_voxels": 3286}, "tissues": [{"name": "Fat", "components_before": 1, "components_after": 2}]})", "1 island, 3 286 holes"},
-      {"islands", R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 0}})", R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 1}})", "1 voxel lost"},
-      {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 0.999}})", "99 %"},
-      {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 1}})", "100 %, not settled"},
+      {"organs",
+       R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -9.9},
+         {"name": "Duct", "kind": "organ", "voxels_before": 199, "volume_change_percent": -90}]})",
+       R"({"tissues": [{"name": "Bladder", "kind": "organ", "voxels_before": 200, "volume_change_percent": -10.1}]})",
+       "-10.1 %"},
+      {"lost", R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -50}]})",
+       R"({"tissues": [{"name": "Testis", "voxels_before": 200, "volume_change_percent": -98}]})", "2 %"},
+      {"torn", R"({"tissues": [{"name": "Muscle", "torn_parts": 0}]})",
+       R"({"tissues": [{"name": "Muscle", "torn_parts": 1, "components_before": 1, "components_after": 2}]})",
+       "1 part"},
+      {"bands", R"({"bands": []})",
+       R"({"bands": [{"voxels": 300, "stretch": 8.1, "place": [1, 2, 3], "between": ["LeftThigh", "LeftHand"]}]})",
+       "1 band"},
+      {"volume", R"({"total": {"volume_change_percent": -2}})", R"({"total": {"volume_change_percent": 2.1}})",
+       "+2.10 %"},
+      {"volume", R"({"whole_body": false, "total": {"volume_change_percent": -4.9}})",
+       R"({"whole_body": true, "total": {"volume_change_percent": -4.9}})", "-4.90 %"},
+      {"bones", R"({"bones": [{"name": "Fore", "rigid_residual_mm": 0.05}]})",
+       R"({"bones": [{"name": "Up", "rigid_residual_mm": 0}, {"name": "Fore", "rigid_residual_mm": 0.051}]})",
+       "0.051 mm"},
+      {"skin", R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.8681}})",
+       R"({"skin": {"surface_share_before": 0.87, "surface_share_after": 0.866}})", "86.6 %"},
+      {"islands",
+       R"({"total": {"new_hole_voxels": 0}, "tissues": [{"name": "Fat", "components_before": 5,
+         "components_after": 4}]})",
+       R"({"total": {"new_hole_voxels": 3286}, "tissues": [{"name": "Fat", "components_before": 1,
+         "components_after": 2}]})",
+       "1 island, 3 286 holes"},
+      {"islands", R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 0}})",
+       R"({"total": {"new_hole_voxels": 0, "dropped_voxels": 1}})", "1 voxel lost"},
+      {"reached", R"({"solve": {"converged": true, "reached": 1}})",
+       R"({"solve": {"converged": false, "reached": 0.999}})", "99 %"},
+      {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 1}})",
+       "100 %, not settled"},
       {"gap", R"({"mesh": {"min_gap_mm": 0.001}})", R"({"mesh": {"min_gap_mm": 0}})", "0.000 mm"},
       {"inverted", R"({"mesh": {"inverted": 0}})", R"({"mesh": {"inverted": 2}})", "2"},
-      {"crossings", R"({"mesh": {"self_intersections": 0}, "total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}})", "1 pair"},
-      {"crossings", R"({"total": {"overlap_voxels": 0}})", R"({"mesh": {"self_intersections": 1}, "total": {"overlap_voxels": 12345678}})", "12 345 678 voxels"},
-      {"limits", R"({"joints": [{"bone": "Fore", "excess_degrees": 0.09}, {"bone": "Up"}]})", R"({"joints": [{"bone": "Fore", "excess_degrees": 1.6}, {"bone": "Up", "excess_degrees": 0.4}]})", "+1.6\u00b0"},
+      {"crossings", R"({"mesh": {"self_intersections": 0}, "total": {"overlap_voxels": 0}})",
+       R"({"mesh": {"self_intersections": 1}})", "1 pair"},
+      {"crossings", R"({"total": {"overlap_voxels": 0}})",
+       R"({"mesh": {"self_intersections": 1}, "total": {"overlap_voxels": 12345678}})", "12 345 678 voxels"},
+      {"limits", R"({"joints": [{"bone": "Fore", "excess_degrees": 0.09}, {"bone": "Up"}]})",
+       R"({"joints": [{"bone": "Fore", "excess_degrees": 1.6}, {"bone": "Up", "excess_degrees": 0.4}]})", "+1.6\u00b0"},
   };
   for (const Case& one : kCases) {
     INFO(one.id, ": ", one.failing);
@@ -100,7 +143,9 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
 }
 
 TEST_CASE("quality gates: a label in pieces is torn, but for bones whose every voxel was followed") {
-  const std::string torn = R"("tissues": [{"name": "Hand bones", "label": 7, "torn_parts": 2, "components_before": 2, "components_after": 4}])";
+  const std::string torn =
+      R"("tissues": [{"name": "Hand bones", "label": 7, "torn_parts": 2, "components_before": 2,
+        "components_after": 4}])";
   CHECK(gate("{" + torn + "}", "torn").state == GateState::Failed);
   CHECK(gate("{" + torn + R"(, "whole_bones": [{"label": 8}]})", "torn").state == GateState::Failed);
   CHECK(gate("{" + torn + R"(, "whole_bones": [{"label": 7}]})", "torn").state == GateState::NotMeasured);

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -50,8 +50,11 @@ TEST_CASE("report: what was not measured is left out, not filled with zeros") {
 TEST_CASE("report: carries method, settings, inputs, seconds, tissues, totals and bones under the schema's keys") {
   Report report;
   report.method = "dqs";
-  report.settings = {{"nearest", false}, {"spacing", 2.0}, {"threads", std::int64_t{4}},
-                     {"flex", std::vector<std::string>{"Forearm=45"}}, {"weights", std::string("heat")}};
+  report.settings = {{"nearest", false},
+                     {"spacing", 2.0},
+                     {"threads", std::int64_t{4}},
+                     {"flex", std::vector<std::string>{"Forearm=45"}},
+                     {"weights", std::string("heat")}};
   report.inputs = {{"arm.mha", "00ff"}};
   report.seconds.read = 0.5;
   report.seconds.total = 1.5;
@@ -94,7 +97,15 @@ TEST_CASE("report: carries method, settings, inputs, seconds, tissues, totals an
 
 TEST_CASE("report: what the method took is without weights, files and the report, and nothing where nothing is said") {
   Report report;
-  report.seconds = {.read = 1, .weights = 20, .deform = 0.25, .mesh = 0.5, .solve = 4, .rasterize = 0.125, .report = 2, .write = 1, .total = 30};
+  report.seconds = {.read = 1,
+                    .weights = 20,
+                    .deform = 0.25,
+                    .mesh = 0.5,
+                    .solve = 4,
+                    .rasterize = 0.125,
+                    .report = 2,
+                    .write = 1,
+                    .total = 30};
   CHECK(method_seconds(to_json(report)) == 4.875);
   CHECK(method_seconds("{\"seconds\": 3}") == 0);
   CHECK(method_seconds("no report") == 0);
@@ -123,7 +134,8 @@ TEST_CASE("report: the command matches labels by their file values, whatever els
   before.at({0, 0, 0}) = 1;
   write_volume(before, folder / "before.nrrd", both);
   write_volume(after, folder / "after.nrrd", table_of(1, 200, "b"));
-  const auto run = test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "after.nrrd").string(), "--json"});
+  const auto run =
+      test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "after.nrrd").string(), "--json"});
   REQUIRE(run.exit_code == 0);
   const json report = json::parse(run.out);
   CHECK(report["inputs"][0]["sha256"].get<std::string>().size() == 64);
@@ -134,16 +146,29 @@ TEST_CASE("report: the command matches labels by their file values, whatever els
   CHECK(report["tissues"][1]["voxels_before"] == 1000);
   CHECK(report["tissues"][1]["voxels_after"] == 125);
 
-  CHECK(test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "none.nrrd").string()}).exit_code == 1);
+  CHECK(test::run_limber({"report", (folder / "before.nrrd").string(), (folder / "none.nrrd").string()}).exit_code ==
+        1);
 }
 
-TEST_CASE("report: finite elements add mesh and solve under the schema's keys, labels as files call them, what was not measured is left out") {
+TEST_CASE(
+    "report: finite elements add mesh and solve under the schema's keys, labels as files call them, what was not "
+    "measured is left out") {
   Report report{.method = "fem", .metrics = compare(box_of(3, 8), box_of(3, 8), table_of(3, 143, "skin"))};
   report.seconds.mesh = 1.25;
   report.seconds.solve = 20.5;
   DeformReport deform;
-  deform.mesh = MeshReport{.tets = 1000, .nodes = 300, .inverted = 0, .min_det_f = 0.125, .volume_change_percent = {{3, 0.02}}, .stretch = {{3, {{0.5, 0.75, 1}, {1, 1.25, 2}}}}};
-  deform.solve = SolveReport{.converged = false, .reached = 0.75, .blocked_by = "bone Forearm", .steps = 6, .iterations = 30, .residual_mm = 0.25};
+  deform.mesh = MeshReport{.tets = 1000,
+                           .nodes = 300,
+                           .inverted = 0,
+                           .min_det_f = 0.125,
+                           .volume_change_percent = {{3, 0.02}},
+                           .stretch = {{3, {{0.5, 0.75, 1}, {1, 1.25, 2}}}}};
+  deform.solve = SolveReport{.converged = false,
+                             .reached = 0.75,
+                             .blocked_by = "bone Forearm",
+                             .steps = 6,
+                             .iterations = 30,
+                             .residual_mm = 0.25};
   report.deform = deform;
   json written = json::parse(to_json(report));
   CHECK(written["seconds"]["mesh"] == 1.25);
@@ -156,7 +181,8 @@ TEST_CASE("report: finite elements add mesh and solve under the schema's keys, l
   CHECK(mesh["volume_change_percent_by_label"]["143"] == 0.02);
   CHECK(mesh["stretch_by_label"]["143"]["least"] == std::vector{0.5, 0.75, 1.0});
   CHECK(mesh["stretch_by_label"]["143"]["most"] == std::vector{1.0, 1.25, 2.0});
-  for (const char* unmeasured : {"self_intersections", "min_gap_mm", "fallback"}) CHECK_FALSE(mesh.contains(unmeasured));
+  for (const char* unmeasured : {"self_intersections", "min_gap_mm", "fallback"})
+    CHECK_FALSE(mesh.contains(unmeasured));
   const json& solve = written["solve"];
   CHECK(solve["converged"] == false);
   CHECK(solve["reached"] == 0.75);

@@ -10,7 +10,8 @@ using namespace limber;
 namespace {
 
 LabelVolume volume_of(const glm::ivec3& size, double spacing = 1) {
-  return {{.size = size, .spacing = glm::dvec3(spacing)}, ZeroedVector<Label>(static_cast<std::size_t>(size.x) * size.y * size.z)};
+  return {{.size = size, .spacing = glm::dvec3(spacing)},
+          ZeroedVector<Label>(static_cast<std::size_t>(size.x) * size.y * size.z)};
 }
 
 void fill(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, Label label) {

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/binding/rigid.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/rigid.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;
@@ -18,7 +18,8 @@ SmallBody named_bar() {
   SmallBody body = two_bone_bar();
   const int middle = body.volume.grid.size.z / 2;
   for (std::int64_t at = 0; at < std::ssize(body.volume.voxels); ++at)
-    if (body.volume.voxels[at] == kBone && at / (body.volume.grid.size.x * body.volume.grid.size.y) >= middle) body.volume.voxels[at] = 3;
+    if (body.volume.voxels[at] == kBone && at / (body.volume.grid.size.x * body.volume.grid.size.y) >= middle)
+      body.volume.voxels[at] = 3;
   body.tissues.tissues.push_back(body.tissues.tissues[1]);
   body.tissues.tissues[1].name = "Left femur";
   body.tissues.tissues[2].name = "Left tibia";
@@ -33,7 +34,8 @@ std::vector<WholeBone> judged(const SmallBody& body, const SmallBody& bound_as, 
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(bound_as.volume, tissue, bound_as.tissues, bound_as.armature);
   const SkinWeights weights = bind_rigid(bound_as.volume, tissue, bound_as.armature, parts);
-  const std::vector<RigidTransform> motions = {{}, rotation_about(body.armature.bones[1].head, glm::angleAxis(glm::radians(degrees), glm::dvec3(1, 0, 0)))};
+  const std::vector<RigidTransform> motions = {
+      {}, rotation_about(body.armature.bones[1].head, glm::angleAxis(glm::radians(degrees), glm::dvec3(1, 0, 0)))};
   return whole_bones(body.volume, tissue, body.tissues, body.armature, weights, motions);
 }
 }  // namespace
@@ -69,7 +71,8 @@ TEST_CASE("whole bones: a bone torn between two rig bones has a residual as larg
   const SmallBody body = named_bar();
   SmallBody half = body;
   for (std::int64_t at = 0; at < std::ssize(half.volume.voxels); ++at)
-    if (half.volume.voxels[at] == 3 && at / (half.volume.grid.size.x * half.volume.grid.size.y) < 32) half.volume.voxels[at] = kBone;
+    if (half.volume.voxels[at] == 3 && at / (half.volume.grid.size.x * half.volume.grid.size.y) < 32)
+      half.volume.voxels[at] = kBone;
   const auto bones = judged(body, half, 60);
   CHECK(bones[1].wrong_voxels > 0);
   CHECK(bones[1].wrong_voxels < bones[1].voxels);

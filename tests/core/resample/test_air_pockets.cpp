@@ -18,7 +18,8 @@ LabelVolume block() {
   volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count());
   for (int z = 1; z < 9; ++z)
     for (int y = 1; y < 11; ++y)
-      for (int x = 1; x < 13; ++x) volume.at({x, y, z}) = x == 1 || x == 12 || y == 1 || y == 10 || z == 1 || z == 8 ? 1 : 2;
+      for (int x = 1; x < 13; ++x)
+        volume.at({x, y, z}) = x == 1 || x == 12 || y == 1 || y == 10 || z == 1 || z == 8 ? 1 : 2;
   return volume;
 }
 
@@ -72,7 +73,9 @@ TEST_CASE("air pockets: in a random sponge they are the air that a flood from th
   }
 }
 
-TEST_CASE("air pockets: what the pose closed is filled with flesh, what was there stays, and what grew shrinks to what it was") {
+TEST_CASE(
+    "air pockets: what the pose closed is filled with flesh, what was there stays, and what grew shrinks to what it "
+    "was") {
   const LabelSet flesh = set_of({2}), soft = set_of({1, 2});
   LabelVolume rest = block();
   for (int x = 3; x < 6; ++x) rest.at({x, 4, 4}) = 0;

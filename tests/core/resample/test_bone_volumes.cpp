@@ -31,7 +31,8 @@ test::BentTube layered_tube() {
     auto influence = chunk.begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
       Influence& mine = *influence++;
-      const double from_end = std::min({std::abs(v.z - 40) - 6, v.z - 6, 73 - v.z}), inside = std::min(6 - std::hypot(v.x - 11, v.y - 12), from_end);
+      const double from_end = std::min({std::abs(v.z - 40) - 6, v.z - 6, 73 - v.z}),
+                   inside = std::min(6 - std::hypot(v.x - 11, v.y - 12), from_end);
       Label& label = tube.volume.at(v);
       if (label == test::kBone) label = test::kFat;
       if (inside < 0) return;
@@ -69,7 +70,8 @@ TEST_CASE("bone volumes: a layer of one voxel keeps its share of a bone that is 
     }
 }
 
-TEST_CASE("bone volumes: only voxels near a border change hands, to the tissue that lost, and none where nothing was lost") {
+TEST_CASE(
+    "bone volumes: only voxels near a border change hands, to the tissue that lost, and none where nothing was lost") {
   LabelVolume rest;
   rest.grid.size = {8, 8, 12};
   rest.voxels.assign(rest.grid.voxel_count(), kMarrow);

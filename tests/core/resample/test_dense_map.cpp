@@ -5,14 +5,14 @@
 
 #include <doctest/doctest.h>
 
+#include "core/binding/heat_diffusion.h"
 #include "core/deform/inverse_map.h"
+#include "core/phantom/phantom.h"
 #include "core/pose/pose_io.h"
 #include "core/resample/output_grid.h"
 #include "core/resample/resample.h"
-#include "core/rig/armature_io.h"
-#include "core/skin/heat_diffusion.h"
+#include "core/rig_io/rig_io.h"
 #include "core/skin/weights_io.h"
-#include "core/volume/phantom.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -45,8 +45,10 @@ struct Arm {
   // What `limber resample` writes.
   LabelVolume resampled_by_program(const Pose& pose, const std::string& method, bool nearest) const {
     write_pose(pose, phantom.armature, folder / "pose.json");
-    std::vector<std::string> words{"resample", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--rig", folder / "rig.json", "--weights", folder / "weights.nrrd",
-                                   "--pose", folder / "pose.json", "--method", method, "-o", folder / "posed.nrrd"};
+    std::vector<std::string> words{"resample", folder / "volume.nrrd", "--tissues", folder / "tissues.json",
+                                   "--rig",    folder / "rig.json",    "--weights", folder / "weights.nrrd",
+                                   "--pose",   folder / "pose.json",   "--method",  method,
+                                   "-o",       folder / "posed.nrrd"};
     if (nearest) words.push_back("--nearest");
     const auto run = test::run_limber(words);
     INFO(run.err);
@@ -108,14 +110,18 @@ struct Arm {
 
 }  // namespace
 
-TEST_CASE("dense map: the labels read through it are those that `limber resample` writes, bit for bit, but for the voxels that it says it mended"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "dense map: the labels read through it are those that `limber resample` writes, bit for bit, but for the voxels "
+    "that it says it mended" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const Pose pose = arm.bent();
-  for (const auto& [method, name, blend] : {std::tuple{Method(LinearBlend{}), "lbs", Blend::Linear}, {Method(DualQuaternion{}), "dqs", Blend::DualQuaternion}})
+  for (const auto& [method, name, blend] : {std::tuple{Method(LinearBlend{}), "lbs", Blend::Linear},
+                                            {Method(DualQuaternion{}), "dqs", Blend::DualQuaternion}})
     for (const bool nearest : {true, false}) {
       INFO(name, nearest ? ", nearest" : "");
-      const Posed live = resample(arm.phantom.volume, arm.phantom.tissues, arm.phantom.armature, arm.weights, pose, method, {.nearest = nearest});
+      const Posed live = resample(arm.phantom.volume, arm.phantom.tissues, arm.phantom.armature, arm.weights, pose,
+                                  method, {.nearest = nearest});
       const LabelVolume written = arm.resampled_by_program(pose, name, nearest);
       CHECK(live.volume.grid.size == written.grid.size);
       CHECK(live.volume.voxels == written.voxels);

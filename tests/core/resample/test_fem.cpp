@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/phantom/phantom.h"
 #include "core/report/metrics.h"
 #include "core/resample/resample.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
 #include "tests/support/bent_tube.h"
 
 using namespace limber;
@@ -35,16 +35,19 @@ struct Arm {
 double summed_change(const VolumeMetrics& metrics, const TissueTable& tissues, std::int64_t voxels) {
   double sum = 0;
   for (const TissueChange& change : metrics.tissues)
-    if (change.voxels_before >= voxels && !is_bone(tissues.find(change.label)->kind)) sum += std::abs(change.volume_change_percent);
+    if (change.voxels_before >= voxels && !is_bone(tissues.find(change.label)->kind))
+      sum += std::abs(change.volume_change_percent);
   return sum;
 }
 
 }  // namespace
 
-TEST_CASE("fem: where nothing bends the volume comes back bit for bit, and a body that turns as a whole turns rigidly") {
+TEST_CASE(
+    "fem: where nothing bends the volume comes back bit for bit, and a body that turns as a whole turns rigidly") {
   for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const test::BentTube tube = test::bent_tube(grid);
-    const Posed rest = resample(tube.volume, tube.tissues, tube.rig, tube.weights, rest_pose(tube.rig), Fem{.contact = true});
+    const Posed rest =
+        resample(tube.volume, tube.tissues, tube.rig, tube.weights, rest_pose(tube.rig), Fem{.contact = true});
     CHECK(rest.volume.grid == tube.volume.grid);
     CHECK(rest.volume.voxels == tube.volume.voxels);
     CHECK(rest.shape == nullptr);
@@ -53,12 +56,15 @@ TEST_CASE("fem: where nothing bends the volume comes back bit for bit, and a bod
     Pose turned = rest_pose(tube.rig);
     turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
     const Posed by_fem = resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, Fem{});
-    CHECK(by_fem.volume.voxels == resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}).volume.voxels);
+    CHECK(by_fem.volume.voxels ==
+          resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}).volume.voxels);
     CHECK_FALSE(by_fem.report.mesh);
   }
 }
 
-TEST_CASE("fem: the bent arm keeps the volume of its tissues where dual quaternions lose it, its tets upright and its bones rigid") {
+TEST_CASE(
+    "fem: the bent arm keeps the volume of its tissues where dual quaternions lose it, its tets upright and its bones "
+    "rigid") {
   const Arm arm;
   const Pose pose = arm.flexed(40);
   const Posed by_fem = arm.posed(pose, Fem{.spacing_mm = 10}), by_dqs = arm.posed(pose, DualQuaternion{});
@@ -73,28 +79,34 @@ TEST_CASE("fem: the bent arm keeps the volume of its tissues where dual quaterni
   CHECK(report.dropped_voxels == 0);
   for (const auto& bone : report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 
-  // By the mesh, all soft tissue: what keeps its volume is a patch of some eight tets, here of 10 mm, which spans several muscles.
+  // By the mesh, all soft tissue: what keeps its volume is a patch of some eight tets, here of 10 mm, which spans
+  // several muscles.
   double voxels = 0, gained = 0;
   for (const Tissue& tissue : arm.phantom.tissues.tissues) {
     const auto change = report.mesh->volume_change_percent.find(tissue.label);
     if (is_bone(tissue.kind) || change == report.mesh->volume_change_percent.end()) continue;
-    const double count = double(std::count(arm.phantom.volume.voxels.begin(), arm.phantom.volume.voxels.end(), tissue.label));
+    const double count =
+        double(std::count(arm.phantom.volume.voxels.begin(), arm.phantom.volume.voxels.end(), tissue.label));
     voxels += count;
     gained += count * change->second;
   }
   CHECK(std::abs(gained / voxels) < 0.5);
 
   // By voxels.
-  const double fem = summed_change(compare(arm.phantom.volume, by_fem.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
-  const double dqs = summed_change(compare(arm.phantom.volume, by_dqs.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
+  const double fem =
+      summed_change(compare(arm.phantom.volume, by_fem.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
+  const double dqs =
+      summed_change(compare(arm.phantom.volume, by_dqs.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
   INFO("summed change of volume, percent: fem ", fem, ", dual quaternions ", dqs);
   CHECK(fem < 0.3 * dqs);
 }
 
-TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do not keep the elbow from bending"
-          * doctest::test_suite("slow")) {
+TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do not keep the elbow from bending" *
+          doctest::test_suite("slow")) {
   const Arm arm;
-  CHECK(std::any_of(arm.phantom.tissues.tissues.begin(), arm.phantom.tissues.tissues.end(), [](const Tissue& tissue) { return tissue.kind == TissueKind::Tendon && tissue.young_modulus > 1e6; }));
+  CHECK(std::any_of(arm.phantom.tissues.tissues.begin(), arm.phantom.tissues.tissues.end(), [](const Tissue& tissue) {
+    return tissue.kind == TissueKind::Tendon && tissue.young_modulus > 1e6;
+  }));
   const Posed posed = arm.posed(arm.flexed(60), Fem{.contact = true, .quality = FemQuality::Draft});
   REQUIRE(posed.report.solve);
   INFO(posed.report.solve->blocked_by);
@@ -103,11 +115,12 @@ TEST_CASE("fem: the arm's tendons, thousands of times stiffer than its flesh, do
   CHECK(posed.report.mesh->min_det_f > 0.04);
 }
 
-TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit, of one joint and of several with contact"
-          * doctest::test_suite("slow")) {
+TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit, of one joint and of several with contact" *
+          doctest::test_suite("slow")) {
   const Arm arm;
   Pose several = arm.flexed(35);
-  for (const char* bone : {"Hand", "MiddleProximal"}) several.rotation[require_bone(arm.phantom.armature, bone)] = glm::angleAxis(0.4, glm::dvec3(1, 0, 0));
+  for (const char* bone : {"Hand", "MiddleProximal"})
+    several.rotation[require_bone(arm.phantom.armature, bone)] = glm::angleAxis(0.4, glm::dvec3(1, 0, 0));
   for (const auto& [pose, contact] : {std::pair{arm.flexed(20), false}, {several, true}}) {
     CAPTURE(contact);
     std::vector<Posed> results;
@@ -133,7 +146,8 @@ Posed folded(double degrees, const Fem& fem) {
 
 }  // namespace
 
-TEST_CASE("fem: with contact two parts of a limb that meet share no voxels, without it they do, and each says how much") {
+TEST_CASE(
+    "fem: with contact two parts of a limb that meet share no voxels, without it they do, and each says how much") {
   const Posed through = folded(120, {.spacing_mm = 4}), touching = folded(120, {.contact = true, .spacing_mm = 4});
   for (const Posed* result : {&through, &touching}) {
     CHECK(result->report.solve->converged);
@@ -149,8 +163,8 @@ TEST_CASE("fem: with contact two parts of a limb that meet share no voxels, with
   CHECK(*touching.report.mesh->min_gap_mm > 0);
 }
 
-TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and says what stands in the way"
-          * doctest::test_suite("slow")) {
+TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and says what stands in the way" *
+          doctest::test_suite("slow")) {
   const Posed result = folded(179, {.contact = true, .spacing_mm = 4});
   REQUIRE(result.report.solve);
   CHECK_FALSE(result.report.solve->converged);
@@ -167,13 +181,16 @@ TEST_CASE("fem: fingers close onto each other and the palm, and pass through nei
   const Phantom phantom = make_arm_phantom(3);
   const SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
   Pose pose = rest_pose(phantom.armature);
-  const auto bend = [&](const char* bone, double degrees) { flex(pose, phantom.armature, require_bone(phantom.armature, bone), degrees); };
+  const auto bend = [&](const char* bone, double degrees) {
+    flex(pose, phantom.armature, require_bone(phantom.armature, bone), degrees);
+  };
   for (const std::string finger : {"Ring", "Little"}) {
     bend((finger + "Proximal").c_str(), 70);
     bend((finger + "Middle").c_str(), 80);
     bend((finger + "Distal").c_str(), 45);
   }
-  const Posed posed = resample(phantom.volume, phantom.tissues, phantom.armature, weights, pose, Fem{.contact = true, .quality = FemQuality::Fine});
+  const Posed posed = resample(phantom.volume, phantom.tissues, phantom.armature, weights, pose,
+                               Fem{.contact = true, .quality = FemQuality::Fine});
   REQUIRE(posed.report.solve);
   INFO(posed.report.solve->blocked_by);
   CHECK(posed.report.solve->converged);
@@ -184,20 +201,25 @@ TEST_CASE("fem: fingers close onto each other and the palm, and pass through nei
   REQUIRE(posed.report.mesh->min_gap_mm);  // they do touch
   CHECK(*posed.report.mesh->min_gap_mm < 2);
   CHECK(posed.report.new_hole_voxels == 0);
-  const auto all = [](const LabelVolume& volume) { return double(std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label != 0; })); };
+  const auto all = [](const LabelVolume& volume) {
+    return double(std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label != 0; }));
+  };
   CHECK(std::abs(all(posed.volume) / all(phantom.volume) - 1) < 0.005);
-  MESSAGE("closed in ", posed.report.solve->iterations, " iterations, ", posed.report.mesh->tets, " tets, overlap ", posed.report.overlap_voxels);
+  MESSAGE("closed in ", posed.report.solve->iterations, " iterations, ", posed.report.mesh->tets, " tets, overlap ",
+          posed.report.overlap_voxels);
 }
 
-TEST_CASE("fem: frames of a sequence share one mesh and start from the one before, in fewer iterations than from rest") {
+TEST_CASE(
+    "fem: frames of a sequence share one mesh and start from the one before, in fewer iterations than from rest") {
   const test::BentTube tube = test::bent_tube({}, 84);
   const std::vector<Pose> poses = {tube.pose(40), tube.pose(50), tube.pose(50), tube.pose(60)};
   const Fem fem{.contact = true, .spacing_mm = 4};
   std::vector<Posed> frames;
-  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, fem, {}, [&](std::size_t place, Posed posed) {
-    CHECK(place == frames.size());
-    frames.push_back(std::move(posed));
-  });
+  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, fem, {},
+                    [&](std::size_t place, Posed posed) {
+                      CHECK(place == frames.size());
+                      frames.push_back(std::move(posed));
+                    });
   REQUIRE(frames.size() == poses.size());
   for (const Posed& frame : frames) {
     REQUIRE(frame.shape);
@@ -212,7 +234,10 @@ TEST_CASE("fem: frames of a sequence share one mesh and start from the one befor
   // The last one from rest.
   const Posed direct = resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[3], fem);
   CHECK(frames[3].report.solve->iterations < direct.report.solve->iterations);
-  const auto soft = [](const LabelVolume& volume) { return std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label == test::kFat || label == test::kSkin; }); };
+  const auto soft = [](const LabelVolume& volume) {
+    return std::count_if(volume.voxels.begin(), volume.voxels.end(),
+                         [](Label label) { return label == test::kFat || label == test::kSkin; });
+  };
   CHECK(double(std::abs(soft(direct.volume) - soft(frames[3].volume))) < 0.003 * double(soft(direct.volume)));
 }
 
@@ -221,8 +246,8 @@ TEST_CASE("fem: what a later frame of a sequence presses waits for it") {
   const TissueVoxels tissue(tube.volume);
   LabelSet is_bone(65536, 0);
   is_bone[test::kBone] = 1;
-  FemSequence sequence(tube.volume, tissue, tube.tissues, is_bone, tube.weights, tube.rig, {tube.pose(55), tube.pose(110), tube.pose(165)},
-                       {.contact = true, .spacing_mm = 6});
+  FemSequence sequence(tube.volume, tissue, tube.tissues, is_bone, tube.weights, tube.rig,
+                       {tube.pose(55), tube.pose(110), tube.pose(165)}, {.contact = true, .spacing_mm = 6});
   std::vector<std::map<int, double>> waiting;  // by node
   for (int leg = 0; leg < 3; ++leg) {
     const auto shape = sequence.next();
@@ -242,9 +267,13 @@ TEST_CASE("resample: a sequence is its poses one by one, with blends") {
   const test::BentTube tube = test::bent_tube();
   const std::vector<Pose> poses = {tube.pose(30), rest_pose(tube.rig), tube.pose(-20, 15)};
   std::size_t count = 0;
-  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, DualQuaternion{}, {}, [&](std::size_t place, Posed posed) {
-    CHECK(posed.volume.voxels == resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[place], DualQuaternion{}).volume.voxels);
-    ++count;
-  });
+  resample_sequence(
+      tube.volume, tube.tissues, tube.rig, tube.weights, poses, DualQuaternion{}, {},
+      [&](std::size_t place, Posed posed) {
+        CHECK(
+            posed.volume.voxels ==
+            resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[place], DualQuaternion{}).volume.voxels);
+        ++count;
+      });
   CHECK(count == poses.size());
 }

@@ -65,8 +65,10 @@ TEST_CASE("steps of finite elements: what is left in files is read as it was, si
 TEST_CASE("steps of finite elements: files that end early, or tell of nodes that are not there, are refused") {
   const FemMesh mesh = small_mesh();
   const std::string whole = encode(mesh), step = encode(small_step(mesh));
-  for (std::size_t size = 0; size < whole.size(); size += 37) CHECK_THROWS_AS(decode_fem_mesh(whole.substr(0, size), "here"), Error);
-  for (std::size_t size = 0; size < step.size(); size += 7) CHECK_THROWS_AS(decode_fem_step(step.substr(0, size), "here"), Error);
+  for (std::size_t size = 0; size < whole.size(); size += 37)
+    CHECK_THROWS_AS(decode_fem_mesh(whole.substr(0, size), "here"), Error);
+  for (std::size_t size = 0; size < step.size(); size += 7)
+    CHECK_THROWS_AS(decode_fem_step(step.substr(0, size), "here"), Error);
   FemMesh wild = mesh;
   wild.tets.T(3, 2) = static_cast<int>(mesh.tets.V.rows());
   CHECK_THROWS_AS(decode_fem_mesh(encode(wild), "here"), Error);

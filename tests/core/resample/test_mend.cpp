@@ -80,7 +80,9 @@ TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apar
   LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 13, kFlesh);
-  const auto carried_apart = [](const glm::ivec3& v) { return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 13 ? 8 : 0, 0, 0); };
+  const auto carried_apart = [](const glm::ivec3& v) {
+    return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 13 ? 8 : 0, 0, 0);
+  };
   CHECK(mend(posed, rest, soft(), carried_apart) == 0);
 
   // Two strands at rest, and one piece more that comes from elsewhere.
@@ -100,7 +102,9 @@ TEST_CASE("mend: a strand that fell between the voxels' centres is traced along 
   LabelVolume posed = rest;
   cut(posed, 9, 14, kFlesh);
   // It came to lie a voxel beside the centres: they all come from what is right beside it.
-  const auto beside = [](const glm::ivec3& v) { return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 14 ? 2 : 0, 0, 0); };
+  const auto beside = [](const glm::ivec3& v) {
+    return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 14 ? 2 : 0, 0, 0);
+  };
   CHECK(mend(posed, rest, soft(), beside) == 6);
   CHECK(parts(posed, kStrand) == 1);
 }

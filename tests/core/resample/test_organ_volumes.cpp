@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/volume/components.h"
+#include "core/volume/connected_components.h"
 
 using namespace limber;
 

@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/volume/landmarks.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/landmarks.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -33,25 +33,31 @@ std::vector<Landmark> points_in(const VolumeFile& file) {
   for (int z = 1; z + 1 < file.volume.grid.size.z; ++z)
     for (int y = 1; y + 1 < file.volume.grid.size.y; ++y)
       for (int x = 1; x + 1 < file.volume.grid.size.x; ++x)
-        if (file.volume.at({x, y, z}) != 0 && ++met % 37 == 0) points.push_back({"p" + std::to_string(points.size()), to_world * glm::dvec3(x, y, z)});
+        if (file.volume.at({x, y, z}) != 0 && ++met % 37 == 0)
+          points.push_back({"p" + std::to_string(points.size()), to_world * glm::dvec3(x, y, z)});
   return points;
 }
 }  // namespace
 
-TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that they were in, and those of the hand move as one, by blending and by finite elements"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "landmarks: at rest they stay, in a pose they lie in the tissue that they were in, and those of the hand move as "
+    "one, by blending and by finite elements" *
+    doctest::test_suite("slow")) {
   const Arm arm;
   const auto points = points_in(read_volume(arm.volume));
   REQUIRE(points.size() > 20);
   const std::string in = arm.folder / "in.csv", out = arm.folder / "out.csv";
   write_landmarks(points, in);
-  REQUIRE(arm.resample({"--method", "lbs", "-o", arm.folder / "rest.nrrd", "--landmarks", in + "=" + out}).exit_code == 0);
+  REQUIRE(arm.resample({"--method", "lbs", "-o", arm.folder / "rest.nrrd", "--landmarks", in + "=" + out}).exit_code ==
+          0);
   const auto still = read_landmarks(out);
   REQUIRE(still.size() == points.size());
   for (size_t i = 0; i < points.size(); ++i) CHECK(glm::distance(still[i].position, points[i].position) < 1e-9);
 
-  for (const std::vector<std::string>& method : std::vector<std::vector<std::string>>{{"lbs"}, {"dqs"}, {"fem", "--quality", "draft", "--mesh-out", arm.folder / "tets", "--mesh-unit", "cm"}}) {
-    std::vector<std::string> words = {"--flex", "Forearm=20", "-o", arm.folder / "bent.nrrd", "--landmarks", in + "=" + out, "--method"};
+  for (const std::vector<std::string>& method : std::vector<std::vector<std::string>>{
+           {"lbs"}, {"dqs"}, {"fem", "--quality", "draft", "--mesh-out", arm.folder / "tets", "--mesh-unit", "cm"}}) {
+    std::vector<std::string> words = {"--flex",      "Forearm=20",   "-o",      arm.folder / "bent.nrrd",
+                                      "--landmarks", in + "=" + out, "--method"};
     words.insert(words.end(), method.begin(), method.end());
     const auto run = arm.resample(words);
     INFO(method.front(), ": ", run.err);
@@ -62,15 +68,20 @@ TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that t
     const VolumeFile rest = read_volume(arm.volume);
     for (size_t i = 0; i < points.size(); ++i) {
       moved += glm::distance(posed[i].position, points[i].position) > 5;
-      const glm::ivec3 there(glm::floor(voxel_from_world(bent.volume.grid) * posed[i].position + 0.5)), here(glm::floor(voxel_from_world(rest.volume.grid) * points[i].position + 0.5));
+      const glm::ivec3 there(glm::floor(voxel_from_world(bent.volume.grid) * posed[i].position + 0.5)),
+          here(glm::floor(voxel_from_world(rest.volume.grid) * points[i].position + 0.5));
       at_home += bent.volume.grid.contains(there) && bent.volume.at(there) == rest.volume.at(here);
     }
     CHECK(moved > 5);
     std::vector<size_t> order(points.size());
     std::iota(order.begin(), order.end(), size_t{0});
-    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return glm::distance(posed[a].position, points[a].position) > glm::distance(posed[b].position, points[b].position); });
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+      return glm::distance(posed[a].position, points[a].position) >
+             glm::distance(posed[b].position, points[b].position);
+    });
     for (size_t i = 1; i < 5; ++i)
-      CHECK(glm::distance(posed[order[0]].position, posed[order[i]].position) == doctest::Approx(glm::distance(points[order[0]].position, points[order[i]].position)).epsilon(1e-6));
+      CHECK(glm::distance(posed[order[0]].position, posed[order[i]].position) ==
+            doctest::Approx(glm::distance(points[order[0]].position, points[order[i]].position)).epsilon(1e-6));
     CHECK(at_home > 0.8 * double(points.size()));  // in the tissue that it was in; voxels are coarse
   }
 
@@ -78,7 +89,8 @@ TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that t
   std::ifstream tets(arm.folder / "tets.ele"), materials(arm.folder / "tets.material"), nodes(arm.folder / "tets.node");
   int count = 0, four = 0, one = 0, index = 0, corner = 0, organ = 0;
   std::vector<int> organs;
-  for (tets >> count >> four >> one; tets >> index >> corner >> corner >> corner >> corner >> organ;) organs.push_back(organ);
+  for (tets >> count >> four >> one; tets >> index >> corner >> corner >> corner >> corner >> organ;)
+    organs.push_back(organ);
   CHECK(static_cast<int>(organs.size()) == count);
   std::vector<int> listed;
   double density = 0, sum = 1;
@@ -100,7 +112,8 @@ TEST_CASE("landmarks: at rest they stay, in a pose they lie in the tissue that t
   }
   for (const int number : organs) CHECK(std::find(listed.begin(), listed.end(), number) != listed.end());
   double largest = 0, x = 0, y = 0, z = 0;
-  for (nodes >> count >> four >> one >> one; nodes >> index >> x >> y >> z;) largest = std::max({largest, std::abs(x), std::abs(y), std::abs(z)});
+  for (nodes >> count >> four >> one >> one; nodes >> index >> x >> y >> z;)
+    largest = std::max({largest, std::abs(x), std::abs(y), std::abs(z)});
   CHECK(largest < 100);  // cm
   CHECK(largest > 5);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses that no one asked for, of bodies that no one has: nothing may crash, hang, or come out inverted or without a number, and
-// what cannot be reached says why. LIMBER_RANDOM_POSES=300 runs so many; LIMBER_RANDOM_POSE=7 that one alone, with both from it on.
+// Poses that no one asked for, of bodies that no one has: nothing may crash, hang, or come out inverted or without a
+// number, and what cannot be reached says why. LIMBER_RANDOM_POSES=300 runs so many; LIMBER_RANDOM_POSE=7 that one
+// alone, with both from it on.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -10,11 +11,11 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/phantom/phantom.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/resample.h"
 #include "core/rig/joint_limits.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/phantom.h"
 #include "tests/support/random_limbs.h"
 
 using namespace limber;
@@ -70,7 +71,8 @@ class Cases {
     one.pose = rest_pose(one.body->rig);
     turn_joints(one.pose, random, 120);
     if (allowed)
-      for (size_t b = 0; b < one.pose.rotation.size(); ++b) one.pose.rotation[b] = within_limits(one.body->rig.bones[b], one.pose.rotation[b]);
+      for (size_t b = 0; b < one.pose.rotation.size(); ++b)
+        one.pose.rotation[b] = within_limits(one.body->rig.bones[b], one.pose.rotation[b]);
     return one;
   }
 
@@ -90,26 +92,32 @@ void check_shape(const FemShape& shape, const Fem& fem) {
   CHECK((!solve.converged || solve.reached == 1));
   CHECK(solve.converged == solve.blocked_by.empty());
   CHECK(solve.bone_drift_mm <= std::max(2.0, *fem.spacing_mm / 2) + 1e-9);
-  if (solve.converged) CHECK(solve.residual_mm < 0.9);  // of the few nodes that have not settled; all others are below 0.3
+  if (solve.converged)
+    CHECK(solve.residual_mm < 0.9);  // of the few nodes that have not settled; all others are below 0.3
 }
 
 void check_volume(const Posed& posed, const Body& body) {
-  const std::set<Label> known(body.volume.voxels.begin(), body.volume.voxels.end()), there(posed.volume.voxels.begin(), posed.volume.voxels.end());
+  const std::set<Label> known(body.volume.voxels.begin(), body.volume.voxels.end()),
+      there(posed.volume.voxels.begin(), posed.volume.voxels.end());
   CHECK(std::includes(known.begin(), known.end(), there.begin(), there.end()));
   CHECK(posed.report.new_hole_voxels == 0);
   CHECK(posed.report.dropped_voxels == 0);
   for (const auto& bone : posed.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
-  const auto all = [](const LabelVolume& volume) { return double(std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label != 0; })); };
+  const auto all = [](const LabelVolume& volume) {
+    return double(std::count_if(volume.voxels.begin(), volume.voxels.end(), [](Label label) { return label != 0; }));
+  };
   CHECK(all(posed.volume) > 0.5 * all(body.volume));
 }
 
 }  // namespace
 
-TEST_CASE("random poses: finite elements never crash, hang or invert, and say what a pose is blocked by"
-          * doctest::test_suite("slow")) {
+TEST_CASE("random poses: finite elements never crash, hang or invert, and say what a pose is blocked by" *
+          doctest::test_suite("slow")) {
   const char* asked = std::getenv("LIMBER_RANDOM_POSES");
   const char* one = std::getenv("LIMBER_RANDOM_POSE");
-  const unsigned first = one ? unsigned(std::atoi(one)) : 0, end = one && !asked ? first + 1 : asked ? unsigned(std::atoi(asked)) : 10;
+  const unsigned first = one ? unsigned(std::atoi(one)) : 0, end = one && !asked ? first + 1
+                                                                   : asked       ? unsigned(std::atoi(asked))
+                                                                                 : 10;
   Cases cases;
   int reached = 0, solved = 0, crossing = 0, refused = 0;
   double longest = 0;
@@ -120,7 +128,8 @@ TEST_CASE("random poses: finite elements never crash, hang or invert, and say wh
     const double start = cpu_seconds();
     Posed posed;
     try {
-      posed = resample(random.body->volume, random.body->tissues, random.body->rig, random.body->weights, random.pose, random.fem);
+      posed = resample(random.body->volume, random.body->tissues, random.body->rig, random.body->weights, random.pose,
+                       random.fem);
     } catch (const Error& error) {
       // Tets larger than all that moves: the one thing that is refused.
       CHECK(std::string(error.what()).find("no bone that moves is as large") != std::string::npos);
@@ -138,8 +147,10 @@ TEST_CASE("random poses: finite elements never crash, hang or invert, and say wh
     const auto pairs = *posed.shape->mesh.self_intersections;
     crossing += random.fem.contact && pairs > 0;
     if (asked || one)
-      MESSAGE(seed, " ", random.name, std::string(random.fem.contact ? ", contact: " : ": "), posed.shape->mesh.tets, " tets, ", seconds, " s, reached ", solve.reached, " ",
-              solve.blocked_by, ", ", solve.iterations, " iterations, least det F ", posed.shape->mesh.min_det_f, ", crossing pairs ", pairs);
+      MESSAGE(seed, " ", random.name, std::string(random.fem.contact ? ", contact: " : ": "), posed.shape->mesh.tets,
+              " tets, ", seconds, " s, reached ", solve.reached, " ", solve.blocked_by, ", ", solve.iterations,
+              " iterations, least det F ", posed.shape->mesh.min_det_f, ", crossing pairs ", pairs);
   }
-  MESSAGE(solved, " solved: ", reached, " reached, ", crossing, " with contact cross themselves, ", refused, " refused; the longest took ", longest, " CPU seconds");
+  MESSAGE(solved, " solved: ", reached, " reached, ", crossing, " with contact cross themselves, ", refused,
+          " refused; the longest took ", longest, " CPU seconds");
 }

@@ -21,7 +21,8 @@ Posed posed(const test::BentTube& tube, const Pose& pose, const Method& method, 
 
 }  // namespace
 
-TEST_CASE("resample: the rest pose gives back the volume bit for bit, on straight, mirrored, oblique and anisotropic grids") {
+TEST_CASE(
+    "resample: the rest pose gives back the volume bit for bit, on straight, mirrored, oblique and anisotropic grids") {
   for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const test::BentTube tube = test::bent_tube(grid);
     for (const Method& method : kMethods)
@@ -72,12 +73,15 @@ TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare t
     }
 }
 
-TEST_CASE("resample: closing the skin costs the tissue below it next to nothing, since what lies double elsewhere is given back") {
+TEST_CASE(
+    "resample: closing the skin costs the tissue below it next to nothing, since what lies double elsewhere is given "
+    "back") {
   const test::BentTube tube = test::bent_tube({}, 84);
   for (const Method& method : kMethods)
     for (double degrees : {20.0, 40.0}) {
       const auto skin_of = [&](const ResampleSettings& settings) {
-        const VolumeMetrics change = compare(tube.volume, posed(tube, tube.pose(degrees, 20), method, settings).volume, tube.tissues);
+        const VolumeMetrics change =
+            compare(tube.volume, posed(tube, tube.pose(degrees, 20), method, settings).volume, tube.tissues);
         for (const TissueChange& tissue : change.tissues)
           if (tissue.label == test::kSkin) return std::pair(tissue.volume_change_percent, change.skin_share_after);
         return std::pair(0.0, 0.0);
@@ -143,7 +147,8 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
     SkinWeights::Influences chunk;
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
       const double fore = std::clamp(0.5 + (v.z - joint) / 12.0, 0.0, 1.0);
-      chunk.push_back(tube.volume.at(v) == test::kBone ? rigid_influence(v.z > joint) : quantize({{0, 1 - fore}, {1, fore}}));
+      chunk.push_back(tube.volume.at(v) == test::kBone ? rigid_influence(v.z > joint)
+                                                       : quantize({{0, 1 - fore}, {1, fore}}));
     });
     tube.weights.set_chunk(brick, chunk);
   }
@@ -157,10 +162,12 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
     for (v.y = 0; v.y < grid.size.y; ++v.y)
       for (v.x = 0; v.x < grid.size.x; ++v.x) {
         if (result.volume.at(v) == 0) continue;
-        const glm::dvec3 rest = voxel_from_world(tube.volume.grid) * (world_from_voxel(grid) * glm::dvec3(v) - glm::dvec3(result.displacement[grid.index(v)]));
+        const glm::dvec3 rest = voxel_from_world(tube.volume.grid) * (world_from_voxel(grid) * glm::dvec3(v) -
+                                                                      glm::dvec3(result.displacement[grid.index(v)]));
         bool near_tissue = false;  // rest points on the tissue's border round to either side
         for (int corner = 0; corner < 8; ++corner)
-          near_tissue |= tube.volume.at_or_air(glm::ivec3(glm::floor(rest)) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)) != 0;
+          near_tissue |= tube.volume.at_or_air(glm::ivec3(glm::floor(rest)) +
+                                               glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)) != 0;
         from_nowhere += !near_tissue;
       }
   CHECK(from_nowhere == 0);

@@ -17,8 +17,8 @@ LabelSet set_of(std::initializer_list<Label> labels) {
   return set;
 }
 
-// A pole of bone in flesh on slices of 6 mm; each slice has skin around it but for one side, where flesh is bare, and in the
-// outermost corner bone is.
+// A pole of bone in flesh on slices of 6 mm; each slice has skin around it but for one side, where flesh is bare, and
+// in the outermost corner bone is.
 LabelVolume open_body() {
   LabelVolume volume;
   volume.grid.size = {24, 24, 10};
@@ -27,7 +27,8 @@ LabelVolume open_body() {
   for (int z = 1; z < 9; ++z)
     for (int y = 2; y < 22; ++y)
       for (int x = 2; x < 22; ++x) {
-        const bool is_skin = x == 2 || y == 2 || y == 21, is_bone = std::abs(x - 12) < 3 && std::abs(y - 12) < 3 && z > 1 && z < 8;
+        const bool is_skin = x == 2 || y == 2 || y == 21,
+                   is_bone = std::abs(x - 12) < 3 && std::abs(y - 12) < 3 && z > 1 && z < 8;
         volume.at({x, y, z}) = is_bone ? kBone : is_skin ? kSkin : kFlesh;
       }
   volume.at({21, 12, 4}) = kBone;
@@ -51,8 +52,8 @@ TEST_CASE("skin at rest: of a body with open skin bone that lay deep inside was 
 TEST_CASE("posed skin: bone that came to the air gets skin over it where skin is near, walls of enclosed air stay") {
   LabelVolume posed = open_body();
   const LabelSet flesh = set_of({kFlesh}), bone = set_of({kBone}), skin = set_of({kSkin});
-  posed.at({2, 10, 4}) = kBone;    // through the skin
-  posed.at({12, 17, 4}) = 0;       // air that the body encloses
+  posed.at({2, 10, 4}) = kBone;  // through the skin
+  posed.at({12, 17, 4}) = 0;     // air that the body encloses
   std::vector<UnderSkin> under{{posed.grid.index({2, 10, 4}), 0}, {posed.grid.index({12, 18, 4}), 0}};
   std::vector<glm::ivec3> was_air;
   CHECK(cover_bare_flesh(posed, under, flesh, bone, skin, was_air) == 1);

@@ -47,10 +47,15 @@ LabelVolume ball(int size = 36) {
   return volume;
 }
 
-std::int64_t count(const LabelVolume& volume, Label label) { return std::count(volume.voxels.begin(), volume.voxels.end(), label); }
+std::int64_t count(const LabelVolume& volume, Label label) {
+  return std::count(volume.voxels.begin(), volume.voxels.end(), label);
+}
 
 std::map<Label, std::int64_t> soft_counts(const LabelVolume& volume) {
-  return {{kSkin, count(volume, kSkin)}, {kFat, count(volume, kFat)}, {kMuscle, count(volume, kMuscle)}, {kVessel, count(volume, kVessel)}};
+  return {{kSkin, count(volume, kSkin)},
+          {kFat, count(volume, kFat)},
+          {kMuscle, count(volume, kMuscle)},
+          {kVessel, count(volume, kVessel)}};
 }
 
 // Every voxel at a border may change; that of a pair (x + y) % 4 costs as much.
@@ -71,7 +76,8 @@ std::vector<BorderMove> border_moves(const LabelVolume& volume) {
             beside[axis] += side;
             if (const Label label = volume.at_or_air(beside); label != own && sets.soft[label]) others.insert(label);
           }
-        for (const Label other : others) moves.push_back({volume.grid.index(v), own, other, 0.1f * float((v.x + v.y) % 4)});
+        for (const Label other : others)
+          moves.push_back({volume.grid.index(v), own, other, 0.1f * float((v.x + v.y) % 4)});
       }
   return moves;
 }
@@ -84,7 +90,8 @@ void check_sound(const LabelVolume& before, const LabelVolume& after) {
     if (label != kSkin) CHECK(is.surface_voxels[label] == was.surface_voxels[label]);
   }
   CHECK(is.enclosed_air_voxels == was.enclosed_air_voxels);
-  for (size_t i = 0; i < before.voxels.size(); ++i) CHECK_MESSAGE((before.voxels[i] == kBone) == (after.voxels[i] == kBone), i);
+  for (size_t i = 0; i < before.voxels.size(); ++i)
+    CHECK_MESSAGE((before.voxels[i] == kBone) == (after.voxels[i] == kBone), i);
 }
 
 TissueVolumes keep(LabelVolume& volume, const std::map<Label, std::int64_t>& wanted) {
@@ -159,7 +166,9 @@ TEST_CASE("tissue volumes: a strand is not torn, and what could not be had is to
   check_sound(before, after);
 }
 
-TEST_CASE("mass-exact: soft tissues of a bent limb get their rest volumes with every blend, bones, parts and the closed skin stay") {
+TEST_CASE(
+    "mass-exact: soft tissues of a bent limb get their rest volumes with every blend, bones, parts and the closed skin "
+    "stay") {
   const test::BentTube tube = test::bent_tube({}, 120);
   const auto soft_share_off = [&](const LabelVolume& volume) {
     double most = 0;
@@ -169,7 +178,8 @@ TEST_CASE("mass-exact: soft tissues of a bent limb get their rest volumes with e
   };
   for (const Method& method : {Method(LinearBlend{}), Method(DualQuaternion{})}) {
     const Posed plain = resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(25), method);
-    const Posed exact = resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(25), method, {.mass_exact = true});
+    const Posed exact =
+        resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(25), method, {.mass_exact = true});
     CHECK(soft_share_off(plain.volume) > 0.001);
     CHECK(soft_share_off(exact.volume) < 0.001);
     REQUIRE(exact.report.mass_exact);
@@ -192,14 +202,18 @@ TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused wh
   const test::BentTube tube = test::bent_tube({}, 120);
   const auto posed = [&](double degrees, int threads) {
     const ThreadCount count(threads);
-    return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), LinearBlend{}, {.mass_exact = true}).volume.voxels;
+    return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), LinearBlend{},
+                    {.mass_exact = true})
+        .volume.voxels;
   };
   CHECK(posed(25, 1) == posed(25, 2));
   CHECK(posed(0, 1) == tube.volume.voxels);
   // A body that turns as a whole loses nothing but what the grid takes, and gets that back.
   Pose turned = rest_pose(tube.rig);
   turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
-  const LabelVolume whole = resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}, {.mass_exact = true}).volume;
-  for (const Label label : {test::kSkin, test::kFat}) CHECK(std::abs(double(count(whole, label)) / double(count(tube.volume, label)) - 1) < 0.001);
+  const LabelVolume whole =
+      resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}, {.mass_exact = true}).volume;
+  for (const Label label : {test::kSkin, test::kFat})
+    CHECK(std::abs(double(count(whole, label)) / double(count(tube.volume, label)) - 1) < 0.001);
   CHECK_THROWS_WITH_AS(posed(120, 2), doctest::Contains("mass-exact"), Error);
 }

@@ -53,11 +53,14 @@ TEST_CASE("edited rigs: a turned bone takes its axes and its hinge along") {
   const Armature rig = small_rig();
   const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3)));
   const glm::dvec3 head = rig.bones[2].head;
-  const Armature next = with_moved_ends(rig, {{2, true}}, [&](const glm::dvec3& p) { return head + turn * (p - head); });
+  const Armature next =
+      with_moved_ends(rig, {{2, true}}, [&](const glm::dvec3& p) { return head + turn * (p - head); });
   const glm::dvec3 along = glm::normalize(next.bones[2].tail - head);
-  CHECK(std::abs(glm::dot(next.bones[2].limits.axis, along) - glm::dot(rig.bones[2].limits.axis, glm::normalize(rig.bones[2].tail - head))) < 1e-12);
+  CHECK(std::abs(glm::dot(next.bones[2].limits.axis, along) -
+                 glm::dot(rig.bones[2].limits.axis, glm::normalize(rig.bones[2].tail - head))) < 1e-12);
   // A shift turns nothing.
-  const Armature shifted = with_moved_ends(rig, {{2, false}, {2, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(1, 2, 3); });
+  const Armature shifted =
+      with_moved_ends(rig, {{2, false}, {2, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(1, 2, 3); });
   CHECK(shifted.bones[2].limits == rig.bones[2].limits);
   CHECK(glm::distance(rest_axes(shifted.bones[2])[0], rest_axes(rig.bones[2])[0]) < 1e-12);
 }
@@ -83,7 +86,8 @@ TEST_CASE("edited rigs: a gap is filled by a bone that hangs on the first and ca
   CHECK(parent_of(chain, "Hand") == "Fore.L.001");
   CHECK(is_connected(chain, require_bone(chain, "Hand")));
   CHECK(is_connected(chain, require_bone(chain, "Fore.L.001")));
-  // Between two bones of one tree, tail to tail, nobody hangs on the new one; from a head it hangs where that one hangs.
+  // Between two bones of one tree, tail to tail, nobody hangs on the new one; from a head it hangs where that one
+  // hangs.
   const Armature across = filled(rig, {2, true}, {4, true});
   CHECK(across.bones.back().tail == rig.bones[4].tail);
   CHECK(parent_of(across, "Fore.R") == "Arm.R");
@@ -189,7 +193,8 @@ TEST_CASE("edited rigs: what is done on one side happens on the other in the mir
   CHECK(glm::distance(named(both, "Fore.R").tail, named(both, "Fore.L").tail * glm::dvec3(-1, 1, 1)) < 1e-9);
   CHECK(named(both, "Arm.R") == named(rig, "Arm.R"));
   // What was moved on both sides keeps what was done there.
-  const Armature own = with_moved_ends(rig, {{2, true}, {4, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(5, 6, 7); });
+  const Armature own =
+      with_moved_ends(rig, {{2, true}, {4, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(5, 6, 7); });
   CHECK(with_mirrored_changes(rig, own) == own);
 
   // What grows on one side grows on the other.
@@ -246,12 +251,15 @@ TEST_CASE("edited rigs: a thousand edits by chance leave a rig that is one") {
 
 TEST_CASE("edited rigs: many names change at once, sides swap, and no two bones get one name") {
   Armature rig;
-  rig.bones = {{"Spine", -1, {0, 0, 0}, {0, 0, 9}, 0, {}}, {"Arm.L", 0, {1, 0, 9}, {9, 0, 9}, 0, {}}, {"Arm.R", 0, {-1, 0, 9}, {-9, 0, 9}, 0, {}}};
+  rig.bones = {{"Spine", -1, {0, 0, 0}, {0, 0, 9}, 0, {}},
+               {"Arm.L", 0, {1, 0, 9}, {9, 0, 9}, 0, {}},
+               {"Arm.R", 0, {-1, 0, 9}, {-9, 0, 9}, 0, {}}};
   const Armature swapped = with_names_changed(rig, {0, 1, 2}, {.other_side = true});
   CHECK(swapped.bones[0].name == "Spine");
   CHECK(swapped.bones[1].name == "Arm.R");
   CHECK(swapped.bones[2].name == "Arm.L");
-  CHECK(with_names_changed(rig, {1}, {.find = "A", .replace = "AA", .prefix = "x ", .suffix = "!"}).bones[1].name == "x AArm.L!");
+  CHECK(with_names_changed(rig, {1}, {.find = "A", .replace = "AA", .prefix = "x ", .suffix = "!"}).bones[1].name ==
+        "x AArm.L!");
   CHECK_THROWS_AS(with_names_changed(rig, {1}, {.other_side = true}), Error);
   CHECK_THROWS_AS(with_names_changed(rig, {0}, {.find = "Spine"}), Error);
 }

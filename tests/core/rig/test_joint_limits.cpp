@@ -16,9 +16,13 @@ glm::dquat any_rotation(std::mt19937& random) {
   return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
 }
 
-Bone bone_with(const JointLimits& limits) { return {.name = "b", .head = {0, 0, 0}, .tail = {0, 0, 10}, .limits = limits}; }
+Bone bone_with(const JointLimits& limits) {
+  return {.name = "b", .head = {0, 0, 0}, .tail = {0, 0, 10}, .limits = limits};
+}
 
-double angle_between(const glm::dquat& a, const glm::dquat& b) { return 2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b)))); }
+double angle_between(const glm::dquat& a, const glm::dquat& b) {
+  return 2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))));
+}
 
 }  // namespace
 

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/rig/armature_io.h"
-#include "core/rig/bvh.h"
+#include "core/motion/bvh.h"
+#include "core/rig_io/rig_io.h"
 #include "tests/support/shared_data.h"
 
 using namespace limber;
@@ -36,8 +36,9 @@ struct Named {
 }  // namespace
 
 TEST_CASE("joint names: the schools of naming are understood") {
-  const Named cmu{"Hips", "LHipJoint", "LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToeBase", "<LowerBack", "Spine", "Spine1", "Neck", "Neck1", "Head",
-                  "<LeftShoulder", "LeftArm", "LeftForeArm", "LeftHand", "LeftFingerBase", "LFingers", "<LThumb"};
+  const Named cmu{"Hips",        "LHipJoint", "LeftUpLeg",      "LeftLeg",  "LeftFoot", "LeftToeBase",   "<LowerBack",
+                  "Spine",       "Spine1",    "Neck",           "Neck1",    "Head",     "<LeftShoulder", "LeftArm",
+                  "LeftForeArm", "LeftHand",  "LeftFingerBase", "LFingers", "<LThumb"};
   CHECK(cmu.joint({P::HipLink, L}) == "LHipJoint");
   CHECK(cmu.joint({P::Thigh, L}) == "LeftUpLeg");
   CHECK(cmu.joint({P::Shank, L}) == "LeftLeg");
@@ -50,28 +51,32 @@ TEST_CASE("joint names: the schools of naming are understood") {
   CHECK(cmu.joint({P::Palm, L}) == "LeftFingerBase");
   CHECK(cmu.joint({P::Thumb, L, 1}) == "LThumb");
 
-  const Named mixamo{"mixamorig:Hips", "mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Neck", "mixamorig:Head", "mixamorig:HeadTop_End",
-                     "<mixamorig:RightShoulder", "mixamorig:RightArm", "mixamorig:RightForeArm", "mixamorig:RightHand", "mixamorig:RightHandPinky3"};
+  const Named mixamo{"mixamorig:Hips",           "mixamorig:Spine",          "mixamorig:Spine1",
+                     "mixamorig:Neck",           "mixamorig:Head",           "mixamorig:HeadTop_End",
+                     "<mixamorig:RightShoulder", "mixamorig:RightArm",       "mixamorig:RightForeArm",
+                     "mixamorig:RightHand",      "mixamorig:RightHandPinky3"};
   CHECK(mixamo.joint({P::Clavicle, R}) == "mixamorig:RightShoulder");
   CHECK(mixamo.joint({P::Little, R, 3}) == "mixamorig:RightHandPinky3");
   CHECK(mixamo.joint({P::Head}) == "mixamorig:Head");
 
-  const Named bank{"Bip01 Hips", "Bip01 Chest", "Bip01 Neck", "Bip01 Head", "<Bip01 Left Collar", "Bip01 Left Shoulder", "Bip01 Left Elbow",
-                   "Bip01 Left Wrist", "<Bip01 Left Hip", "Bip01 Left Knee", "Bip01 Left Ankle"};
+  const Named bank{"Bip01 Hips",         "Bip01 Chest",         "Bip01 Neck",       "Bip01 Head",
+                   "<Bip01 Left Collar", "Bip01 Left Shoulder", "Bip01 Left Elbow", "Bip01 Left Wrist",
+                   "<Bip01 Left Hip",    "Bip01 Left Knee",     "Bip01 Left Ankle"};
   CHECK(bank.joint({P::Clavicle, L}) == "Bip01 Left Collar");
   CHECK(bank.joint({P::UpperArm, L}) == "Bip01 Left Shoulder");
   CHECK(bank.joint({P::Hand, L}) == "Bip01 Left Wrist");
   CHECK(bank.joint({P::Thigh, L}) == "Bip01 Left Hip");
   CHECK(bank.joint({P::Foot, L}) == "Bip01 Left Ankle");
 
-  const Named bandai{"joint_Root", "Hips", "Spine", "Chest", "Neck", "Head", "<Shoulder_L", "UpperArm_L", "LowerArm_L", "Hand_L", "<UpperLeg_R",
-                     "LowerLeg_R", "Foot_R", "Toes_R"};
+  const Named bandai{"joint_Root", "Hips",       "Spine",  "Chest",       "Neck",       "Head",   "<Shoulder_L",
+                     "UpperArm_L", "LowerArm_L", "Hand_L", "<UpperLeg_R", "LowerLeg_R", "Foot_R", "Toes_R"};
   CHECK(bandai.joint({P::Pelvis}) == "Hips");
   CHECK(bandai.joint({P::Clavicle, L}) == "Shoulder_L");
   CHECK(bandai.joint({P::Shank, R}) == "LowerLeg_R");
 
-  const Named unreal{"root", "pelvis", "spine_01", "spine_02", "neck_01", "head", "<clavicle_l", "upperarm_l", "lowerarm_l", "hand_l", "index_metacarpal_l",
-                     "index_01_l", "<thigh_r", "calf_r", "foot_r", "ball_r"};
+  const Named unreal{
+      "root",       "pelvis", "spine_01",           "spine_02",   "neck_01",  "head",   "<clavicle_l", "upperarm_l",
+      "lowerarm_l", "hand_l", "index_metacarpal_l", "index_01_l", "<thigh_r", "calf_r", "foot_r",      "ball_r"};
   CHECK(unreal.joint({P::Pelvis}) == "pelvis");
   CHECK(unreal.joint({P::Spine, M, 1}) == "spine_02");
   CHECK(unreal.joint({P::Forearm, L}) == "lowerarm_l");
@@ -79,8 +84,9 @@ TEST_CASE("joint names: the schools of naming are understood") {
   CHECK(unreal.joint({P::Index, L, 1}) == "index_01_l");
   CHECK(unreal.joint({P::Toes, R}) == "ball_r");
 
-  const Named makehuman{"root", "spine05", "spine04", "neck01", "head", "<clavicle.L", "shoulder01.L", "upperarm01.L", "upperarm02.L", "lowerarm01.L", "wrist.L",
-                        "finger2-1.L", "<pelvis.R", "upperleg01.R", "upperleg02.R", "lowerleg01.R", "foot.R"};
+  const Named makehuman{"root",         "spine05",      "spine04",      "neck01",       "head",    "<clavicle.L",
+                        "shoulder01.L", "upperarm01.L", "upperarm02.L", "lowerarm01.L", "wrist.L", "finger2-1.L",
+                        "<pelvis.R",    "upperleg01.R", "upperleg02.R", "lowerleg01.R", "foot.R"};
   CHECK(makehuman.joint({P::Clavicle, L}) == "clavicle.L");
   CHECK(makehuman.joint({P::UpperArm, L}) == "upperarm01.L");
   CHECK(makehuman.joint({P::Index, L, 1}) == "finger2-1.L");
@@ -89,8 +95,9 @@ TEST_CASE("joint names: the schools of naming are understood") {
 }
 
 TEST_CASE("joint names: what game and character makers call bones is understood too") {
-  const Named vroid{"Root", "J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Chest", "J_Bip_C_Neck", "J_Bip_C_Head", "<J_Bip_L_Shoulder", "J_Bip_L_UpperArm",
-                    "J_Bip_L_LowerArm", "J_Bip_L_Hand", "J_Bip_L_Index2", "<J_Bip_R_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_R_Foot"};
+  const Named vroid{"Root",           "J_Bip_C_Hips",      "J_Bip_C_Spine",    "J_Bip_C_Chest",    "J_Bip_C_Neck",
+                    "J_Bip_C_Head",   "<J_Bip_L_Shoulder", "J_Bip_L_UpperArm", "J_Bip_L_LowerArm", "J_Bip_L_Hand",
+                    "J_Bip_L_Index2", "<J_Bip_R_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_R_Foot"};
   CHECK(vroid.joint({P::Pelvis}) == "J_Bip_C_Hips");
   CHECK(vroid.joint({P::Spine, M, 1}) == "J_Bip_C_Chest");
   CHECK(vroid.joint({P::Clavicle, L}) == "J_Bip_L_Shoulder");
@@ -98,8 +105,8 @@ TEST_CASE("joint names: what game and character makers call bones is understood 
   CHECK(vroid.joint({P::Index, L, 2}) == "J_Bip_L_Index2");
   CHECK(vroid.joint({P::Thigh, R}) == "J_Bip_R_UpperLeg");
 
-  const Named daz{"hip", "abdomenLower", "chestUpper", "neckLower", "head", "<lCollar", "lShldrBend", "lShldrTwist", "lForearmBend", "lHand", "<rThighBend",
-                  "rThighTwist", "rShin", "rFoot"};
+  const Named daz{"hip",         "abdomenLower", "chestUpper", "neckLower",   "head",        "<lCollar", "lShldrBend",
+                  "lShldrTwist", "lForearmBend", "lHand",      "<rThighBend", "rThighTwist", "rShin",    "rFoot"};
   CHECK(daz.joint({P::UpperArm, L}) == "lShldrBend");
   CHECK(daz.joint({P::Forearm, L}) == "lForearmBend");
   CHECK(daz.joint({P::Thigh, R}) == "rThighBend");
@@ -107,7 +114,13 @@ TEST_CASE("joint names: what game and character makers call bones is understood 
 }
 
 TEST_CASE("joint names: an arm of its own needs no sides") {
-  const Named arm{"Humerus", "Forearm", "IndexMetarcapal", "IndexMidllePhalange", "<MiddleMiddlePhalange", "<ThumbProximalPhalange", "<SmallDistalPhalange"};
+  const Named arm{"Humerus",
+                  "Forearm",
+                  "IndexMetarcapal",
+                  "IndexMidllePhalange",
+                  "<MiddleMiddlePhalange",
+                  "<ThumbProximalPhalange",
+                  "<SmallDistalPhalange"};
   CHECK(arm.joint({P::UpperArm, M}) == "Humerus");
   CHECK(arm.joint({P::Forearm, M}) == "Forearm");
   CHECK(arm.joint({P::Index, M, 0}) == "IndexMetarcapal");

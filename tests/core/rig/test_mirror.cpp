@@ -30,13 +30,21 @@ Armature two_arms(double turn) {
 }  // namespace
 
 TEST_CASE("mirror: names of the two sides find each other, names without a side find none") {
-  for (const auto& [left, right] : {std::pair{"LeftArm", "RightArm"}, {"arm.L", "arm.R"}, {"arm.L.001", "arm.R.001"}, {"thigh_l", "thigh_r"},
-                                    {"L_hand", "R_hand"}, {"LThumb", "RThumb"}, {"mixamorig:LeftLeg", "mixamorig:RightLeg"},
-                                    {"upper left arm", "upper right arm"}, {"ForeArmLeft", "ForeArmRight"}, {"hand-L", "hand-R"}}) {
+  for (const auto& [left, right] : {std::pair{"LeftArm", "RightArm"},
+                                    {"arm.L", "arm.R"},
+                                    {"arm.L.001", "arm.R.001"},
+                                    {"thigh_l", "thigh_r"},
+                                    {"L_hand", "R_hand"},
+                                    {"LThumb", "RThumb"},
+                                    {"mixamorig:LeftLeg", "mixamorig:RightLeg"},
+                                    {"upper left arm", "upper right arm"},
+                                    {"ForeArmLeft", "ForeArmRight"},
+                                    {"hand-L", "hand-R"}}) {
     CHECK(mirrored_name(left) == right);
     CHECK(mirrored_name(right) == left);
   }
-  for (const char* name : {"Spine", "Lumbar", "Neck1", "Root", "upright", "L", "RIB", "ulnar", ""}) CHECK(mirrored_name(name) == std::nullopt);
+  for (const char* name : {"Spine", "Lumbar", "Neck1", "Root", "upright", "L", "RIB", "ulnar", ""})
+    CHECK(mirrored_name(name) == std::nullopt);
 }
 
 TEST_CASE("mirror: the plane lies between the pairs, wherever the rig stands and faces") {
@@ -48,7 +56,8 @@ TEST_CASE("mirror: the plane lies between the pairs, wherever the rig stands and
   }
 }
 
-TEST_CASE("mirror: a flipped pose carries each side to where the mirror shows the other, and twice flipped is the pose") {
+TEST_CASE(
+    "mirror: a flipped pose carries each side to where the mirror shows the other, and twice flipped is the pose") {
   const Armature armature = two_arms(0.7);
   const MirrorPlane plane = mirror_plane(armature);
   Pose pose = rest_pose(armature);
@@ -60,17 +69,24 @@ TEST_CASE("mirror: a flipped pose carries each side to where the mirror shows th
   const auto here = posed_from_rest(armature, pose), there = posed_from_rest(armature, other);
   const auto pairs = mirror_pairs(armature);
   for (int b = 0; b < 5; ++b)
-    CHECK(glm::distance(plane.place(here[b] * armature.bones[b].tail), there[pairs[b]] * armature.bones[pairs[b]].tail) < 1e-9);
+    CHECK(glm::distance(plane.place(here[b] * armature.bones[b].tail),
+                        there[pairs[b]] * armature.bones[pairs[b]].tail) < 1e-9);
   const Pose back = flipped(other, armature);
   for (int b = 0; b < 5; ++b) CHECK(std::abs(glm::dot(back.rotation[b], pose.rotation[b])) > 1 - 1e-12);
 }
 
-TEST_CASE("mirror: symmetrizing makes the other side the image of this one, adds what is missing and mirrors the limits") {
+TEST_CASE(
+    "mirror: symmetrizing makes the other side the image of this one, adds what is missing and mirrors the limits") {
   Armature armature = two_arms(0.3);
   armature.bones[2].tail += glm::dvec3(10, 30, 5);
-  armature.bones[2].limits = {.type = JointLimits::Type::Hinge, .axis = glm::normalize(glm::dvec3(0.2, 1, 0.1)), .minimum = -0.1, .maximum = 2};
-  armature.bones[1].limits = {.type = JointLimits::Type::Ball, .cone = 1.2, .twist_minimum = -0.9, .twist_maximum = 0.2};
-  armature.bones.push_back({.name = "LeftHand", .parent = 2, .head = armature.bones[2].tail, .tail = armature.bones[2].tail + glm::dvec3(60, 0, 0)});
+  armature.bones[2].limits = {
+      .type = JointLimits::Type::Hinge, .axis = glm::normalize(glm::dvec3(0.2, 1, 0.1)), .minimum = -0.1, .maximum = 2};
+  armature.bones[1].limits = {
+      .type = JointLimits::Type::Ball, .cone = 1.2, .twist_minimum = -0.9, .twist_maximum = 0.2};
+  armature.bones.push_back({.name = "LeftHand",
+                            .parent = 2,
+                            .head = armature.bones[2].tail,
+                            .tail = armature.bones[2].tail + glm::dvec3(60, 0, 0)});
   const Armature both = symmetrized(armature, {1, 2, 5});
   const MirrorPlane plane = mirror_plane(armature);
   REQUIRE(both.bones.size() == 7);
@@ -85,10 +101,12 @@ TEST_CASE("mirror: symmetrizing makes the other side the image of this one, adds
   }
   // What one side may do the other may do in the mirror.
   const Bone &upper = both.bones[require_bone(both, "LeftArm")], &elbow = both.bones[require_bone(both, "LeftForearm")];
-  const Bone &other_upper = both.bones[require_bone(both, "RightArm")], &other_elbow = both.bones[require_bone(both, "RightForearm")];
+  const Bone &other_upper = both.bones[require_bone(both, "RightArm")],
+             &other_elbow = both.bones[require_bone(both, "RightForearm")];
   for (double angle : {-0.5, 0.7, 1.9, 2.6}) {
     const glm::dquat bend = exponential(angle * elbow.limits.axis), twist = exponential(angle * twist_axis(upper));
     CHECK(limit_excess(elbow, bend) == doctest::Approx(limit_excess(other_elbow, plane.rotation(bend))).epsilon(1e-6));
-    CHECK(limit_excess(upper, twist) == doctest::Approx(limit_excess(other_upper, plane.rotation(twist))).epsilon(1e-6));
+    CHECK(limit_excess(upper, twist) ==
+          doctest::Approx(limit_excess(other_upper, plane.rotation(twist))).epsilon(1e-6));
   }
 }

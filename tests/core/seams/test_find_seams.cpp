@@ -9,11 +9,11 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/resample/resample.h"
+#include "core/binding/heat_diffusion.h"
 #include "core/report/metrics.h"
+#include "core/resample/resample.h"
 #include "core/seams/limbs.h"
 #include "core/seams/seams_io.h"
-#include "core/skin/heat_diffusion.h"
 #include "tests/core/skin/small_body.h"
 #include "tests/support/glued_arm.h"
 
@@ -35,7 +35,8 @@ Agreement agreement(const test::GluedArm& body, const Seams& seams) {
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x)
-          if (const glm::ivec3 w = v + glm::ivec3(x, y, z); body.volume.grid.contains(w)) is_near[body.volume.grid.index(w)] = true;
+          if (const glm::ivec3 w = v + glm::ivec3(x, y, z); body.volume.grid.contains(w))
+            is_near[body.volume.grid.index(w)] = true;
   });
   seams.for_each([&](const glm::ivec3& v, int) {
     ++all.found;
@@ -52,7 +53,8 @@ Pose arm_raised(const Armature& rig, double degrees) {
 
 struct Raised {
   Posed posed;
-  std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0, arm = 0;  // posed voxels from below the shoulder, away from where the two touch
+  std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0,
+               arm = 0;  // posed voxels from below the shoulder, away from where the two touch
 };
 
 Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, double degrees) {
@@ -60,7 +62,8 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
   tissue.set_seams(seams);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
   const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig, parts);
-  Raised raised{resample(body.volume, body.tissues, body.rig, weights, arm_raised(body.rig, degrees), DualQuaternion{}, {.displacement = true, .seams = seams})};
+  Raised raised{resample(body.volume, body.tissues, body.rig, weights, arm_raised(body.rig, degrees), DualQuaternion{},
+                         {.displacement = true, .seams = seams})};
   const Grid& grid = raised.posed.volume.grid;
   const glm::dmat3 half = glm::mat3_cast(arm_raised(body.rig, degrees).rotation[1]);
   glm::ivec3 v;
@@ -68,7 +71,8 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
     for (v.y = 0; v.y < grid.size.y; ++v.y)
       for (v.x = 0; v.x < grid.size.x; ++v.x) {
         if (raised.posed.volume.at(v) == 0) continue;
-        const glm::dvec3 at = world_from_voxel(grid) * glm::dvec3(v), moved(raised.posed.displacement[grid.index(v)]), rest = at - moved;
+        const glm::dvec3 at = world_from_voxel(grid) * glm::dvec3(v), moved(raised.posed.displacement[grid.index(v)]),
+                         rest = at - moved;
         const glm::ivec3 from(glm::floor(voxel_from_world(body.volume.grid) * rest + 0.5));
         if (rest.z > 250 || !body.volume.grid.contains(from)) continue;
         const glm::dvec3 head = body.rig.bones[1].head, asked = half * (rest - head) + head - rest;
@@ -83,8 +87,8 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
   return raised;
 }
 
-// Two fingers along z, of bone, fat and skin, and a palm above. Between their skins, one of which is a voxel thicker, four
-// voxels of flesh join them from z 12 to 17.
+// Two fingers along z, of bone, fat and skin, and a palm above. Between their skins, one of which is a voxel thicker,
+// four voxels of flesh join them from z 12 to 17.
 struct WebbedFingers {
   static constexpr int kFirst = 16, kWide = 4;  // of the bridge, along x
   enum : Label { Skin = 1, Fat = 2, Flesh = 3, BoneLabel = 4 };
@@ -105,8 +109,10 @@ struct WebbedFingers {
     fill({24, 7, 6}, {28, 11, 88}, BoneLabel);
     fill({8, 7, 80}, {28, 11, 88}, BoneLabel);
     fill({kFirst, 6, 12}, {kFirst + kWide, 10, 18}, Flesh);
-    for (const auto& [label, kind] : {std::pair{Skin, TissueKind::Skin}, {Fat, TissueKind::Fat},
-                                      {Flesh, TissueKind::Connective}, {BoneLabel, TissueKind::Bone}}) {
+    for (const auto& [label, kind] : {std::pair{Skin, TissueKind::Skin},
+                                      {Fat, TissueKind::Fat},
+                                      {Flesh, TissueKind::Connective},
+                                      {BoneLabel, TissueKind::Bone}}) {
       Tissue tissue;
       tissue.label = label;
       tissue.file_value = label;
@@ -116,7 +122,8 @@ struct WebbedFingers {
     rig.bones.push_back(test::bone_between("RightHand", -1, {18, 9, 88}, {18, 9, 70}));
     for (const auto& [name, x] : {std::pair{"RightIndex", 9.5}, {"RightMiddle", 25.5}}) {
       int parent = 0;
-      for (const auto& [part, from, to] : {std::tuple{"Proximal", 70., 45.}, {"Middle", 45., 25.}, {"Distal", 25., 4.}}) {
+      for (const auto& [part, from, to] :
+           {std::tuple{"Proximal", 70., 45.}, {"Middle", 45., 25.}, {"Distal", 25., 4.}}) {
         rig.bones.push_back(test::bone_between((std::string(name) + part).c_str(), parent, {x, 9, from}, {x, 9, to}));
         parent = static_cast<int>(rig.bones.size()) - 1;
       }
@@ -129,8 +136,8 @@ struct WebbedFingers {
   }
 };
 
-// A trunk and an arm along z that lie against each other below a shoulder: each of bone in muscle, with fat and skin around,
-// but between them one of the two has lost its skin and fat, as in a scan that is too coarse for them.
+// A trunk and an arm along z that lie against each other below a shoulder: each of bone in muscle, with fat and skin
+// around, but between them one of the two has lost its skin and fat, as in a scan that is too coarse for them.
 struct PressedArm {
   static constexpr int kBetween = 24;  // the arm's lowest voxel along x
   enum : Label { Skin = 1, Fat = 2, Muscle = 3, Spine = 4, Humerus = 5, Ulna = 6 };
@@ -148,10 +155,12 @@ struct PressedArm {
     fill({8, 12, 6}, {14, 18, 98}, Spine);
     fill({31, 12, 56}, {35, 16, 98}, Humerus);
     fill({31, 12, 6}, {35, 16, 52}, Ulna);
-    for (const auto& [label, name, kind] :
-         {std::tuple{Skin, "skin", TissueKind::Skin}, {Fat, "fat", TissueKind::Fat}, {Muscle, "muscle", TissueKind::Muscle},
-          {Spine, "thoracic vertebrae", TissueKind::Bone}, {Humerus, "left humerus", TissueKind::Bone},
-          {Ulna, "left ulna", TissueKind::Bone}}) {
+    for (const auto& [label, name, kind] : {std::tuple{Skin, "skin", TissueKind::Skin},
+                                            {Fat, "fat", TissueKind::Fat},
+                                            {Muscle, "muscle", TissueKind::Muscle},
+                                            {Spine, "thoracic vertebrae", TissueKind::Bone},
+                                            {Humerus, "left humerus", TissueKind::Bone},
+                                            {Ulna, "left ulna", TissueKind::Bone}}) {
       Tissue tissue;
       tissue.label = label;
       tissue.file_value = label;
@@ -243,11 +252,13 @@ TEST_CASE("seams: the same with one, two and four threads") {
   }
 }
 
-TEST_CASE("seams: a raised arm leaves the trunk where it is and takes all of itself along, and drags a web without them") {
+TEST_CASE(
+    "seams: a raised arm leaves the trunk where it is and takes all of itself along, and drags a web without them") {
   const test::GluedArm body(-3);
   const auto seams = std::make_shared<const Seams>(body.seams());
   const Raised cut = raise(body, seams, 60), grown = raise(body, nullptr, 60);
-  MESSAGE("with seams ", cut.trunk_moved, " of ", cut.trunk, " and ", cut.arm_left, " of ", cut.arm, " voxels go astray, without ", grown.trunk_moved, " and ", grown.arm_left);
+  MESSAGE("with seams ", cut.trunk_moved, " of ", cut.trunk, " and ", cut.arm_left, " of ", cut.arm,
+          " voxels go astray, without ", grown.trunk_moved, " and ", grown.arm_left);
   CHECK(cut.trunk_moved < 0.01 * cut.trunk);
   CHECK(cut.arm_left < 0.03 * cut.arm);
   CHECK(grown.trunk_moved > 5 * cut.trunk_moved + 100);
@@ -262,8 +273,10 @@ TEST_CASE("seams: at rest the volume stays as it is, bit for bit") {
   const auto seams = std::make_shared<const Seams>(body.seams());
   TissueVoxels tissue(body.volume);
   tissue.set_seams(seams);
-  const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig, split_bones(body.volume, tissue, body.tissues, body.rig));
-  const Posed rest = resample(body.volume, body.tissues, body.rig, weights, rest_pose(body.rig), DualQuaternion{}, {.seams = seams});
+  const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig,
+                                           split_bones(body.volume, tissue, body.tissues, body.rig));
+  const Posed rest =
+      resample(body.volume, body.tissues, body.rig, weights, rest_pose(body.rig), DualQuaternion{}, {.seams = seams});
   CHECK(rest.volume.voxels == body.volume.voxels);
 }
 

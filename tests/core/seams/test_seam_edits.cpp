@@ -59,18 +59,22 @@ std::int64_t reached_from(const LabelVolume& volume, const Seams& seams, const g
 
 }  // namespace
 
-TEST_CASE("seam edits: a knife through a block parts it in two, along planes, bends and slants, and leaves bone whole") {
+TEST_CASE(
+    "seam edits: a knife through a block parts it in two, along planes, bends and slants, and leaves bone whole") {
   const LabelVolume volume = block();
   const AffineTransform world = world_from_voxel(volume.grid);
   const LabelSet soft = soft_labels(two_tissues());
   const std::int64_t all = 14 * 12 * 16;
   // Ways through the block from below it to above it in voxels, left of the bone; the blade goes through all of y.
-  const std::vector<std::vector<glm::dvec2>> ways = {{{6, 0}, {6, 17}}, {{5.5, 0}, {5.5, 17}}, {{4, 0}, {8, 17}}, {{3, 0}, {9, 7.3}, {4, 11}, {8.5, 17}}};
+  const std::vector<std::vector<glm::dvec2>> ways = {
+      {{6, 0}, {6, 17}}, {{5.5, 0}, {5.5, 17}}, {{4, 0}, {8, 17}}, {{3, 0}, {9, 7.3}, {4, 11}, {8.5, 17}}};
   for (const auto& way : ways) {
     Seams seams(volume.grid.size);
     std::int64_t cut = 0;
     for (std::size_t i = 1; i < way.size(); ++i) {
-      const auto blade = [&](const glm::dvec2& at) { return Blade{world * glm::dvec3(at.x, -1, at.y), world * glm::dvec3(at.x, 17, at.y)}; };
+      const auto blade = [&](const glm::dvec2& at) {
+        return Blade{world * glm::dvec3(at.x, -1, at.y), world * glm::dvec3(at.x, 17, at.y)};
+      };
       cut += cut_between(seams, volume, soft, blade(way[i - 1]), blade(way[i]));
     }
     CHECK(cut == seams.size());
@@ -91,13 +95,15 @@ TEST_CASE("seam edits: through bone nothing is cut, and the same cut twice chang
   const AffineTransform world = world_from_voxel(volume.grid);
   const LabelSet soft = soft_labels(two_tissues());
   Seams seams(volume.grid.size);
-  const Blade first{world * glm::dvec3(12, -1, 0), world * glm::dvec3(12, 17, 0)}, second{world * glm::dvec3(12, -1, 17), world * glm::dvec3(12, 17, 17)};
+  const Blade first{world * glm::dvec3(12, -1, 0), world * glm::dvec3(12, 17, 0)},
+      second{world * glm::dvec3(12, -1, 17), world * glm::dvec3(12, 17, 17)};
   CHECK(cut_between(seams, volume, soft, first, second) > 0);
   CHECK(cut_between(seams, volume, soft, first, second) == 0);
   CHECK(reached_from(volume, seams, {2, 5, 5}) == 14 * 12 * 16);  // it hangs together by its bone
   // A blade far away or without end reaches nothing and does no harm.
   CHECK(cut_between(seams, volume, soft, {{1e300, 0, 0}, {0, 0, 0}}, second) == 0);
-  CHECK(cut_between(seams, volume, soft, {glm::dvec3(1e4), glm::dvec3(2e4)}, {glm::dvec3(1e4, 0, 1e4), glm::dvec3(3e4)}) == 0);
+  CHECK(cut_between(seams, volume, soft, {glm::dvec3(1e4), glm::dvec3(2e4)},
+                    {glm::dvec3(1e4, 0, 1e4), glm::dvec3(3e4)}) == 0);
 }
 
 TEST_CASE("seam edits: a ball joins the faces within it and no others") {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "core/skin/stroke.h"
+#include "core/paint/stroke.h"
 #include "tests/core/skin/small_body.h"
 
 namespace limber::test {
@@ -20,12 +20,13 @@ struct Painted {
     for (const Bone& bone : body.armature.bones) names.push_back(bone.name);
     weights = std::make_shared<const SkinWeights>(names, tissue);
   }
-  StrokeBody stroke_body() const { return {body.volume, tissue, body.tissues, body.armature}; }
+  WeightedBody stroke_body() const { return {body.volume, tissue, body.tissues, body.armature}; }
   void set(const std::function<Influence(const glm::ivec3&)>& of) {
     SkinWeights all = *weights;
     for (std::int64_t b = 0; b < all.chunk_count(); ++b) {
       SkinWeights::Influences chunk = all.chunk(b);
-      tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) { chunk[place - tissue.bricks()[b].first] = of(v); });
+      tissue.for_each(
+          b, b + 1, [&](std::int64_t place, const glm::ivec3& v) { chunk[place - tissue.bricks()[b].first] = of(v); });
       all.set_chunk(b, std::move(chunk));
     }
     weights = std::make_shared<const SkinWeights>(std::move(all));
@@ -47,7 +48,8 @@ inline SmallBody two_sided_body() {
     for (int y = 2; y < 12; ++y)
       for (int x = 2; x < 30; ++x) body.volume.at({x, y, z}) = kMuscle;
   body.tissues = muscle_and_bone();
-  body.armature.bones = {bone_between("Trunk", -1, {31, 14, 2}, {31, 14, 26}), bone_between("LeftArm", 0, {31, 14, 14}, {58, 14, 14}),
+  body.armature.bones = {bone_between("Trunk", -1, {31, 14, 2}, {31, 14, 26}),
+                         bone_between("LeftArm", 0, {31, 14, 14}, {58, 14, 14}),
                          bone_between("RightArm", 0, {31, 14, 14}, {4, 14, 14})};
   return body;
 }

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "core/rig/armature.h"
+#include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
-#include "core/volume/tissue_table.h"
 
 namespace limber::test {
 
@@ -57,7 +57,8 @@ inline SmallBody two_bone_bar(int width = 12, int length = 40, int gap = 6, cons
   body.tissues = muscle_and_bone();
   const glm::dvec3 middle = glm::dvec3(width + 3, width + 3, 0) / 2.0 * spacing;
   auto at = [&](double z) { return middle + glm::dvec3(0, 0, (z + 1.5) * spacing.z); };
-  body.armature.bones = {bone_between("Upper", -1, at(0), at(length / 2.0)), bone_between("Lower", 0, at(length / 2.0), at(length))};
+  body.armature.bones = {bone_between("Upper", -1, at(0), at(length / 2.0)),
+                         bone_between("Lower", 0, at(length / 2.0), at(length))};
   return body;
 }
 

@@ -19,7 +19,8 @@ std::vector<Influence> random_influences(std::mt19937& random, std::size_t count
     const int own = 1 + int(random() % unsigned(most));
     for (int k = 0; k < own; ++k) {
       const int bone = int(random() % unsigned(bones));
-      if (std::none_of(weights.begin(), weights.end(), [&](const auto& w) { return w.first == bone; })) weights.emplace_back(bone, 1 + random() % 1000);
+      if (std::none_of(weights.begin(), weights.end(), [&](const auto& w) { return w.first == bone; }))
+        weights.emplace_back(bone, 1 + random() % 1000);
     }
     influence = quantize(weights);
   }
@@ -67,7 +68,9 @@ TEST_CASE("packed influences: some places of every shape") {
     }
 }
 
-TEST_CASE("packed influences: a brick of one bone costs next to nothing, of two bones three bytes a voxel, of any at most eight") {
+TEST_CASE(
+    "packed influences: a brick of one bone costs next to nothing, of two bones three bytes a voxel, of any at most "
+    "eight") {
   std::mt19937 random(12);
   CHECK(InfluenceChunk(512, rigid_influence(3)).heap_bytes() <= 16);
   std::vector<Influence> two(512);

@@ -7,10 +7,10 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
+#include "core/binding/heat_diffusion.h"
 #include "core/resample/resample.h"
-#include "core/rig/armature_io.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/volume/volume_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/core/skin/painted.h"
 #include "tests/support/shared_data.h"
 
@@ -124,8 +124,8 @@ TEST_CASE("smooth weights: nothing spreads through air or across a seam") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2 mm, and the same with more threads"
-          * doctest::test_suite("slow")) {
+TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2 mm, and the same with more threads" *
+          doctest::test_suite("slow")) {
   std::array<double, 2> wider{};
   for (const int fine : {0, 1}) {
     Painted body = cylinder(fine ? 1 : 2);
@@ -149,8 +149,8 @@ TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2
   CHECK(wider[1] == doctest::Approx(wider[0]).epsilon(0.1));
 }
 
-TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscles overlap by when it bends"
-          * doctest::test_suite("slow")) {
+TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscles overlap by when it bends" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
   const TissueTable tissues = merge_tissue_tables(file.tissues, nullptr);

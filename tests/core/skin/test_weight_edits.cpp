@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/phantom/phantom.h"
 #include "core/skin/weight_edits.h"
-#include "core/volume/phantom.h"
 #include "tests/core/skin/painted.h"
 
 using namespace limber;
@@ -24,7 +24,8 @@ Painted random_arm(double spacing, unsigned seed) {
   std::mt19937 random(seed);
   painted.set([&](const glm::ivec3&) {
     std::vector<std::pair<int, double>> some;
-    for (int i = 0; i < 1 + static_cast<int>(random() % 4); ++i) some.emplace_back((random() % 4 + i * 4) % bones, 1 + random() % 100);
+    for (int i = 0; i < 1 + static_cast<int>(random() % 4); ++i)
+      some.emplace_back((random() % 4 + i * 4) % bones, 1 + random() % 100);
     return quantize(some);
   });
   return painted;
@@ -45,16 +46,18 @@ double mean_difference(const SkinWeights& a, const SkinWeights& b) {
   double sum = 0;
   for (std::int64_t c = 0; c < a.chunk_count(); ++c)
     for (std::size_t i = 0; i < a.chunk(c).size(); ++i)
-      for (int bone = 0; bone < std::ssize(a.bones()); ++bone) sum += std::abs(a.chunk(c)[i].of(bone) - b.chunk(c)[i].of(bone)) / 2;
+      for (int bone = 0; bone < std::ssize(a.bones()); ++bone)
+        sum += std::abs(a.chunk(c)[i].of(bone) - b.chunk(c)[i].of(bone)) / 2;
   return sum / double(a.size());
 }
 
 }  // namespace
 
-TEST_CASE("weight edits: whatever is done, sums stay exact, locks and bone tissue keep every bit, and counts are true") {
+TEST_CASE(
+    "weight edits: whatever is done, sums stay exact, locks and bone tissue keep every bit, and counts are true") {
   std::mt19937 random(1);
   const Painted painted = random_arm(6, 1);
-  const StrokeBody body = painted.stroke_body();
+  const WeightedBody body = painted.stroke_body();
   const SkinWeights& before = *painted.weights;
   const int bones = static_cast<int>(painted.body.armature.bones.size());
   const std::vector<TissueKind> kinds = painted.body.tissues.kinds();
@@ -62,7 +65,8 @@ TEST_CASE("weight edits: whatever is done, sums stay exact, locks and bone tissu
     EditScope scope;
     scope.locked.assign(bones, 0);
     for (auto& lock : scope.locked) lock = random() % 4 == 0;
-    if (random() % 2) scope.region = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.z % 3 != 0; });
+    if (random() % 2)
+      scope.region = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.z % 3 != 0; });
     const std::vector<int> one{static_cast<int>(random() % bones)}, two{one[0], (one[0] + 3) % bones};
     const std::vector<int>& group = random() % 2 ? one : two;
     const double value = 0.01 * double(random() % 101);
@@ -117,7 +121,7 @@ TEST_CASE("weight edits: the same for one and two threads, and nothing is copied
 TEST_CASE("weight edits: a flood sets what it says everywhere, a label goes to a bone") {
   Painted painted(two_bone_bar());
   painted.set([](const glm::ivec3&) { return quantize({{0, 0.75}, {1, 0.25}}); });
-  const StrokeBody body = painted.stroke_body();
+  const WeightedBody body = painted.stroke_body();
   const std::vector<int> bone{1};
   const glm::ivec3 flesh(2, 2, 20), inner(8, 8, 8);
   const auto flooded_to = [&](Flood kind, double value) {
@@ -144,11 +148,12 @@ TEST_CASE("weight edits: a flood sets what it says everywhere, a label goes to a
 
 TEST_CASE("weight edits: gradients fall along a line or from a point outwards") {
   Painted painted(two_bone_bar());
-  const StrokeBody body = painted.stroke_body();
+  const WeightedBody body = painted.stroke_body();
   const std::vector<int> bone{1};
   const SkinWeights line = with_gradient(body, *painted.weights, bone, {{0, 0, 20}, {0, 0, 60}, false, 0, 1}).weights;
   for (int z = 2; z < 42; ++z)
-    CHECK(at(painted.tissue, line, {3, 2, z}).of(1) == doctest::Approx(std::clamp((2.0 * z - 20) / 40, 0.0, 1.0)).epsilon(1e-3));
+    CHECK(at(painted.tissue, line, {3, 2, z}).of(1) ==
+          doctest::Approx(std::clamp((2.0 * z - 20) / 40, 0.0, 1.0)).epsilon(1e-3));
   const glm::dvec3 from(6, 6, 40);
   const SkinWeights round = with_gradient(body, *painted.weights, bone, {from, {6, 6, 60}, true, 1, 0.1}).weights;
   for (const glm::ivec3 v : {glm::ivec3(3, 3, 20), glm::ivec3(2, 5, 24), glm::ivec3(3, 3, 40)}) {
@@ -170,7 +175,7 @@ TEST_CASE("weight edits: a part of the tissue hangs together through faces, all 
 
 TEST_CASE("weight edits: weights are copied, moved and swapped between bones, swapped twice they are what they were") {
   const Painted painted = random_arm(6, 3);
-  const StrokeBody body = painted.stroke_body();
+  const WeightedBody body = painted.stroke_body();
   EditScope scope;
   scope.rigid_bone_tissue = false;
   const SkinWeights& before = *painted.weights;
@@ -193,7 +198,9 @@ TEST_CASE("weight edits: weights are copied, moved and swapped between bones, sw
 TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what has no match stays and is reported") {
   Painted painted(two_sided_body());
   std::mt19937 random(4);
-  painted.set([&](const glm::ivec3&) { return quantize({{0, 1 + random() % 9}, {1, 1 + random() % 9}, {2, random() % 9}}); });
+  painted.set([&](const glm::ivec3&) {
+    return quantize({{0, 1 + random() % 9}, {1, 1 + random() % 9}, {2, random() % 9}});
+  });
   const MirrorPlane plane = mirror_plane(painted.body.armature);
   const double sign = plane.normal.x;
   const MirrorEdit edit = mirrored(painted.stroke_body(), *painted.weights, {plane, 3});
@@ -223,7 +230,8 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
   std::vector<std::uint8_t> is_unmatched(asymmetric.tissue.size(), 0);
   for (const auto place : partly.unmatched) is_unmatched[place] = 1;
   asymmetric.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-    if (is_unmatched[place]) wrong += at(asymmetric.tissue, partly.weights, v) != at(asymmetric.tissue, *asymmetric.weights, v);
+    if (is_unmatched[place])
+      wrong += at(asymmetric.tissue, partly.weights, v) != at(asymmetric.tissue, *asymmetric.weights, v);
   });
   CHECK(wrong == 0);
 }
@@ -236,7 +244,7 @@ TEST_CASE("weight edits: weights of the same volume come over as they are, those
   blend_along_bones(fine, 8);
   EditScope scope;
   scope.rigid_bone_tissue = false;
-  const StrokeBody fine_body = fine.stroke_body(), coarse_body = coarse.stroke_body();
+  const WeightedBody fine_body = fine.stroke_body(), coarse_body = coarse.stroke_body();
   const SkinWeights blank(fine.weights->bones(), fine.tissue);
   const TransferSource of_fine{fine_body.volume, fine_body.tissue, fine_body.armature, *fine.weights};
   const TransferEdit same = transferred(fine_body, blank, of_fine, scope);
@@ -244,21 +252,25 @@ TEST_CASE("weight edits: weights of the same volume come over as they are, those
   CHECK(same.missing.empty());
 
   const SkinWeights down = transferred(coarse_body, *coarse.weights, of_fine, scope).weights;
-  const SkinWeights back = transferred(fine_body, blank, {coarse_body.volume, coarse_body.tissue, coarse_body.armature, down}, scope).weights;
+  const SkinWeights back =
+      transferred(fine_body, blank, {coarse_body.volume, coarse_body.tissue, coarse_body.armature, down}, scope)
+          .weights;
   const double difference = mean_difference(back, *fine.weights);
   MESSAGE("mean difference after 1 mm -> 2 mm -> 1 mm: ", difference);
   CHECK(difference < 0.01);
   CHECK(difference > 0);
 }
 
-TEST_CASE("weight edits: bones that another rig lacks leave their weight to the ancestor that it has, rigs of other names are refused") {
+TEST_CASE(
+    "weight edits: bones that another rig lacks leave their weight to the ancestor that it has, rigs of other names "
+    "are refused") {
   Painted to(two_bone_bar()), from(two_bone_bar());
   from.body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 80}, {15, 15, 90}));
   std::vector<std::string> names{"Upper", "Lower", "Hand"};
   SkinWeights source(names, from.tissue);
   for (std::int64_t b = 0; b < source.chunk_count(); ++b)
     source.set_chunk(b, SkinWeights::Influences(source.chunk(b).size(), quantize({{0, 0.5}, {2, 0.5}})));
-  const StrokeBody body = to.stroke_body();
+  const WeightedBody body = to.stroke_body();
   const TransferEdit edit = transferred(body, *to.weights, {from.body.volume, from.tissue, from.body.armature, source});
   CHECK(edit.missing == std::vector<std::string>{"Hand"});
   CHECK(at(to.tissue, edit.weights, {2, 2, 20}).of(1) == doctest::Approx(0.5).epsilon(1e-4));

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/skin/carry_weights.h"
+#include "core/skin/transfer_to_volume.h"
 #include "core/skin/weight_layers.h"
 #include "tests/core/skin/painted.h"
 
@@ -23,7 +23,8 @@ WeightLayers with(const WeightLayers& layers, std::size_t index, WeightLayer lay
   return other;
 }
 
-WeightLayers painted_at(const Painted& painted, const WeightLayers& layers, std::size_t layer, const glm::dvec3& point, int bone) {
+WeightLayers painted_at(const Painted& painted, const WeightLayers& layers, std::size_t layer, const glm::dvec3& point,
+                        int bone) {
   StrokeSettings settings;
   settings.brush.radius = 9;
   settings.brush.falloff = FalloffShape::Linear;
@@ -38,7 +39,8 @@ double worst_difference(const SkinWeights& a, const SkinWeights& b) {
   double worst = 0;
   for (std::int64_t c = 0; c < a.chunk_count(); ++c)
     for (std::size_t i = 0; i < a.chunk(c).size(); ++i)
-      for (int bone = 0; bone < std::ssize(a.bones()); ++bone) worst = std::max(worst, std::abs(a.chunk(c)[i].of(bone) - b.chunk(c)[i].of(bone)));
+      for (int bone = 0; bone < std::ssize(a.bones()); ++bone)
+        worst = std::max(worst, std::abs(a.chunk(c)[i].of(bone) - b.chunk(c)[i].of(bone)));
   return worst;
 }
 
@@ -50,7 +52,8 @@ TEST_CASE("weight layers: an empty layer changes nothing and shares everything")
   for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(all.shared_chunk(b) == painted.weights->shared_chunk(b));
 }
 
-TEST_CASE("weight layers: what is painted on a layer comes out as painted, fades with its opacity, and is gone when hidden") {
+TEST_CASE(
+    "weight layers: what is painted on a layer comes out as painted, fades with its opacity, and is gone when hidden") {
   const Painted painted(two_bone_bar());
   const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   StrokeSettings settings;
@@ -67,7 +70,9 @@ TEST_CASE("weight layers: what is painted on a layer comes out as painted, fades
   half.opacity = 0.5;
   const SkinWeights faded = composed(with(layers, 0, half));
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
-    if (v.z == 20) CHECK(at(painted.tissue, faded, v).of(1) == doctest::Approx(at(painted.tissue, expected, v).of(1) / 2).epsilon(1e-3));
+    if (v.z == 20)
+      CHECK(at(painted.tissue, faded, v).of(1) ==
+            doctest::Approx(at(painted.tissue, expected, v).of(1) / 2).epsilon(1e-3));
   });
   half.visible = false;
   CHECK(composed(with(layers, 0, half)) == *painted.weights);
@@ -77,7 +82,8 @@ TEST_CASE("weight layers: the base may change below a layer, which keeps what it
   Painted painted(two_bone_bar());
   WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   const SkinWeights before = composed(layers);
-  layers.base = std::make_shared<const SkinWeights>(flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+  layers.base = std::make_shared<const SkinWeights>(
+      flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
   const SkinWeights after = composed(layers);
   CHECK(at(painted.tissue, after, {3, 3, 20}) == at(painted.tissue, before, {3, 3, 20}));
   CHECK(at(painted.tissue, after, {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
@@ -85,7 +91,8 @@ TEST_CASE("weight layers: the base may change below a layer, which keeps what it
   CHECK(at(painted.tissue, canvas(layers, 0), {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
 }
 
-TEST_CASE("weight layers: a mask takes a layer back by region, and brings it to where it did not cover without a change") {
+TEST_CASE(
+    "weight layers: a mask takes a layer back by region, and brings it to where it did not cover without a change") {
   const Painted painted(two_bone_bar());
   const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   const TissueRegion upper = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.z >= 20; });
@@ -95,7 +102,8 @@ TEST_CASE("weight layers: a mask takes a layer back by region, and brings it to 
   CHECK(composed(with(layers, 0, with_mask(layers, 0, painted.tissue, {}, 1))) == composed(layers));
 }
 
-TEST_CASE("weight layers: merging down changes nothing that comes out, sums stay exact, and hidden layers are refused") {
+TEST_CASE(
+    "weight layers: merging down changes nothing that comes out, sums stay exact, and hidden layers are refused") {
   std::mt19937 random(1);
   Painted painted(two_bone_bar());
   painted.set([&](const glm::ivec3&) { return quantize({{0, 1 + random() % 5}, {1, random() % 5}}); });
@@ -111,7 +119,8 @@ TEST_CASE("weight layers: merging down changes nothing that comes out, sums stay
   }
   const SkinWeights all = composed(layers);
   for (const std::int64_t brick : {std::int64_t{0}, all.chunk_count() / 2})
-    for (const Influence& influence : all.chunk(brick)) CHECK(std::accumulate(influence.weight.begin(), influence.weight.end(), 0) == kFullWeight);
+    for (const Influence& influence : all.chunk(brick))
+      CHECK(std::accumulate(influence.weight.begin(), influence.weight.end(), 0) == kFullWeight);
   const WeightLayers one = merged_down(layers, 1);
   CHECK(one.layers.size() == 1);
   CHECK(worst_difference(composed(one), all) < 1e-4);
@@ -150,7 +159,8 @@ TEST_CASE("weight layers: what comes out is made anew only where parts changed, 
   half.visible = false;
   const WeightLayers hidden = with(before, 0, half);
   same(hidden, before, came_out);
-  for (std::int64_t b = 0; b < came_out.chunk_count(); ++b) CHECK(recomposed(hidden, before, came_out).shared_chunk(b) == painted.weights->shared_chunk(b));
+  for (std::int64_t b = 0; b < came_out.chunk_count(); ++b)
+    CHECK(recomposed(hidden, before, came_out).shared_chunk(b) == painted.weights->shared_chunk(b));
 }
 
 TEST_CASE("weight layers: a brick is seen while it is painted as it comes out afterwards, below other layers too") {
@@ -167,7 +177,8 @@ TEST_CASE("weight layers: a brick is seen while it is painted as it comes out af
     after.set_chunk(b, chunk);
   }
   const SkinWeights all = composed(with(layers, 0, painted_on(*layers.layers[0], before, after)));
-  for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(composed_while_painted(layers, 0, b, before.chunk(b), after.chunk(b)) == all.chunk(b));
+  for (std::int64_t b = 0; b < all.chunk_count(); ++b)
+    CHECK(composed_while_painted(layers, 0, b, before.chunk(b), after.chunk(b)) == all.chunk(b));
 }
 
 TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/65535") {
@@ -179,7 +190,11 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   SkinWeights after = before;
   for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
     SkinWeights::Influences chunk = after.chunk(b);
-    for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = i % 2 ? rigid_influence(kNotCovering) : Influence{{kNotCovering, kCovering, 0, 0}, {static_cast<std::uint16_t>(kFullWeight - int(i)), static_cast<std::uint16_t>(i), 0, 0}};
+    for (std::size_t i = 0; i < chunk.size(); ++i)
+      chunk[i] =
+          i % 2 ? rigid_influence(kNotCovering)
+                : Influence{{kNotCovering, kCovering, 0, 0},
+                            {static_cast<std::uint16_t>(kFullWeight - int(i)), static_cast<std::uint16_t>(i), 0, 0}};
     after.set_chunk(b, chunk);
   }
   const SkinWeights shown = canvas(layers, 0);
@@ -190,21 +205,25 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
       CHECK(masked.weights.chunk(b)[i] == shown.chunk(b)[i]);
     }
   const SkinWeights out = composed(with(layers, 0, masked));
-  for (std::int64_t b = 0; b < out.chunk_count(); ++b) CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
+  for (std::int64_t b = 0; b < out.chunk_count(); ++b)
+    CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
   // Painted away wholly, a brick is no part of the layer any more.
   SkinWeights nothing = after;
-  for (std::int64_t b = 0; b < nothing.chunk_count(); ++b) nothing.set_chunk(b, SkinWeights::Influences(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
+  for (std::int64_t b = 0; b < nothing.chunk_count(); ++b)
+    nothing.set_chunk(b, SkinWeights::Influences(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
   for (const auto& mask : mask_painted_on(with(layers, 0, masked), 0, after, nothing).mask) CHECK(!mask);
 }
 
-TEST_CASE("weight layers: with normalizing left to the composition a bone takes from what lies below, and the layer's others keep theirs") {
+TEST_CASE(
+    "weight layers: with normalizing left to the composition a bone takes from what lies below, and the layer's others "
+    "keep theirs") {
   SmallBody body = two_bone_bar();
   body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 70}, {15, 15, 84}));
   const Painted painted(std::move(body));
   WeightLayers layers = with_new_layer({painted.weights, {}}, "Elbow");
-  const StrokeBody plain = painted.stroke_body();
+  const WeightedBody plain = painted.stroke_body();
   const Armature bones = with_below(plain.armature);
-  const StrokeBody with_what_lies_below{plain.volume, plain.tissue, plain.tissues, bones};
+  const WeightedBody with_what_lies_below{plain.volume, plain.tissue, plain.tissues, bones};
   const glm::ivec3 middle(2, 2, 22);
   // Sets a bone where all others of the layer keep what they have.
   const auto set = [&](int bone, double value) {
@@ -220,7 +239,8 @@ TEST_CASE("weight layers: with normalizing left to the composition a bone takes 
     const WeightLayers was = layers;
     layers = with(layers, 0, shares_painted_on(*layers.layers[0], *before, after));
     const SkinWeights all = composed(layers);
-    for (std::int64_t b = 0; b < all.chunk_count(); ++b) CHECK(composed_while_shared(was, 0, b, before->chunk(b), after.chunk(b)) == all.chunk(b));
+    for (std::int64_t b = 0; b < all.chunk_count(); ++b)
+      CHECK(composed_while_shared(was, 0, b, before->chunk(b), after.chunk(b)) == all.chunk(b));
     return at(painted.tissue, all, middle);
   };
   const Influence below = at(painted.tissue, *painted.weights, middle);
@@ -247,13 +267,16 @@ TEST_CASE("weight layers: with normalizing left to the composition a bone takes 
 TEST_CASE("weight layers: another base shows through where nothing covers, and no old brick of it is kept") {
   const Painted painted(two_bone_bar());
   const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
-  const auto base = std::make_shared<const SkinWeights>(flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+  const auto base = std::make_shared<const SkinWeights>(
+      flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
   const WeightLayers over = over_base(layers, base);
   CHECK(over.base == base);
   const SkinWeights out = composed(over);
-  for (std::int64_t b = 0; b < out.chunk_count(); ++b) CHECK(composed_over_base(layers, b, base->chunk(b)) == out.chunk(b));
+  for (std::int64_t b = 0; b < out.chunk_count(); ++b)
+    CHECK(composed_over_base(layers, b, base->chunk(b)) == out.chunk(b));
   for (std::int64_t b = 0; b < base->chunk_count(); ++b)
-    CHECK(over.layers[0]->weights.shared_chunk(b) == (layers.layers[0]->mask[b] ? layers.layers[0]->weights.shared_chunk(b) : base->shared_chunk(b)));
+    CHECK(over.layers[0]->weights.shared_chunk(b) ==
+          (layers.layers[0]->mask[b] ? layers.layers[0]->weights.shared_chunk(b) : base->shared_chunk(b)));
 }
 
 TEST_CASE("weight layers: they follow the rig's bones as weights do") {

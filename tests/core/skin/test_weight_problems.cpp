@@ -3,10 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include "core/binding/geodesic.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/geodesic.h"
+#include "core/phantom/phantom.h"
 #include "core/skin/weight_problems.h"
-#include "core/volume/phantom.h"
 #include "tests/core/skin/painted.h"
 
 using namespace limber;
@@ -18,7 +18,8 @@ using Kind = WeightProblem::Kind;
 
 std::vector<WeightProblem> of_kind(const std::vector<WeightProblem>& problems, Kind kind) {
   std::vector<WeightProblem> some;
-  std::copy_if(problems.begin(), problems.end(), std::back_inserter(some), [&](const auto& p) { return p.kind == kind; });
+  std::copy_if(problems.begin(), problems.end(), std::back_inserter(some),
+               [&](const auto& p) { return p.kind == kind; });
   return some;
 }
 
@@ -53,12 +54,14 @@ TEST_CASE("weight problems: good weights have none") {
 TEST_CASE("weight problems: a piece that no bone reaches follows, repaired, what is nearest to it") {
   SmallBody body = two_bone_bar();
   for (int z = 36; z < 38; ++z) body.volume.at({15, 15, z}) = kMuscle;  // a bit of tissue beside the lower end
-  for (int z = 2; z < 42; ++z) body.volume.at({13, 13, z}) = 0, body.volume.at({13, 12, z}) = 0, body.volume.at({12, 13, z}) = 0;
+  for (int z = 2; z < 42; ++z)
+    body.volume.at({13, 13, z}) = 0, body.volume.at({13, 12, z}) = 0, body.volume.at({12, 13, z}) = 0;
   Painted painted(std::move(body));
   const auto& volume = painted.body.volume;
   painted.set([&](const glm::ivec3& v) {
     if (v.x == 15) return rigid_influence(0);
-    return volume.at(v) == kBone || v.z < 20 || v.z > 24 ? rigid_influence(v.z < 22 ? 0 : 1) : quantize({{0, 25.0 - v.z}, {1, v.z - 19.0}});
+    return volume.at(v) == kBone || v.z < 20 || v.z > 24 ? rigid_influence(v.z < 22 ? 0 : 1)
+                                                         : quantize({{0, 25.0 - v.z}, {1, v.z - 19.0}});
   });
   const auto problems = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::Unreached);
   REQUIRE(problems.size() == 1);
@@ -131,10 +134,14 @@ TEST_CASE("weight problems: bone that bends is found and made rigid with what it
   CHECK(edit.weights == good);
 }
 
-TEST_CASE("weight problems: bone that is rigid with another bone than it has grown on, or bends mainly with it, goes back to its own") {
+TEST_CASE(
+    "weight problems: bone that is rigid with another bone than it has grown on, or bends mainly with it, goes back to "
+    "its own") {
   Painted painted = good_bar();
   const SkinWeights good = *painted.weights;
-  const auto patch = [](const glm::ivec3& v) { return v.x >= 7 && v.x < 9 && v.y >= 7 && v.y < 9 && v.z >= 8 && v.z < 11; };
+  const auto patch = [](const glm::ivec3& v) {
+    return v.x >= 7 && v.x < 9 && v.y >= 7 && v.y < 9 && v.z >= 8 && v.z < 11;
+  };
   for (const Influence& wrong : {rigid_influence(1), quantize({{0, 0.2}, {1, 0.8}})}) {
     painted.set([&](const glm::ivec3& v) { return patch(v) ? wrong : at(painted.tissue, good, v); });
     const auto soft = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone);
@@ -153,7 +160,9 @@ TEST_CASE("weight problems: a small bone with air or flesh all around stays with
   for (int y = 0; y < volume.grid.size.y; ++y)
     for (int x = 0; x < volume.grid.size.x; ++x)
       if (volume.at({x, y, 36}) == kBone) volume.at({x, y, 36}) = kMuscle;
-  painted.set([&](const glm::ivec3& v) { return volume.at(v) == kBone && v.z > 40 ? rigid_influence(0) : rigid_influence(v.z < 22 ? 0 : 1); });
+  painted.set([&](const glm::ivec3& v) {
+    return volume.at(v) == kBone && v.z > 40 ? rigid_influence(0) : rigid_influence(v.z < 22 ? 0 : 1);
+  });
   for (int z = 39; z <= 40; ++z)
     for (int y = 0; y < volume.grid.size.y; ++y)
       for (int x = 0; x < volume.grid.size.x; ++x)
@@ -182,7 +191,8 @@ TEST_CASE("weight problems: a clean cut through flesh is steep, and smooth once 
   CHECK(edit.changed > 0);
   CHECK(of_kind(find_problems(painted.stroke_body(), edit.weights), Kind::Steep).empty());
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
-    if (volume.at(v) == kBone || v.z < 18 || v.z > 25) CHECK(at(painted.tissue, edit.weights, v) == at(painted.tissue, *painted.weights, v));
+    if (volume.at(v) == kBone || v.z < 18 || v.z > 25)
+      CHECK(at(painted.tissue, edit.weights, v) == at(painted.tissue, *painted.weights, v));
   });
 }
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights of real bodies carried to another spacing and back, and from one side to the other of a body whose sides differ.
+// Weights of real bodies carried to another spacing and back, and from one side to the other of a body whose sides
+// differ.
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <doctest/doctest.h>
 
-#include "core/rig/armature_io.h"
+#include "core/binding/heat_diffusion.h"
 #include "core/bones/bone_parts.h"
-#include "core/skin/heat_diffusion.h"
+#include "core/phantom/phantom.h"
+#include "core/prepare/prepare.h"
+#include "core/rig_io/rig_io.h"
 #include "core/skin/weight_edits.h"
-#include "core/volume/phantom.h"
-#include "core/volume/prepare.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/core/skin/painted.h"
 #include "tests/support/shared_data.h"
 
@@ -29,10 +30,14 @@ struct Skinned {
   SkinWeights weights;
 
   Skinned(LabelVolume of, const TissueTable& table, Armature by, bool compute = true)
-      : volume(std::move(of)), tissues(table), rig(std::move(by)), tissue(volume), weights(names_of(rig), tissue) {
+      : volume(std::move(of)),
+        tissues(table),
+        rig(std::move(by)),
+        tissue(volume),
+        weights(names_of(rig), tissue) {
     if (compute) weights = diffuse_heat(volume, tissue, tissues, rig, split_bones(volume, tissue, tissues, rig));
   }
-  StrokeBody body() const { return {volume, tissue, tissues, rig}; }
+  WeightedBody body() const { return {volume, tissue, tissues, rig}; }
   TransferSource source() const { return {volume, tissue, rig, weights}; }
 
   static std::vector<std::string> names_of(const Armature& rig) {
@@ -71,13 +76,16 @@ void check_round_trip(const char* name, const Skinned& fine, const Skinned& coar
   EditScope all;
   all.rigid_bone_tissue = false;
   for (const auto& [from, by] : {std::pair{&fine, &coarse}, {&coarse, &fine}}) {
-    const SkinWeights there = transferred(by->body(), SkinWeights(by->weights.bones(), by->tissue), from->source(), all).weights;
-    const SkinWeights back =
-        transferred(from->body(), SkinWeights(from->weights.bones(), from->tissue), {by->volume, by->tissue, by->rig, there}, all).weights;
+    const SkinWeights there =
+        transferred(by->body(), SkinWeights(by->weights.bones(), by->tissue), from->source(), all).weights;
+    const SkinWeights back = transferred(from->body(), SkinWeights(from->weights.bones(), from->tissue),
+                                         {by->volume, by->tissue, by->rig, there}, all)
+                                 .weights;
     const Spread round = differences(back, from->weights), computed = differences(there, by->weights);
     const double from_mm = from->volume.grid.spacing.x, by_mm = by->volume.grid.spacing.x;
-    MESSAGE(std::string(name), ", ", from_mm, " mm -> ", by_mm, " mm -> ", from_mm, " mm: weights differ by ", round.mean, " of a voxel in the mean, ",
-            round.of_ninety_nine, " at the 99th percentile, ", round.most, " at most; from those computed at ", by_mm, " mm by ", computed.mean);
+    MESSAGE(std::string(name), ", ", from_mm, " mm -> ", by_mm, " mm -> ", from_mm, " mm: weights differ by ",
+            round.mean, " of a voxel in the mean, ", round.of_ninety_nine, " at the 99th percentile, ", round.most,
+            " at most; from those computed at ", by_mm, " mm by ", computed.mean);
     CHECK(round.mean < 0.006);
     CHECK(round.of_ninety_nine < 0.13);
   }
@@ -85,10 +93,13 @@ void check_round_trip(const char* name, const Skinned& fine, const Skinned& coar
 
 }  // namespace
 
-TEST_CASE("weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 2 mm and back, an arm's weights stay nearly what they were"
-          * doctest::test_suite("slow")) {
+TEST_CASE(
+    "weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 2 mm and back, an arm's weights stay nearly "
+    "what they were" *
+    doctest::test_suite("slow")) {
   const Phantom two = make_arm_phantom(2), four = make_arm_phantom(4);
-  check_round_trip("procedural arm", {two.volume, two.tissues, two.armature}, {four.volume, four.tissues, two.armature});
+  check_round_trip("procedural arm", {two.volume, two.tissues, two.armature},
+                   {four.volume, four.tissues, two.armature});
 
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   VolumeFile file = read_volume(shared_path("data/bender/man-arm-2mm.mha"));
@@ -98,13 +109,17 @@ TEST_CASE("weights between volumes: from 2 mm to 4 mm and back, or from 4 mm to 
   check_round_trip("Bender's arm", {std::move(file.volume), tissues, rig}, {std::move(coarse), tissues, rig});
 }
 
-TEST_CASE("weights between volumes: a body whose sides differ takes one side's weights over to the other, and says where it cannot"
-          * doctest::test_suite("slow")) {
-  for (const auto& [volume, rig] : {std::pair{"data/makehuman/body_4mm.nrrd", "data/makehuman/body.armature.json"}, std::pair{"data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json"}}) {
+TEST_CASE(
+    "weights between volumes: a body whose sides differ takes one side's weights over to the other, and says where it "
+    "cannot" *
+    doctest::test_suite("slow")) {
+  for (const auto& [volume, rig] : {std::pair{"data/makehuman/body_4mm.nrrd", "data/makehuman/body.armature.json"},
+                                    std::pair{"data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json"}}) {
     NEEDS_SHARED(volume);
     VolumeFile file = read_volume(shared_path(volume));
     LabelVolume at_eight = regrid(file.volume, glm::dvec3(8));
-    const Skinned body(std::move(at_eight), merge_tissue_tables(file.tissues, nullptr), read_armature(shared_path(rig)));
+    const Skinned body(std::move(at_eight), merge_tissue_tables(file.tissues, nullptr),
+                       read_armature(shared_path(rig)));
     const MirrorPlane plane = mirror_plane(body.rig);
     const std::vector<int> pairs = mirror_pairs(body.rig);
     const double reach = 20;
@@ -115,7 +130,9 @@ TEST_CASE("weights between volumes: a body whose sides differ takes one side's w
     const std::vector<TissueKind> kinds = body.tissues.kinds();
     const AffineTransform world = world_from_voxel(body.volume.grid), to_voxel = voxel_from_world(body.volume.grid);
     const auto bony = [&](const glm::ivec3& v) { return is_bone(kinds[body.volume.at(v)]); };
-    const auto takes = [&](const glm::ivec3& v) { return glm::dot(world * glm::dvec3(v) - plane.point, plane.normal) > 0; };
+    const auto takes = [&](const glm::ivec3& v) {
+      return glm::dot(world * glm::dvec3(v) - plane.point, plane.normal) > 0;
+    };
     std::int64_t taken = 0, wrong = 0;
     double before = 0, after = 0;
     body.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
@@ -154,8 +171,9 @@ TEST_CASE("weights between volumes: a body whose sides differ takes one side's w
       wrong += nearest > reach + 1e-6 || least > 1e-4;
       before += least_before, after += least;
     });
-    MESSAGE(std::string(volume), ": ", taken, " voxels took over weights, which differed by ", before / taken, " in the mean and now by ", after / taken, "; ",
-            edit.unmatched.size(), " found nothing within ", reach, " mm");
+    MESSAGE(std::string(volume), ": ", taken, " voxels took over weights, which differed by ", before / taken,
+            " in the mean and now by ", after / taken, "; ", edit.unmatched.size(), " found nothing within ", reach,
+            " mm");
     CHECK(wrong == 0);
     CHECK(taken > 1000);
     CHECK(before / taken > 0.001);

@@ -9,9 +9,9 @@
 
 #include "core/base/deflate.h"
 #include "core/base/error.h"
-#include "core/skin/heat_diffusion.h"
-#include "core/rig/armature_io.h"
-#include "core/volume/volume_io.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/rig_io/rig_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/core/skin/small_body.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
@@ -44,7 +44,8 @@ TEST_CASE("weights io: what is written is read, also when the rig lists its bone
   const Folder folder;
   const Made made;
   write_weights(made.weights, made.body.volume, made.tissue, folder.path / "w.nrrd");
-  CHECK(read_weights(folder.path / "w.nrrd", made.body.volume, made.tissue, made.body.armature).weights == made.weights);
+  CHECK(read_weights(folder.path / "w.nrrd", made.body.volume, made.tissue, made.body.armature).weights ==
+        made.weights);
 
   Armature turned = made.body.armature;
   std::swap(turned.bones[0], turned.bones[1]);
@@ -70,7 +71,9 @@ TEST_CASE("weights io: the seams that weights were made with come along, and dam
   const Folder folder;
   Made made;
   const Path file = folder.path / "w.nrrd";
-  const auto read = [&] { return read_weights(file, made.body.volume, TissueVoxels(made.body.volume), made.body.armature); };
+  const auto read = [&] {
+    return read_weights(file, made.body.volume, TissueVoxels(made.body.volume), made.body.armature);
+  };
   write_weights(made.weights, made.body.volume, made.tissue, file);
   CHECK_FALSE(read().seams);
   write_weights(made.weights, made.body.volume, made.tissue, file, SeamsOfWeights::OfTissue);
@@ -105,7 +108,8 @@ TEST_CASE("weights io: packed weights are read, and refused when a byte is wrong
   const std::size_t begin = raw.find("\n\n") + 2;
   std::string header = raw.substr(0, begin), packed;
   header.replace(header.find("raw"), 3, "gzip");
-  Deflater deflater(Deflater::Wrap::Gzip, [&](const void* bytes, std::size_t size) { packed.append(static_cast<const char*>(bytes), size); });
+  Deflater deflater(Deflater::Wrap::Gzip,
+                    [&](const void* bytes, std::size_t size) { packed.append(static_cast<const char*>(bytes), size); });
   deflater.write(raw.data() + begin, raw.size() - begin);
   deflater.end();
 
@@ -151,10 +155,12 @@ TEST_CASE("weights io: Bender's series of weight_NN.mha is written and read agai
   CHECK(back.warnings.empty());
   for (std::int64_t c = 0; c < made.weights.chunk_count(); ++c)
     for (size_t i = 0; i < made.weights.chunk(c).size(); ++i)
-      for (int bone = 0; bone < 2; ++bone) CHECK(std::abs(back.weights.chunk(c)[i].of(bone) - made.weights.chunk(c)[i].of(bone)) < 2e-5);
+      for (int bone = 0; bone < 2; ++bone)
+        CHECK(std::abs(back.weights.chunk(c)[i].of(bone) - made.weights.chunk(c)[i].of(bone)) < 2e-5);
 
   std::filesystem::remove(series / "weight_01.mha");
-  CHECK_THROWS_WITH_AS(read_weights(series, made.body.volume, made.tissue, made.body.armature), doctest::Contains("1 files"), Error);
+  CHECK_THROWS_WITH_AS(read_weights(series, made.body.volume, made.tissue, made.body.armature),
+                       doctest::Contains("1 files"), Error);
 }
 
 TEST_CASE("weights io: Bender's skin map makes each voxel rigid with the bone it names") {
@@ -163,7 +169,8 @@ TEST_CASE("weights io: Bender's skin map makes each voxel rigid with the bone it
   const Armature armature = read_armature(shared_path("data/bender/man-arm-2mm-armature.vtk"));
   const VolumeFile map = read_volume(shared_path("data/bender/man-arm-2mm-skinned.mha"));
   const TissueVoxels tissue(file.volume);
-  const SkinWeights weights = read_weights(shared_path("data/bender/man-arm-2mm-skinned.mha"), file.volume, tissue, armature).weights;
+  const SkinWeights weights =
+      read_weights(shared_path("data/bender/man-arm-2mm-skinned.mha"), file.volume, tissue, armature).weights;
   std::int64_t named = 0, wrong = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
     tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& v) {

@@ -27,7 +27,8 @@ Picture decoded(const std::string& png) {
   for (std::size_t at = 8; at < png.size();) {
     const std::uint32_t length = number_at(png, at);
     const std::string name = png.substr(at + 4, 4), bytes = png.substr(at + 8, length), checked = name + bytes;
-    CHECK(number_at(png, at + 8 + length) == crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size())));
+    CHECK(number_at(png, at + 8 + length) ==
+          crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size())));
     if (name == "IHDR") picture.size = {number_at(bytes, 0), number_at(bytes, 4)};
     if (name == "IDAT") packed += bytes;
     at += 12 + length;
@@ -40,7 +41,9 @@ Picture decoded(const std::string& png) {
   for (int y = 0; y < picture.size.y; ++y) {
     const std::uint8_t* line = lines.data() + std::size_t(y) * (row + 1);
     REQUIRE(line[0] == 2);
-    for (std::size_t i = 0; i < row; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(line[i + 1] + (y ? picture.rgb[std::size_t(y - 1) * row + i] : 0)));
+    for (std::size_t i = 0; i < row; ++i)
+      picture.rgb.push_back(
+          static_cast<std::uint8_t>(line[i + 1] + (y ? picture.rgb[std::size_t(y - 1) * row + i] : 0)));
   }
   return picture;
 }
@@ -64,22 +67,30 @@ TEST_CASE("study pictures: a slice shows the voxel that each pixel lies in, on t
     for (int label = 0; label < 5; ++label) colours[label] = glm::u8vec3(50 * label, 255 - 50 * label, label);
     const AffineTransform to_world = world_from_voxel(volume.grid);
     // Seen along the grid's z: a pixel for each voxel of the slice z = 4, rows downward against y.
-    const PictureFrame frame{.centre = to_world * glm::dvec3(4, 3.5, 4), .right = volume.grid.direction[0], .up = volume.grid.direction[1],
-                             .height_mm = 8 * volume.grid.spacing.y, .size = {9, 8}};
+    const PictureFrame frame{.centre = to_world * glm::dvec3(4, 3.5, 4),
+                             .right = volume.grid.direction[0],
+                             .up = volume.grid.direction[1],
+                             .height_mm = 8 * volume.grid.spacing.y,
+                             .size = {9, 8}};
     const Picture picture = slice_picture(volume, colours, frame);
     if (volume.grid.spacing.x == volume.grid.spacing.y)
       for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 9; ++x) {
           const Label label = volume.at({x, 7 - y, 4});
-          CHECK(glm::u8vec3(picture.rgb[3 * (9 * y + x)], picture.rgb[3 * (9 * y + x) + 1], picture.rgb[3 * (9 * y + x) + 2]) == colours[label]);
+          CHECK(glm::u8vec3(picture.rgb[3 * (9 * y + x)], picture.rgb[3 * (9 * y + x) + 1],
+                            picture.rgb[3 * (9 * y + x) + 2]) == colours[label]);
         }
     const std::size_t middle = 3 * (9 * 4 + 4);  // just below the centre
-    CHECK(glm::u8vec3(picture.rgb[middle], picture.rgb[middle + 1], picture.rgb[middle + 2]) == colours[volume.at({4, 3, 4})]);
+    CHECK(glm::u8vec3(picture.rgb[middle], picture.rgb[middle + 1], picture.rgb[middle + 2]) ==
+          colours[volume.at({4, 3, 4})]);
   }
 }
 
-TEST_CASE("study pictures: volume ratios keep their size within 2.2 % in a byte, and the worst region lies where most voxels are beyond two") {
-  for (const double ratio : {0.02, 0.1, 0.5, 0.97, 1.0, 1.3, 2.0, 7.5, 50.0}) CHECK(std::abs(ratio_of_code(code_of_ratio(ratio)) / ratio - 1) < 0.0221);
+TEST_CASE(
+    "study pictures: volume ratios keep their size within 2.2 % in a byte, and the worst region lies where most voxels "
+    "are beyond two") {
+  for (const double ratio : {0.02, 0.1, 0.5, 0.97, 1.0, 1.3, 2.0, 7.5, 50.0})
+    CHECK(std::abs(ratio_of_code(code_of_ratio(ratio)) / ratio - 1) < 0.0221);
   CHECK(ratio_of_code(code_of_ratio(1)) == 1);
   CHECK(code_of_ratio(-3) == 1);
   CHECK(code_of_ratio(1e9) == 255);

@@ -38,7 +38,8 @@ TEST_CASE("study: the real arm's folder brings its volumes and its armature, and
     return std::string();
   };
   CHECK(refused().find("no arm in the folder") != std::string::npos);
-  for (const char* name : {"man-arm-2mm.mha", "man-arm-2mm-skinned.mha", "man-arm-4mm.nrrd", "man-arm-3mm.txt"}) std::ofstream(folder / name) << "x";
+  for (const char* name : {"man-arm-2mm.mha", "man-arm-2mm-skinned.mha", "man-arm-4mm.nrrd", "man-arm-3mm.txt"})
+    std::ofstream(folder / name) << "x";
   CHECK(refused().find("no armature") != std::string::npos);
   std::ofstream(folder / "man-arm-2mm-armature.vtk") << "x";
   const Study study = paper_study(folder.path());
@@ -52,9 +53,12 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   const test::TemporaryFolder folder;
   std::ofstream(folder / "body.nrrd") << "x";
   std::ofstream(folder / "rig.json") << "x";
-  std::ofstream(folder / "study.json") << R"({"name": "Knee", "volume": "body.nrrd", "rig": "rig.json", "bones": [3, 4], "spacings_mm": [1.5, null], "methods": ["dqs", "fem-contact"],
+  std::ofstream(folder / "study.json")
+      << R"({"name": "Knee", "volume": "body.nrrd", "rig": "rig.json", "bones": [3, 4], "spacings_mm": [1.5, null],
+        "methods": ["dqs", "fem-contact"],
     "poses": [{"name": "rest"}, {"name": "bent", "flex": ["Shin=60", "Foot=-10"]},
-      {"name": "seated", "pose_name": "sit", "joints": "left elbow flexion=30"}], "quality": "draft", "weights": "geodesic", "fit_joints": true, "gates": {"tissue_percent": 0.5}})";
+      {"name": "seated", "pose_name": "sit", "joints": "left elbow flexion=30"}], "quality": "draft",
+        "weights": "geodesic", "fit_joints": true, "gates": {"tissue_percent": 0.5}})";
   const Study study = read_study(folder / "study.json");
   CHECK(study.name == "Knee");
   CHECK(study.volume == folder / "body.nrrd");
@@ -91,7 +95,9 @@ TEST_CASE("study: each method has a mass-exact variant, which is there only wher
   CHECK(name_of(Technique::FemContactMassExact) == "FEM with contact, mass-exact");
 }
 
-TEST_CASE("study: cells are kept by the sources that compute them: a change of any of them is another hash, the order in which they are named is not") {
+TEST_CASE(
+    "study: cells are kept by the sources that compute them: a change of any of them is another hash, the order in "
+    "which they are named is not") {
   CHECK(std::string(computing_sources()).size() == 64);
   if (!test::has_program("cmake")) {
     MESSAGE("SKIPPED: cmake is not installed");
@@ -101,7 +107,9 @@ TEST_CASE("study: cells are kept by the sources that compute them: a change of a
   const auto hash = [&](const std::string& a, const std::string& b, const std::string& files) {
     std::ofstream(folder / "a.h") << a;
     std::ofstream(folder / "b.cpp") << b;
-    REQUIRE(test::run_program("cmake", {"-DFOLDER=" + folder.path().string(), "-DOUT=" + (folder / "out.cpp").string(), "-DFILES=" + files, "-P", LIMBER_SOURCE_DIR "/core/study/hash_sources.cmake"}).exit_code == 0);
+    REQUIRE(test::run_program("cmake", {"-DFOLDER=" + folder.path().string(), "-DOUT=" + (folder / "out.cpp").string(),
+                                        "-DFILES=" + files, "-P", LIMBER_SOURCE_DIR "/core/study/hash_sources.cmake"})
+                .exit_code == 0);
     return read_file(folder / "out.cpp");
   };
   const std::string first = hash("int a;", "int b;", "a.h,b.cpp");

@@ -11,7 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
-#include "core/volume/volume_io.h"
+#include "core/volume_io/volume_io.h"
 #include "tests/support/shared_data.h"
 
 using namespace limber;
@@ -168,8 +168,8 @@ Agreement dice(const LabelVolume& a, const LabelVolume& b) {
 }
 }  // namespace
 
-TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better than by any known interpolation"
-          * doctest::test_suite("slow")) {
+TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better than by any known interpolation" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bender/man-arm-2mm.mha");
   const LabelVolume arm = read_volume(test::shared_path("data/bender/man-arm-2mm.mha")).volume;
   const glm::dvec2 centre = glm::dvec2(arm.grid.size.x - 1, arm.grid.size.y - 1) / 2.0;
@@ -183,7 +183,7 @@ TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better th
   turn(45, centre, none, shift, turned, [&](const glm::dvec3& p) { return of_arm.tissue(p); });
   turn(-45, centre, shift, none, back, [&](const glm::dvec3& p) { return of_turned.tissue(p); });
   const Agreement agreement = dice(arm, back);
-  CHECK(agreement.mean > 0.932);       // cubic B-splines: 0.9270
-  CHECK(agreement.by_voxels > 0.971);  // 0.9691
+  CHECK(agreement.mean > 0.932);                                              // cubic B-splines: 0.9270
+  CHECK(agreement.by_voxels > 0.971);                                         // 0.9691
   CHECK(agreement.volume_ratio.at(143) == doctest::Approx(1).epsilon(0.01));  // skin, one voxel thin
 }

@@ -30,7 +30,8 @@ TEST_CASE("tissue voxels: every voxel stands once, brick by brick, with any numb
   const glm::ivec3 bricks = (volume.grid.size + 7) / 8;
   for (int brick = 0; brick < bricks.x * bricks.y * bricks.z; ++brick)
     for (int bit = 0; bit < 512; ++bit) {
-      const glm::ivec3 corner = 8 * glm::ivec3(brick % bricks.x, brick / bricks.x % bricks.y, brick / bricks.x / bricks.y);
+      const glm::ivec3 corner =
+          8 * glm::ivec3(brick % bricks.x, brick / bricks.x % bricks.y, brick / bricks.x / bricks.y);
       const glm::ivec3 voxel = corner + glm::ivec3(bit & 7, bit >> 3 & 7, bit >> 6);
       if (volume.at_or_air(voxel) != 0) expected.push_back(voxel);
     }

@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/autorig/auto_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "core/autorig/articulated_fit.h"
+#include "core/autorig/body_atlas.h"
+#include "core/autorig/capsule_atlas.h"
+#include "core/autorig/cut_planes.h"
+#include "core/autorig/fit_target.h"
+#include "core/autorig/fitted_limits.h"
+#include "core/autorig/found_joints.h"
+#include "core/autorig/hand_fit.h"
+#include "core/autorig/initial_guess.h"
+#include "core/autorig/limb_paths.h"
+#include "core/autorig/named_joints.h"
+#include "core/autorig/place_rig.h"
+#include "core/autorig/pull_inside.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/bones/guess_bone_labels.h"
+#include "core/mesh/surface_points.h"
+#include "core/motion/body_frame.h"
+#include "core/volume/distance_transform.h"
+
+namespace limber {
+
+namespace {
+
+std::vector<std::uint8_t> without_digits(const Armature& rig) {
+  std::vector<std::uint8_t> free;
+  for (const Bone& bone : rig.bones) free.push_back(!is_digit(bone.name));
+  return free;
+}
+
+// Every start is tried roughly, the best of them in earnest.
+void take_best_start(Fitted& result, const FitTarget& target, std::vector<Mannequin> starts) {
+  constexpr size_t kInEarnest = 5;
+  const auto main = without_digits(result.atlas->rig);
+  const double L = target.length;
+  std::vector<std::pair<double, size_t>> order;
+  if (starts.size() > kInEarnest) {
+    for (size_t k = 0; k < starts.size(); ++k) {
+      fit(starts[k], &*target.skin, nullptr,
+          {.iterations = 6, .wide = 0.06 * L, .narrow = 0.03 * L, .turns = main, .stride = 20});
+      order.push_back({misfit(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 10}), k});
+    }
+    std::sort(order.begin(), order.end());
+    order.resize(kInEarnest);
+  } else {
+    for (size_t k = 0; k < starts.size(); ++k) order.push_back({0, k});
+  }
+  double least = std::numeric_limits<double>::max();
+  for (const auto& [rough, k] : order) {
+    fit(starts[k], &*target.skin, nullptr,
+        {.iterations = 12, .wide = 0.06 * L, .narrow = 0.02 * L, .turns = main, .stride = 8});
+    const double off = misfit(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 4});
+    if (off < least) least = off, result.body = starts[k];
+  }
+  result.misfit = std::sqrt(least);
+}
+
+// Bones that are drawn as rods along a rig: the body's own segments are drawn onto their axes. Kept when nearly all
+// bone lies close around the segments and the long bones' segments run inside bone; anatomical bones do neither.
+bool follow_rods(Mannequin& m, const FitTarget& target) {
+  const double L = target.length;
+  Mannequin rods = m;
+  // Ribs, skull and hip bones stand far off any rig's lines: told after a few steps.
+  constexpr double kNearlyAll = 0.9;
+  FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
+  fit_rods(rods, target.bone_cells, *target.skin, stage);
+  if (rod_share(rods, target.bone_cells, target.bone_body, 0.03 * L).near < kNearlyAll) return false;
+  rods = m;
+  stage.iterations = 40, stage.narrow = 0.006 * L, stage.stride = 3;
+  fit_rods(rods, target.bone_cells, *target.skin, stage);
+  split_rods(rods, target.bone_cells);
+  const RodShare share = rod_share(rods, target.bone_cells, target.bone_body, 0.015 * L);
+  if (share.near < 0.9 || share.inside < 0.85) return false;
+  m = rods;
+  return true;
+}
+
+// Of a body that only its rig tells of: its segments drawn into the bones, kept where more bone lies close around them
+// then.
+bool follow_bones(Mannequin& m, const FitTarget& target) {
+  constexpr double kClose = 0.025, kMost = 0.8;  // of the tissue's diagonal; share of the bone
+  const double L = target.length;
+  Mannequin drawn = m;
+  fit_rods(drawn, target.bone_cells, *target.skin,
+           {.iterations = 40, .wide = 0.03 * L, .narrow = 0.008 * L, .bone_share = 0.6, .stride = 3});
+  const double before = rod_share(m, target.bone_cells, target.bone_body, kClose * L).near,
+               after = rod_share(drawn, target.bone_cells, target.bone_body, kClose * L).near;
+  if (after < kMost || after < before) return false;
+  m = drawn;
+  return true;
+}
+
+void refine_by_skin(Fitted& result, const FitTarget& target) {
+  const double L = target.length;
+  fit(*result.body, &*target.skin, nullptr,
+      {.iterations = 20,
+       .wide = 0.03 * L,
+       .narrow = 0.01 * L,
+       .turns = without_digits(result.atlas->rig),
+       .stride = 3});
+}
+
+// Hands first, then all, roughly with some of the points and to the end with all of them.
+void finish(Mannequin& m, const FitTarget& target, const FitSurface* bone, bool is_rods) {
+  const double L = target.length;
+  try_hands(m, target, bone);
+  // Voxels coarser than finger bones are thick show skin better than bone.
+  const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
+  if (is_rods) return;
+  for (const auto& [iterations, stride, wide, narrow] :
+       {std::tuple(14, 3, 0.012, 0.005), std::tuple(9, 1, 0.005, bone ? 0.003 : 0.004)})
+    fit(m, &*target.skin, bone,
+        {.iterations = iterations, .wide = wide * L, .narrow = narrow * L, .bone_share = bone_share, .stride = stride});
+}
+
+void refine(Fitted& result, const FitTarget& target, Progress& progress) {
+  Mannequin& m = *result.body;
+  const double L = target.length;
+  const FitSurface* bone = target.bone && !result.is_capsules ? &*target.bone : nullptr;
+  if (target.bone && result.is_capsules) {
+    result.is_rods = follow_bones(m, target);
+  } else if (bone && follow_rods(m, target)) {
+    result.is_rods = true;
+    bone = nullptr;
+  } else if (bone) {
+    fit(m, &*target.skin, bone,
+        {.iterations = 24,
+         .wide = 0.03 * L,
+         .narrow = 0.006 * L,
+         .turns = without_digits(result.atlas->rig),
+         .bone_share = 0.7,
+         .stride = 2});
+  }
+  progress.update("fitting", 0.6);
+  const Mannequin before = m;
+  finish(m, target, bone, result.is_rods);
+  // Hands that lie on nothing like a hand may be turned another way.
+  constexpr double kLittle = 0.78, kBetter = 1.05;
+  double most = hands_near(m, target);
+  for (double twist : {0.0, 3.14, 1.57, -1.57}) {
+    if (most > kLittle) break;
+    Mannequin turned = with_turned_hands(before, twist, target);
+    finish(turned, target, bone, result.is_rods);
+    const double share = hands_near(turned, target);
+    if (share > kBetter * most) most = share, m = turned;
+  }
+  result.misfit = std::sqrt(misfit(m, &*target.skin, nullptr, 0.04 * L, {}));
+  progress.update("fitting", 1);
+}
+
+}  // namespace
+
+std::string_view to_string(JointFit::How how) {
+  switch (how) {
+    case JointFit::How::Skin: return "skin";
+    case JointFit::How::BoneSurface: return "bone surface";
+    case JointFit::How::BoneAxis: return "bone axis";
+    case JointFit::How::Girth: return "girth";
+    case JointFit::How::Ball: return "joint ball";
+    case JointFit::How::NamedBones: return "named bones";
+    case JointFit::How::Carried: return "carried along";
+    case JointFit::How::Extents: return "extents";
+    case JointFit::How::Unseen: return "proportion";
+  }
+  return "";
+}
+
+namespace {
+
+// What kind of body a rig is of; none for one whose names mean nothing, or that goes on four legs.
+std::vector<AtlasKind> kinds_for(const Armature& rig) {
+  const Skeleton skeleton = skeleton_of(rig);
+  std::set<BodyPart> parts;
+  for (const auto& role : skeleton.role)
+    if (role) parts.insert(role->part);
+  const bool arm = parts.contains(BodyPart::UpperArm) || parts.contains(BodyPart::Forearm),
+             leg = parts.contains(BodyPart::Thigh) || parts.contains(BodyPart::Shank);
+  if (leg && (arm || parts.contains(BodyPart::Neck) || parts.contains(BodyPart::Head))) return {AtlasKind::Body};
+  if (arm) return {AtlasKind::Arm, AtlasKind::ArmWithShoulder};
+  if (leg) return {AtlasKind::Leg};
+  if (parts.contains(BodyPart::Index) || parts.contains(BodyPart::Middle)) return {AtlasKind::Hand};
+  return {};
+}
+
+// The best of several kinds of body, right and left.
+Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, Progress& progress) {
+  Fitted best;
+  int done = 0;
+  for (AtlasKind kind : kinds) {
+    const BodyAtlas atlas = make_atlas(kind);
+    for (bool mirror : {false, true}) {
+      progress.update("starting", done++ / double(2 * kinds.size()));
+      if (kind == AtlasKind::Body && mirror) continue;
+      Fitted tried{.atlas = std::make_shared<BodyAtlas>(mirror ? mirrored(atlas) : atlas), .body = std::nullopt};
+      take_best_start(tried, target,
+                      kind == AtlasKind::Body ? body_starts(*tried.atlas, target.rough_body, target.cuts)
+                                              : limb_starts(*tried.atlas, target.rough_body, kind, target.cuts));
+      if (tried.body && tried.misfit < best.misfit) best = tried;
+    }
+  }
+  return best;
+}
+
+// From a bone at a limb's end up to the first that hangs from the trunk.
+std::vector<int> limb_to(const Armature& rig, int last) {
+  std::vector<int> children(rig.bones.size(), 0), limb{last};
+  for (const Bone& bone : rig.bones)
+    if (bone.parent >= 0) ++children[bone.parent];
+  for (int b = rig.bones[last].parent; b >= 0 && children[b] == 1 && rig.bones[b].parent >= 0; b = rig.bones[b].parent)
+    limb.push_back(b);
+  std::reverse(limb.begin(), limb.end());
+  return limb;
+}
+
+// Limbs that end short of the tissue's ends, or beyond them, are aimed at those and stretched; both sides alike.
+void reach_ends(Mannequin& m, const Occupancy& body) {
+  constexpr double kMost = 0.6, kNear = 0.7;  // logarithm of the stretch; of the limb's length
+  const Armature& rig = m.atlas().rig;
+  std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
+  for (const Bone& bone : rig.bones)
+    if (bone.parent >= 0) is_last[bone.parent] = 0;
+  std::map<int, std::pair<double, int>> stretch;  // by group: sum and count
+  struct Aim {
+    int root, last;
+    glm::dvec3 end;
+  };
+  std::vector<Aim> aims;
+  for (const LimbPath& path : limb_paths(body, PathCentre::Thickest)) {
+    const glm::dvec3 end = path.points.front();
+    const auto apart = [&](int b) { return is_last[b] ? glm::distance(m.carried(b, rig.bones[b].tail), end) : 1e300; };
+    int last = 0;
+    for (int b = 1; b < m.bone_count(); ++b)
+      if (apart(b) < apart(last)) last = b;
+    const std::vector<int> limb = limb_to(rig, last);
+    double length = 0;
+    for (int b : limb) length += glm::distance(m.joint(b), m.carried(b, rig.bones[b].tail));
+    const bool taken = std::any_of(aims.begin(), aims.end(), [&](const Aim& aim) { return aim.last == last; });
+    if (taken || !(length > 0) || apart(last) > kNear * length) continue;
+    const glm::dvec3 root = m.joint(limb.front()), tail = m.carried(last, rig.bones[last].tail);
+    if (!(glm::distance(tail, root) > 0) || !(glm::distance(end, root) > 0)) continue;
+    const double by = std::clamp(std::log(glm::distance(end, root) / glm::distance(tail, root)), -kMost, kMost);
+    for (int b : limb) stretch[m.group_of(b)].first += by, ++stretch[m.group_of(b)].second;
+    aims.push_back({limb.front(), last, end});
+  }
+  for (const auto& [group, sum] : stretch) m.along[group] += sum.first / sum.second;
+  m.settle();
+  for (const Aim& aim : aims) {
+    const glm::dvec3 root = m.joint(aim.root), tail = m.carried(aim.last, rig.bones[aim.last].tail);
+    m.turn_branch(aim.root, glm::mat3_cast(shortest_turn(tail - root, aim.end - root)));
+  }
+}
+
+// A body that is not known but for the rig.
+Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& progress) {
+  progress.update("starting", 0);
+  Fitted tried{.atlas = std::make_shared<BodyAtlas>(capsule_atlas(rig)), .body = std::nullopt, .is_capsules = true};
+  take_best_start(tried, target, turned_starts(*tried.atlas, target.rough_body));
+  if (!tried.body) return tried;
+  refine_by_skin(tried, target);
+  reach_ends(*tried.body, target.rough_body);
+  return tried;
+}
+
+// Bones that nothing shows lie as those of the other side do, or as the atlas has them.
+void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
+  Mannequin& m = *fitted.body;
+  const Armature& rig = m.atlas().rig;
+  const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+  std::vector<std::uint8_t> holds_seen = seen;
+  for (int b = m.bone_count(); b-- > 0;)
+    if (holds_seen[b] && rig.bones[b].parent >= 0) holds_seen[rig.bones[b].parent] = 1;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const int parent = rig.bones[b].parent;
+    if (holds_seen[b] || parent < 0) continue;
+    m.turn[b] = m.turn[parent];
+    const std::string& name = rig.bones[b].name;
+    const auto other = name.starts_with("Left")    ? rig.find("Right" + name.substr(4))
+                       : name.starts_with("Right") ? rig.find("Left" + name.substr(5))
+                                                   : std::nullopt;
+    if (other && seen[*other])
+      m.turn[b] = m.turn[parent] * mirror * glm::transpose(m.turn[rig.bones[*other].parent]) * m.turn[*other] * mirror;
+  }
+  m.settle();
+}
+
+// The labels that are bone, as the table says. Where it says nothing of any label: the one that lies along the long
+// bones of the body, as it lies by its skin.
+LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted,
+                     std::vector<std::string>& warnings) {
+  LabelSet labels(65536, 0);
+  const std::vector<TissueKind> kinds = tissues.kinds();
+  for (size_t label = 1; label < kinds.size(); ++label) labels[label] = is_bone(kinds[label]);
+  const Mannequin& m = *fitted.body;
+  Armature long_bones;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const Bone& bone = m.atlas().rig.bones[b];
+    if (fitted.is_capsules || ends_with_any(bone.name, {"UpperArm", "Forearm", "Thigh", "Shank"}))
+      long_bones.bones.push_back(
+          {.name = bone.name, .parent = -1, .head = m.joint(b), .tail = m.carried(b, bone.tail)});
+  }
+  if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
+    const Tissue* tissue = tissues.find(guess->label);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "no table says what is bone: label %.0f, which lies along %.0f %% of the long bones, is taken for it",
+                  tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
+    warnings.push_back(text);
+    labels[guess->label] = 1;
+  }
+  return labels;
+}
+
+// The joints that the names of bones tell, with the body laid along them.
+std::vector<NamedJoint> joints_by_name(Fitted& fitted, const FitTarget& target, const LabelVolume& volume,
+                                       const TissueTable& tissues) {
+  Mannequin& m = *fitted.body;
+  std::vector<NamedJoint> joints = named_joints(volume, tissues, m);
+  if (!same_sides(m, joints)) {
+    const glm::dvec3 up = m.turn[0] * m.rest_axis(0);
+    m.turn_branch(0, glm::mat3_cast(glm::angleAxis(3.14159265358979323846, glm::normalize(up))));
+    refine_by_skin(fitted, target);
+    joints = named_joints(volume, tissues, m);
+  }
+  lay_along(m, joints);
+  return joints;
+}
+
+AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::string& reason) {
+  AutoFit result;
+  result.armature = scaled_to_tissue(volume, rig);
+  const double error = error_by_extents(volume);
+  result.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1, error});
+  result.warnings.push_back(reason +
+                            ": the rig was only scaled to the tissue's extents, and its joints may lie up to some " +
+                            std::to_string(std::lround(error)) + " mm off");
+  return result;
+}
+
+void warn_of_joints(AutoFit& result) {
+  constexpr double kDoubtful = 0.35, kOutside = 0.85, kFarOff = 18;
+  std::string doubtful, outside, far_off;
+  double farthest = 0;
+  for (size_t b = 0; b < result.joints.size(); ++b) {
+    const JointFit& joint = result.joints[b];
+    const auto list = [&](std::string& names) { names += (names.empty() ? "" : ", ") + result.armature.bones[b].name; };
+    const bool found = joint.how != JointFit::How::Carried && joint.how != JointFit::How::Extents &&
+                       joint.how != JointFit::How::Unseen;
+    if (found && joint.confidence < kDoubtful) list(doubtful);
+    else if (found && joint.error > kFarOff) list(far_off), farthest = std::max(farthest, joint.error);
+    if (result.check.share[b] < kOutside) list(outside);
+  }
+  if (!doubtful.empty()) result.warnings.push_back("found with little confidence, check by eye: " + doubtful);
+  if (!far_off.empty())
+    result.warnings.push_back(
+        "the body is of another shape here and little tells these joints, which may lie up to some " +
+        std::to_string(std::lround(farthest)) + " mm off: " + far_off);
+  if (!outside.empty()) result.warnings.push_back("bones that leave the tissue: " + outside);
+}
+
+}  // namespace
+
+double error_by_extents(const LabelVolume& volume) {
+  constexpr double kShare = 0.35;  // of the diagonal: a joint can lie at the other end of a body that is turned around
+  return kShare * glm::length(glm::dvec3(tissue_box(volume).size) * volume.grid.spacing);
+}
+
+Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig) {
+  const VoxelBox box = tissue_box(volume);
+  if (box.voxel_count() == 0)
+    throw Error("a volume without tissue cannot be rigged", "every voxel is air", "give a label volume with tissue");
+  const AffineTransform to_world = world_from_voxel(volume.grid);
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(-low), least(low), most(high);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p = to_world * (glm::dvec3(box.lowest) - 0.5 +
+                                     glm::dvec3(box.size) * glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    low = glm::min(low, p), high = glm::max(high, p);
+  }
+  for (const Bone& bone : rig.bones)
+    for (const glm::dvec3& p : {bone.head, bone.tail}) least = glm::min(least, p), most = glm::max(most, p);
+  const glm::dvec3 sides = high - low, own = most - least;
+  const int longest = own.x >= own.y && own.x >= own.z ? 0 : own.y >= own.z ? 1 : 2;
+  constexpr double kInside = 0.96;  // bones end some way below the skin
+  const double scale = own[longest] > 0 ? kInside * sides[longest] / own[longest] : 1;
+  return moved_rig(rig, glm::dmat3(1), scale, (least + most) / 2.0, (low + high) / 2.0);
+}
+
+AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig, Progress& progress) {
+  check_armature(rig, "the template");
+  progress.update("surfaces", 0);
+  FitTarget target = make_fit_target(volume);
+  progress.update("surfaces", 1);
+  AutoFit result;
+  const std::vector<AtlasKind> kinds = kinds_for(rig);
+  Fitted fitted;
+  if (has_shape(target)) {
+    if (!kinds.empty()) fitted = best_start(kinds, target, progress);
+    else if (has_trunk(rig)) fitted = capsule_start(rig, target, progress);
+  }
+  if (!fitted.body) {
+    result = by_extents(
+        volume, rig,
+        kinds.empty() ? "the bones' names do not tell of a body that is known" : "the tissue has hardly any surface");
+  } else {
+    progress.update("fitting", 0);
+    refine_by_skin(fitted, target);
+    const std::vector<NamedJoint> named = joints_by_name(fitted, target, volume, tissues);
+    progress.update("fitting", 0.3);
+    add_bone(target, volume, bone_labels(volume, tissues, fitted, result.warnings));
+    refine(fitted, target, progress);
+    if (!target.cuts.empty()) lay_unseen(fitted, seen_bones(fitted, target));
+    FoundJoints found = found_joints(fitted, target);
+    take_named(found, fitted.atlas->rig, named, target.length);
+    doubt_cut_limbs(fitted, target, found, result.warnings);
+    const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
+    result.misfit_mm = fitted.misfit;
+    for (size_t b = 0; b < rig.bones.size(); ++b) {
+      const int match = placed.joint_of[b];
+      JointFit joint;
+      if (match >= 0) joint = found.how[match];
+      // What rides along is as sure as what it rides on, and a little less.
+      else if (rig.bones[b].parent >= 0)
+        joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence,
+        joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
+      result.joints.push_back(joint);
+    }
+    // A joint gives way by what it may be off, not by much more.
+    constexpr double kGivesWay = 1.25;
+    std::vector<double> free;
+    for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
+    result.armature = with_fitted_limits(drawn_inside(placed.armature, volume, target.cuts, free), rig);
+    constexpr double kUnlike = 0.016;  // of the tissue's diagonal
+    if (result.misfit_mm > kUnlike * target.length)
+      result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
+  }
+  result.check = check_rig(volume, result.armature);
+  warn_of_joints(result);
+  return result;
+}
+
+std::string suggest_template(const LabelVolume& volume, Progress& progress) {
+  const FitTarget target = make_fit_target(volume);
+  if (!has_shape(target)) return "arm";
+  // A body has five ends that stand far out, or three at least where arms lie at the trunk.
+  const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
+  if (ends >= 5) {
+    const double whole = best_start({AtlasKind::Body}, target, progress).misfit;
+    if (whole < 0.02 * target.length) return "adult";
+  }
+  std::pair<double, std::string> best{std::numeric_limits<double>::max(), "arm"};
+  for (const auto& [kind, name] : {std::pair(AtlasKind::Arm, "arm"), std::pair(AtlasKind::Leg, "leg"),
+                                   std::pair(AtlasKind::Hand, "hand"), std::pair(AtlasKind::Body, "adult")}) {
+    if (kind == AtlasKind::Body && ends < 3) continue;
+    const Fitted tried = best_start({kind}, target, progress);
+    if (tried.body && tried.misfit < best.first) best = {tried.misfit, name};
+  }
+  return best.second;
+}
+
+}  // namespace limber

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/autorig/found_joints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/autorig/hand_fit.h"
+#include "core/autorig/joint_landmarks.h"
+
+namespace limber {
+
+namespace {
+
+// Confidence in the heads of the fitted body's bones: how much of the surface on either side of the joint lies where it
+// should.
+std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
+  const Mannequin& m = *fitted.body;
+  const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
+  const double near = by_bone ? 2.5 + 1.2 * target.cell : 2.5 + 0.004 * target.length + target.cell;
+  std::vector<double> share = share_near(m, by_bone ? *target.bone : *target.skin, by_bone, near);
+  std::vector<double> result(share.size(), 0);
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const int parent = m.atlas().rig.bones[b].parent;
+    double own = share[b], sum = 0;
+    int children = 0;
+    for (int c = b + 1; c < m.bone_count() && own < 0; ++c)
+      if (m.atlas().rig.bones[c].parent == b && share[c] >= 0) sum += share[c], ++children;
+    if (own < 0) own = children ? sum / children : 0.5;
+    const double above = parent < 0 || share[parent] < 0 ? own : share[parent];
+    result[b] = std::sqrt(own * above);
+  }
+  return result;
+}
+
+// Per bone: how little its surface and its parent's is that of the body that was laid over it, 0 for the same and 1 for
+// another shape.
+struct Likeness {
+  double same, other,
+      of_cell;  // mm off for the same shape, mm more for another, and what voxels alone put it off, of a cell
+};
+
+std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint>& points, const FitSurface& surface,
+                                const Likeness& like, const FitTarget& target) {
+  const Armature& rig = m.atlas().rig;
+  std::vector<std::vector<double>> off(m.bone_count());
+  const double reach = 0.05 * target.length;
+  for (const AtlasPoint& point : points) {
+    const glm::dvec3 here = m.carried(point.bone, point.place);
+    const int n = surface.tree.nearest(here, m.turn_at(point.bone, point.place) * point.normal, reach);
+    if (beyond(target.cuts, here) > 0) continue;
+    off[point.bone].push_back(n < 0 ? reach
+                                    : std::abs(glm::dot(surface.points[n].normal, here - surface.points[n].place)));
+  }
+  std::vector<double> result;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    std::vector<double> both = off[b];
+    const auto join = [&](int beside) { both.insert(both.end(), off[beside].begin(), off[beside].end()); };
+    for (int c = b + 1; c < m.bone_count() && off[b].empty(); ++c)
+      if (rig.bones[c].parent == b) join(c);
+    if (rig.bones[b].parent >= 0) join(rig.bones[b].parent);
+    std::nth_element(both.begin(), both.begin() + both.size() / 2, both.end());
+    const double scale = std::exp(m.across[m.group_of(b)]);
+    result.push_back(both.empty()
+                         ? 1
+                         : std::clamp((both[both.size() / 2] - like.same * scale - like.of_cell * target.cell) /
+                                          (like.other * scale),
+                                      0.0, 1.0));
+  }
+  return result;
+}
+
+// By its skin; and where bones are known that are alike, it is alike, however fat lies over them.
+std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
+  const Mannequin& m = *fitted.body;
+  std::vector<double> result =
+      strangeness(m, m.atlas().skin, *target.skin, {.same = 0.8, .other = 0.8, .of_cell = 0.08}, target);
+  if (!target.bone || fitted.is_rods || fitted.is_capsules) return result;
+  const std::vector<double> bones =
+      strangeness(m, m.atlas().bone, *target.bone, {.same = 0.5, .other = 0.4, .of_cell = 0.15}, target);
+  for (size_t b = 0; b < result.size(); ++b) result[b] = std::min(result[b], bones[b]);
+  return result;
+}
+
+// Of the whole: the mean of the limbs and the trunk, and 1 where voxels are too coarse to tell.
+double whole_strangeness(const Fitted& fitted, const std::vector<double>& strange, const FitTarget& target) {
+  constexpr double kFine = 5, kCoarse = 9;  // mm, of a cell
+  double sum = 0;
+  int bones = 0;
+  for (size_t b = 0; b < strange.size(); ++b)
+    if (!is_digit(fitted.atlas->rig.bones[b].name)) sum += strange[b], ++bones;
+  const double size = std::exp(fitted.body->along[0]);
+  return std::max(bones ? sum / bones : 1.0, std::clamp((target.cell / size - kFine) / (kCoarse - kFine), 0.0, 1.0));
+}
+
+// Of a body that only its rig tells of the skin shows how limbs run, and their ends, but not where along them they
+// bend; a limb that lies on nothing may lie anywhere about its root.
+void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const FitTarget& target) {
+  constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75,
+                   kEnough = 0.8;  // of the tissue's diagonal, and of a bone's length
+  const Armature& rig = m.atlas().rig;
+  std::vector<double> lost(rig.bones.size(), 0);
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    const int parent = rig.bones[b].parent;
+    const double length = parent < 0 ? glm::distance(m.joint(b), m.carried(b, rig.bones[b].tail))
+                                     : glm::distance(m.joint(b), m.joint(parent));
+    if (parent >= 0) lost[b] = lost[parent] + kLost * length * std::clamp((kEnough - near[b]) / kEnough, 0.0, 1.0);
+    found.how[b].error = kOfWhole * target.length + kOfBone * length + lost[b];
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target) {
+  constexpr double kLeast = 0.3;  // of a bone's skin
+  const Mannequin& m = *fitted.body;
+  std::vector<double> all(m.bone_count(), 0), inside(all);
+  for (const AtlasPoint& point : m.atlas().skin)
+    ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
+  // Pieces of the skeleton by the bone they hang from.
+  std::vector<int> piece(m.bone_count(), -1);
+  std::vector<double> weight(m.bone_count(), 0);
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const int parent = m.atlas().rig.bones[b].parent;
+    const bool seen = all[b] > 0 ? inside[b] >= kLeast * all[b] : parent >= 0 && piece[parent] >= 0;
+    if (!seen) continue;
+    piece[b] = parent < 0 ? b : piece[parent] >= 0 ? piece[parent] : parent;
+    weight[piece[b]] += inside[b];
+  }
+  const int largest = static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  std::vector<std::uint8_t> result;
+  for (int b = 0; b < m.bone_count(); ++b) result.push_back(piece[b] == largest);
+  return result;
+}
+
+FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
+  using How = JointFit::How;
+  // mm within which nine of ten such joints lay on segmented adults, beside those that another shape adds. Of hips even
+  // the authors of rigs differ by 5 cm where skin is all there is.
+  constexpr double kLeastError = 4, kByBone = 14, kCollarByBone = 28, kFingerByBone = 14, kBySkin = 22,
+                   kShoulderBySkin = 26, kCollarBySkin = 36, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15,
+                   kNeckByGirth = 22, kByBall = 9, kByAxis = 16;
+  const Mannequin& m = *fitted.body;
+  const Armature& rig = m.atlas().rig;
+  const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
+  const std::vector<double> near = shares_near(fitted, target);
+  const std::vector<double> strange = strangeness(fitted, target);
+  // A body of another build puts its joints elsewhere also where a bone by itself looks alike, as thin ones always do.
+  const double whole = whole_strangeness(fitted, strange, target);
+  FoundJoints found;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    const std::string& name = rig.bones[b].name;
+    const bool rod = fitted.is_rods &&
+                     (fitted.is_capsules || ends_with_any(name, {"UpperArm", "Forearm", "Thigh", "Shank", "Foot"}));
+    const double by_skin = ends_with_any(name, {"Thigh", "Hips", "Neck", "Spine"}) ? kHipsBySkin
+                           : name.ends_with("UpperArm")                            ? kShoulderBySkin
+                                                                                   : kBySkin;
+    const bool collar = name.ends_with("Clavicle");
+    const double other = by_bone  ? (collar           ? kCollarByBone
+                                     : is_digit(name) ? kFingerByBone
+                                                      : kByBone)
+                         : collar ? kCollarBySkin
+                                  : by_skin;
+    found.places.push_back(m.joint(b));
+    found.how.push_back({.how = rod       ? How::BoneAxis
+                                : by_bone ? How::BoneSurface
+                                          : How::Skin,
+                         .confidence = rod ? 0.9 : near[b],
+                         .error = rod ? kByAxis : kLeastError + std::max(strange[b], whole) * other});
+  }
+  const auto take = [&](const JointLandmark& mark, How how, double weight, double error) {
+    const double off = glm::distance(found.places[mark.bone], mark.place);
+    found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
+    JointFit& joint = found.how[mark.bone];
+    joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
+    // Two ways of finding it that disagree: skin alone slides along a limb, and a joint put between the two is told by
+    // neither.
+    if (how == How::Girth && joint.how == How::Skin)
+      joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
+    if (weight > 0.5) joint.how = how;
+  };
+  // Skin alone slides along a limb by a tenth of the bone above, rarely more: a waist farther off is another one. Rods
+  // say nothing of the hand, which may slide far.
+  const auto believable = [&](const JointLandmark& mark) {
+    constexpr double kSlides = 0.12, kNever = 0.24;
+    const int above = rig.bones[mark.bone].parent;
+    if (above < 0 || fitted.is_rods || rig.bones[mark.bone].name == "Neck") return 1.0;
+    const double apart =
+        glm::distance(m.joint(mark.bone), mark.place) / glm::distance(m.joint(above), m.joint(mark.bone));
+    return std::clamp((kNever - apart) / (kNever - kSlides), 0.0, 1.0);
+  };
+  for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
+    const std::string& name = rig.bones[mark.bone].name;
+    // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
+    // bend in between.
+    const double share = name == "Neck"   ? 1
+                         : by_bone        ? (name.ends_with("Shank") ? 0.5 : 0)
+                         : fitted.is_rods ? double(name.ends_with("Hand"))
+                                          : 1;
+    // Flesh folds where a limb is bent, and its waist moves down.
+    constexpr double kBent = 45, kHardlyBent = 0.09;  // mm at a right angle, radians
+    const double bent = kBent * std::max(0.0, std::sin(mark.bend) - kHardlyBent);
+    take(mark, How::Girth, share * strange[mark.bone] * believable(mark),
+         (name == "Neck"           ? kNeckByGirth
+          : name.ends_with("Hand") ? kHandByGirth
+                                   : kByGirth) +
+             bent);
+  }
+  // A hand that lies against something has no wrist to be seen, and slides.
+  constexpr double kHandSlides = 38;
+  for (int b = 0; b < m.bone_count(); ++b)
+    if (found.how[b].how == How::Skin && rig.bones[b].name.ends_with("Hand"))
+      found.how[b].error = std::max(found.how[b].error, kLeastError + strange[b] * kHandSlides);
+  if (by_bone)
+    for (const JointLandmark& mark : ball_landmarks(m, *target.bone))
+      take(mark, How::Ball, strange[mark.bone], kByBall);
+  // Where little of the body lies where it should, nothing is sure, whatever was found there.
+  // Bones of limbs are much alike, those of trunks are not, and a ball is told by itself.
+  constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100,
+                   kLimbFarOff = 300;  // share, and mm for a share of 1 less
+  // Of the tissue's diagonal: whole bodies of other shapes came out at 0.011 at most, parts at 0.015 with joints 11 mm
+  // off, at 0.019 with 50 mm, and limbs laid the wrong way round above that.
+  constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
+  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) / target.length - kUnlike);
+  const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
+  const auto doubt = [&](int b) {
+    const std::string& name = rig.bones[b].name;
+    const bool in_limb = by_bone && ends_with_any(name, {"UpperArm", "Forearm", "Hand", "Thigh", "Shank", "Foot"});
+    const double few = !in_limb || found.how[b].how == How::Ball ? kFew
+                       : name.ends_with("Hand")                  ? kFewOfHand
+                                                                 : kFewOfLimb;
+    return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
+  };
+  // Fingers that lie on nothing like fingers may be those of a hand that is turned another way.
+  constexpr double kHandShare = 0.85, kHandFarOff = 120;
+  if (!fitted.is_capsules) {
+    const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
+    for (int b = 0; b < m.bone_count(); ++b)
+      if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
+  }
+  if (fitted.is_capsules) doubt_capsules(found, near, m, target);
+  // Half sure of what may lie off by as much as a joint is thick.
+  constexpr double kJoint = 40;
+  for (int b = 0; b < m.bone_count(); ++b) {
+    JointFit& joint = found.how[b];
+    if (joint.how != How::BoneAxis) joint.error = std::max(joint.error, doubt(b));
+    joint.error = std::max(joint.error, wrong);
+    joint.confidence *= 1 / (1 + joint.error / kJoint);
+  }
+  return found;
+}
+
+void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
+  // That the body puts its joints elsewhere between the same bones moves nothing else.
+  constexpr double kElsewhere = 0.009;
+  std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
+  std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
+  for (const NamedJoint& joint : named) own[joint.bone] = &joint;
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    if (own[b]) {
+      const glm::dvec3 off = own[b]->place - found.places[b];
+      shift[b] = off * std::max(0.0, 1 - kElsewhere * size / std::max(glm::length(off), 1e-9));
+      found.places[b] = own[b]->place;
+      found.how[b] = {.how = JointFit::How::NamedBones, .confidence = 0.95, .error = own[b]->error};
+    } else if (rig.bones[b].parent >= 0) {
+      shift[b] = shift[rig.bones[b].parent];
+      found.places[b] += shift[b];
+    }
+  }
+}
+
+void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
+                     std::vector<std::string>& warnings) {
+  constexpr double kNear = 0.05,
+                   kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
+  constexpr double kLeast = 36, kGrowth = 0.33;  // mm off at the cut, and more with every mm beyond it
+  constexpr double kSureBall = 12;               // mm: a ball that is this sure is one, however near the cut
+  const Armature& rig = fitted.atlas->rig;
+  const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
+  std::string unseen, doubted;
+  std::vector<std::uint8_t> near_cut(rig.bones.size(), 0);
+  const auto list = [&](std::string& names, int b) { names += (names.empty() ? "" : ", ") + rig.bones[b].name; };
+  for (int b = 0; b < std::ssize(rig.bones) && !target.cuts.empty(); ++b) {
+    const double out = beyond(target.cuts, found.places[b]);
+    JointFit& joint = found.how[b];
+    const int parent = rig.bones[b].parent;
+    if (joint.how == JointFit::How::NamedBones) continue;
+    if (out > 0 || (!seen[b] && (parent < 0 || !seen[parent]))) {
+      const double from_cut = out > 0 ? out : 0.1 * target.length;
+      joint = {
+          .how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
+      // Each bone on the way from what is seen may be turned otherwise.
+      if (parent >= 0 && !seen[parent])
+        joint.error = std::max(
+            joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
+      if (!is_digit(rig.bones[b].name)) list(unseen, b);
+    } else if (out > -kNear * target.length && joint.error > kStrange &&
+               !(joint.how == JointFit::How::Ball && joint.error < kSureBall)) {
+      near_cut[b] = 1;
+      joint.confidence *= 0.4;
+      joint.error = std::max(joint.error, kLeast);
+      if (!is_digit(rig.bones[b].name)) list(doubted, b);
+    }
+  }
+  // And what lies next to such a joint slides with it.
+  constexpr double kWithIt = 0.35, kMost = 100, kLessSure = 0.6;
+  const std::vector<JointFit> own = found.how;
+  const auto is_doubted = [&](int b) {
+    return !is_digit(rig.bones[b].name) && (own[b].how == JointFit::How::Unseen || near_cut[b]);
+  };
+  for (int b = 0; b < std::ssize(rig.bones); ++b) {
+    if (is_doubted(b) || own[b].how == JointFit::How::Unseen || own[b].how == JointFit::How::NamedBones ||
+        own[b].error <= kStrange)
+      continue;
+    double beside = 0;
+    for (int c = 0; c < std::ssize(rig.bones); ++c)
+      if ((rig.bones[c].parent == b || rig.bones[b].parent == c) && is_doubted(c))
+        beside = std::max(beside, own[c].error);
+    if (beside == 0) continue;
+    found.how[b].error = std::max(own[b].error, kWithIt * std::min(kMost, beside));
+    found.how[b].confidence *= kLessSure;
+  }
+  // A limb alone that is cut off at its upper end may be longer or shorter than it looks, from its free end on.
+  constexpr double kLonger = 0.13;
+  const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(),
+                                  [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });
+  if (upper != rig.bones.end() && is_doubted(static_cast<int>(upper - rig.bones.begin()))) {
+    std::vector<double> from_end(rig.bones.size(), 0);
+    for (int b = static_cast<int>(std::ssize(rig.bones)); b-- > 0;) {
+      if (from_end[b] == 0) from_end[b] = glm::distance(rig.bones[b].head, rig.bones[b].tail);
+      if (const int parent = rig.bones[b].parent; parent >= 0)
+        from_end[parent] =
+            std::max(from_end[parent], from_end[b] + glm::distance(found.places[parent], found.places[b]));
+      if (own[b].error > kStrange) found.how[b].error = std::max(found.how[b].error, kLonger * from_end[b]);
+    }
+  }
+  if (!unseen.empty())
+    warnings.push_back("the tissue is cut off, and beyond the cut these joints are laid on by proportion alone: " +
+                       unseen);
+  if (!doubted.empty())
+    warnings.push_back("the tissue is cut off close to these joints, which may lie far off: " + doubted);
+}
+
+}  // namespace limber

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/binding/cover_islands.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+namespace limber {
+
+void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
+                   WeightsReport& report, const TissueTable* tissues) {
+  struct Island {
+    std::int64_t voxels;
+    double file_value;  // of its first voxel's label
+    glm::dvec3 centre;
+    int bone;
+  };
+  std::vector<Island> islands;
+  const AffineTransform from_voxel = world_from_voxel(volume.grid);
+  std::vector<std::pair<std::int64_t, glm::ivec3>> piece;
+  tissue.for_each([&](std::int64_t seed, const glm::ivec3& seed_voxel) {
+    if (best.covered(tissue.brick_at(seed_voxel), seed)) return;
+    // Covered for the time being, so that each is met once.
+    piece.assign(1, {seed, seed_voxel});
+    best.hold(tissue.brick_at(seed_voxel), seed, 0);
+    glm::dvec3 sum(0);
+    for (size_t k = 0; k < piece.size(); ++k) {
+      const glm::ivec3 v = piece[k].second;
+      sum += glm::dvec3(v);
+      for (int direction = 0; direction < 6; ++direction) {
+        glm::ivec3 w = v;
+        w[direction >> 1] += direction & 1 ? 1 : -1;
+        if (volume.at_or_air(w) == 0) continue;
+        const std::int64_t place = tissue.index_of(w);
+        const int brick = tissue.brick_at(w);
+        if (best.covered(brick, place)) continue;
+        best.hold(brick, place, 0);
+        piece.push_back({place, w});
+      }
+    }
+    const Tissue* label = tissues ? tissues->find(volume.at(seed_voxel)) : nullptr;
+    Island island{std::ssize(piece), label ? label->file_value : double(volume.at(seed_voxel)),
+                  from_voxel * (sum / double(piece.size())), 0};
+    double nearest = std::numeric_limits<double>::max();
+    for (size_t b = 0; b < armature.bones.size(); ++b)
+      if (const double d = distance_to_bone(armature.bones[b], island.centre); d < nearest)
+        nearest = d, island.bone = static_cast<int>(b);
+    for (const auto& [place, voxel] : piece) best.hold(tissue.brick_at(voxel), place, island.bone);
+    islands.push_back(island);
+  });
+
+  std::stable_sort(islands.begin(), islands.end(),
+                   [](const Island& a, const Island& b) { return a.voxels > b.voxels; });
+  constexpr size_t kMostLines = 5;
+  for (size_t k = 0; k < std::min(islands.size(), kMostLines); ++k) {
+    const Island& island = islands[k];
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "no bone reaches %lld voxels of label %.15g near (%.0f, %.0f, %.0f): given to %.80s",
+                  static_cast<long long>(island.voxels), island.file_value, island.centre.x, island.centre.y,
+                  island.centre.z, armature.bones[island.bone].name.c_str());
+    report.warnings.push_back(text);
+  }
+  if (islands.size() > kMostLines)
+    report.warnings.push_back("no bone reaches " + std::to_string(islands.size() - kMostLines) +
+                              " smaller pieces either: each given to the bone nearest to it");
+}
+
+}  // namespace limber

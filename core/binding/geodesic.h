@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight falls with the length d of the shortest way to it
+// inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone stays exactly rigid.
+// What a bone has less than the nearest, as a share of it, is raised to the power of the tissue's stiffness.
+#pragma once
+
+#include "core/binding/heat_diffusion.h"
+
+namespace limber {
+
+struct GeodesicBinding {
+  double falloff = 0.5;  // alpha of the paper, [0, 1]: 1 is sharper
+  BlendStiffness stiffness;
+};
+
+SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
+                          const BoneParts& parts, const GeodesicBinding& settings = {},
+                          Progress& progress = no_progress(), WeightsReport* report = nullptr);
+
+}  // namespace limber

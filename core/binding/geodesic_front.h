@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Shortest ways through tissue, spread as a front from voxel to voxel through faces, the shortest first. Each voxel
+// remembers the corner its way last came round (at first the voxel it started from) and the length of the way to there;
+// the rest is straight. Where the voxel before it on that straight line is air, or a seam is near, the way bends, and
+// the voxel the front came from is the new corner. So lengths are straight distances wherever one can see the start,
+// and most voxels are visited once.
+//
+// The tissue is cut into fixed domains of bricks. Threads advance domains by one step of length at a time; what crosses
+// from one domain into another is sent, and taken in a fixed order: the same ways for any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/base/memory_pages.h"
+#include "core/base/parallel.h"
+#include "core/base/zeroed_vector.h"
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+class TissueFront {
+ public:
+  static constexpr std::uint16_t kNoSource = 0xFFFF;
+
+  // References are kept.
+  TissueFront(const LabelVolume& volume, const TissueVoxels& tissue)
+      : grid_(volume.grid),
+        tissue_(tissue),
+        ways_(tissue.size()),
+        width_(static_cast<float>(kWidth * std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z}))),
+        domains_(std::clamp<std::size_t>(tissue.bricks().size() / kLeastBricks, 1, kMostDomains)) {
+    want_large_pages(ways_.data(), tissue.size() * static_cast<std::int64_t>(sizeof(Way)));
+    for (Domain& domain : domains_) domain.sent.resize(domains_.size());
+  }
+
+  //   source  what the ways that start here belong to
+  void start(std::int64_t place, const glm::ivec3& voxel, std::uint16_t source) {
+    ways_[place] = {glm::i16vec3(voxel), source, 0, 0};
+    add(domains_[domain_of(tissue_.brick_at(voxel))], {static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)}, 0);
+  }
+
+  // Starts ways at all voxels that have a source, on several threads.
+  //   source_of  (place, voxel) -> what the way that starts there belongs to, kNoSource where none does
+  template <class SourceOf>
+  void start_all(const SourceOf& source_of) {
+    const auto bricks = std::ssize(tissue_.bricks()), domains = std::ssize(domains_);
+    parallel_for(domains, 1, [&](std::int64_t begin, std::int64_t end) {
+      tissue_.for_each((begin * bricks + domains - 1) / domains, (end * bricks + domains - 1) / domains,
+                       [&](std::int64_t place, const glm::ivec3& voxel) {
+                         if (const std::uint16_t source = source_of(place, voxel); source != kNoSource)
+                           start(place, voxel, source);
+                       });
+    });
+  }
+
+  // Lets the front go on until no way is shorter any more. Both are called from several threads, for different places.
+  //   is_shorter  (source, to, way) -> whether a way of that many mm to place `to` is better than what `to` has. Where
+  //   it is
+  //               not, no longer way may be.
+  //   take        (source, to, way): notes such a way; the front goes on from there
+  //   reached     #tissue voxels: what is_shorter compares with. Only its place in memory is used, which is fetched in
+  //   time.
+  template <class IsShorter, class Take>
+  void spread(const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
+    const std::vector<bool> near_seam = bricks_near_seams();
+    for (std::size_t bucket = 0; bucket < bucket_count(); ++bucket) {
+      for (std::vector<Domain*> waiting = domains_waiting(bucket); !waiting.empty();
+           waiting = domains_waiting(bucket)) {
+        parallel_for(std::ssize(waiting), 1, [&](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t k = begin; k < end; ++k) advance(*waiting[k], bucket, near_seam, reached, is_shorter, take);
+        });
+        parallel_for(std::ssize(domains_), 1, [&](std::int64_t begin, std::int64_t end) {
+          for (std::int64_t to = begin; to < end; ++to)
+            for (Domain* from : waiting) {
+              for (const Step& step : from->sent[to]) accept(step, domains_[to], bucket, is_shorter, take);
+              from->sent[to].clear();
+            }
+        });
+      }
+      for (Domain& domain : domains_) {
+        domain.done = 0;
+        if (bucket < domain.buckets.size()) domain.finish(bucket);
+      }
+    }
+    for (Domain& domain : domains_) domain.buckets.clear(), domain.spare.clear();
+  }
+
+ private:
+  static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+  static constexpr double kWidth = 0.5;  // of the shortest voxel edge: ways that differ by less may come in any order
+  static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
+  static constexpr std::size_t kAhead = 12;  // voxels: memory is fetched so long before it is read
+
+  // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
+  struct Way {
+    glm::i16vec3 corner;
+    std::uint16_t source;
+    float to_corner, length;
+  };
+  struct Reached {
+    std::int32_t place;
+    float way;  // mm
+    glm::i16vec3 voxel;
+  };
+  struct Step {
+    std::int32_t to;
+    glm::i16vec3 voxel;
+    Way way;
+  };
+  struct Domain {
+    // Few buckets are open at a time: their memory goes round. That of the first, which may be far larger, does not.
+    void finish(std::size_t bucket) {
+      std::vector<Reached> done_with = std::move(buckets[bucket]);
+      done_with.clear();
+      if (bucket > 0 && done_with.capacity() > 0) spare.push_back(std::move(done_with));
+    }
+    std::vector<Reached>& open(std::size_t bucket) {
+      if (bucket >= buckets.size()) buckets.resize(bucket + 1);
+      if (buckets[bucket].capacity() == 0 && !spare.empty()) {
+        buckets[bucket] = std::move(spare.back());
+        spare.pop_back();
+      }
+      return buckets[bucket];
+    }
+
+    std::vector<std::vector<Reached>> buckets;  // by length of the way
+    std::vector<std::vector<Reached>> spare;    // empty ones
+    std::size_t done = 0;                       // of the bucket that is worked on
+    std::vector<std::vector<Step>> sent;        // to each domain
+  };
+
+  template <class IsShorter, class Take>
+  void advance(Domain& domain, std::size_t bucket, const std::vector<bool>& is_near_seam,
+               const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
+    const Seams* seams = tissue_.seams();
+    for (; domain.done < domain.buckets[bucket].size(); ++domain.done) {
+      if (const std::size_t ahead = domain.done + kAhead; ahead < domain.buckets[bucket].size())
+        fetch(domain.buckets[bucket][ahead].place, reached);
+      const auto [place, way_here, small_voxel] = domain.buckets[bucket][domain.done];
+      const Way here = ways_[place];
+      if (way_here > here.length) continue;  // a shorter one came later
+      const glm::ivec3 voxel(small_voxel), corner(here.corner);
+      const float before = here.to_corner;
+      const int brick_here = tissue_.brick_at(voxel);
+      for (int direction = 0; direction < 6; ++direction) {
+        const glm::ivec3 w = voxel + kSteps[direction];
+        const auto [brick, there] = brick_and_place(w, voxel, brick_here);
+        if (there < 0 || corner == w) continue;
+        Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
+        const bool is_own = &beyond == &domain;
+        // A bent way is longer.
+        float way = before + straight(corner, w);
+        if (is_own && !is_shorter(here.source, there, way)) continue;
+        const bool near_seam = seams && is_near_seam[brick];
+        if (near_seam && seams->is_cut_towards(voxel, direction)) continue;
+        const bool bends = !tissue_.holds(w - step_towards(w - corner)) || (near_seam && seams->touches(w));
+        const float to_bend = before + straight(corner, voxel);
+        if (bends) way = to_bend + straight(voxel, w);
+        const Step step{
+            static_cast<std::int32_t>(there), glm::i16vec3(w),
+            bends ? Way{small_voxel, here.source, to_bend, way} : Way{here.corner, here.source, before, way}};
+        if (is_own) accept(step, domain, bucket, is_shorter, take);
+        else domain.sent[&beyond - domains_.data()].push_back(step);
+      }
+    }
+  }
+
+  template <class IsShorter, class Take>
+  void accept(const Step& step, Domain& domain, std::size_t bucket, const IsShorter& is_shorter, const Take& take) {
+    if (!is_shorter(step.way.source, std::int64_t{step.to}, step.way.length)) return;
+    take(step.way.source, std::int64_t{step.to}, step.way.length);
+    ways_[step.to] = step.way;
+    add(domain, {step.to, step.way.length, step.voxel}, bucket);
+  }
+
+  // Begins to read what advancing from a place needs: its way, and what its neighbours have. Those above and below lie
+  // a slice of a full brick away. Inlined always: as a function of its own it seems to do nothing, and compilers leave
+  // it out.
+  [[gnu::always_inline]] void fetch(std::int32_t place, const std::vector<float>& reached) const {
+    constexpr int kSlice = TissueVoxels::kBrick * TissueVoxels::kBrick;
+    __builtin_prefetch(&ways_[place]);
+    __builtin_prefetch(&reached[place]);
+    __builtin_prefetch(&reached[std::max(place - kSlice, 0)]);
+    __builtin_prefetch(&reached[std::min<std::int64_t>(std::int64_t{place} + kSlice, std::ssize(reached) - 1)]);
+  }
+
+  void add(Domain& domain, const Reached& reached, std::size_t present) {
+    domain.open(std::max(present, static_cast<std::size_t>(reached.way / width_))).push_back(reached);
+  }
+
+  std::size_t bucket_count() const {
+    std::size_t most = 0;
+    for (const Domain& domain : domains_) most = std::max(most, domain.buckets.size());
+    return most;
+  }
+  // Those with something left to do in a bucket.
+  std::vector<Domain*> domains_waiting(std::size_t bucket) {
+    std::vector<Domain*> waiting;
+    for (Domain& domain : domains_)
+      if (bucket < domain.buckets.size() && domain.done < domain.buckets[bucket].size()) waiting.push_back(&domain);
+    return waiting;
+  }
+
+  std::size_t domain_of(std::int64_t brick) const { return brick * domains_.size() / tissue_.bricks().size(); }
+
+  // The brick and place of a voxel beside another one, which lies in a brick; -1 for air and outside of the grid.
+  std::pair<int, std::int64_t> brick_and_place(const glm::ivec3& voxel, const glm::ivec3& beside, int brick) const {
+    const glm::ivec3 differs = voxel ^ beside;
+    const bool is_in_brick = ((differs.x | differs.y | differs.z) & ~(TissueVoxels::kBrick - 1)) == 0;
+    if (!is_in_brick) {
+      if (!grid_.contains(voxel)) return {-1, -1};
+      brick = tissue_.brick_at(voxel);
+      if (brick < 0) return {-1, -1};
+    }
+    return {brick, TissueVoxels::index_in(tissue_.bricks()[brick], voxel & 7)};
+  }
+
+  std::vector<bool> bricks_near_seams() const {
+    std::vector<bool> near;
+    if (!tissue_.seams()) return near;
+    near.reserve(tissue_.bricks().size());
+    for (const auto& brick : tissue_.bricks()) near.push_back(tissue_.seams()->is_near_brick(brick.corner));
+    return near;
+  }
+
+  // The step to one of the 26 neighbours that is nearest to a direction.
+  static glm::ivec3 step_towards(const glm::ivec3& way) {
+    const glm::ivec3 size = glm::abs(way);
+    const int longest = std::max({size.x, size.y, size.z});
+    const auto step = [&](int along) { return 2 * std::abs(along) < longest ? 0 : along < 0 ? -1 : 1; };
+    return {step(way.x), step(way.y), step(way.z)};
+  }
+
+  float straight(const glm::ivec3& a, const glm::ivec3& b) const {
+    const glm::vec3 way = glm::vec3(b - a) * spacing_;
+    return std::sqrt(glm::dot(way, way));
+  }
+
+  const Grid& grid_;
+  const glm::vec3 spacing_{grid_.spacing};
+  const TissueVoxels& tissue_;
+  ZeroedVector<Way> ways_;  // by place
+  float width_;
+  std::vector<Domain> domains_;
+};
+
+}  // namespace limber

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The level below the bricks: connected cells of one block, 2 x 2 x 2 where voxels are cubes, become one cell. Blocks
+// never reach over a brick's edge, so bricks are worked on apart from each other.
+#include <algorithm>
+#include <utility>
+
+#include "core/base/memory_pages.h"
+#include "core/base/parallel.h"
+#include "core/binding/heat_system.h"
+
+namespace limber {
+
+namespace {
+constexpr std::int64_t kGrain = 32;  // bricks a block of a parallel loop
+constexpr int kSlots = HeatSystem::kSlots;
+
+glm::ivec3 stepped(glm::ivec3 voxel, int direction) {
+  voxel[direction >> 1] += direction & 1 ? 1 : -1;
+  return voxel;
+}
+bool is_in_brick(const glm::ivec3& voxel) { return ((voxel.x | voxel.y | voxel.z) & ~7) == 0; }
+
+class Coarsening {
+ public:
+  explicit Coarsening(const HeatSystem& system)
+      : system_(system),
+        halved_(coarsened_axes(system.spacing)),
+        parent_(system.brick_count() * kSlots),
+        pieces_(system.brick_count()) {
+    want_large_pages(parent_.data(), static_cast<std::int64_t>(parent_.size() * sizeof(std::int32_t)));
+    for (int slot = 0; slot < kSlots; ++slot) {
+      const glm::ivec3 voxel = HeatSystem::voxel_of(slot), block = block_of(voxel);
+      Block& own = blocks_[block.x + 8 * (block.y + 8 * block.z)];
+      block_of_slot_[slot] = &own;
+      own.place = block;
+      own.slots.push_back(slot);
+      for (int direction = 0; direction < 6; ++direction) {
+        const glm::ivec3 there = stepped(voxel, direction);
+        steps_[slot][direction] = {HeatSystem::slot_of(there & 7), is_in_brick(there),
+                                   is_in_brick(there) && block_of(there) == block};
+        if (slot < HeatSystem::kColour && steps_[slot][direction].stays_in_block)
+          own.links.push_back(direction * HeatSystem::kColour + slot);
+      }
+    }
+  }
+
+  CoarseHeat run() {
+    const std::int64_t bricks = system_.brick_count();
+    parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t brick = begin; brick < end; ++brick) find_pieces(brick);
+    });
+    number_pieces();
+    std::vector<Rows> rows((bricks + kGrain - 1) / kGrain);
+    parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<Row> found;
+      for (std::int64_t brick = begin; brick < end; ++brick) find_rows(brick, found, rows[begin / kGrain]);
+    });
+    join(rows);
+    CoarseHeat coarse{std::move(graph_), ZeroedVector<std::int32_t>(bricks * HeatSystem::kColour)};
+    parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t brick = begin; brick < end; ++brick)
+        std::copy_n(&parent_[brick * kSlots + HeatSystem::kColour], HeatSystem::kColour,
+                    &coarse.parent_of_black[brick * HeatSystem::kColour]);
+    });
+    return coarse;
+  }
+
+ private:
+  struct Rows {
+    std::vector<std::int32_t> cell, count;  // of each row: whose it is, and how many links it has
+    std::vector<std::int32_t> neighbour;
+    std::vector<float> conductance, diagonal;
+  };
+
+  // What one piece is joined to: eight cells have no more than 24 faces to others.
+  struct Row {
+    int count = 0;
+    std::array<std::int32_t, 24> to;
+    std::array<float, 24> conductance;
+    std::array<int, 6> last;  // by direction: where in `to` the last link that way is
+    double linked = 0, lost = 0;
+
+    void clear() { count = 0, last = {}, linked = 0, lost = 0; }
+    void add(std::int32_t other, float g, int direction) {
+      int& known = last[direction];
+      if (known >= count || to[known] != other)
+        known = static_cast<int>(std::find(to.begin(), to.begin() + count, other) - to.begin());
+      if (known == count) {
+        to[count] = other;
+        conductance[count++] = 0;
+      }
+      conductance[known] += g;
+    }
+  };
+
+  // The cells of one block in any brick, and where in a brick's conductances the links between them stand.
+  struct Block {
+    glm::ivec3 place{0};
+    std::vector<int> slots, links;
+  };
+  // From a slot in one of six directions: the slot there, whether that is in the same brick, and in the same block.
+  struct Step {
+    int slot;
+    bool stays_in_brick, stays_in_block;
+  };
+
+  glm::ivec3 block_of(const glm::ivec3& voxel) const { return voxel >> glm::ivec3(halved_); }
+
+  // Where a cell's neighbour lies: its brick and slot.
+  std::pair<std::int64_t, int> neighbour(std::int64_t brick, int slot, int direction) const {
+    const Step& step = steps_[slot][direction];
+    return {step.stays_in_brick ? brick : system_.beside[brick][direction], step.slot};
+  }
+  float conductance(std::int64_t brick, int slot, int direction, const std::pair<std::int64_t, int>& other) const {
+    return slot < HeatSystem::kColour ? system_.conductance_of_red(brick, direction, slot)
+                                      : system_.conductance_of_red(other.first, direction ^ 1, other.second);
+  }
+
+  // Whether all cells of a block are there, and all neighbours among them are linked.
+  bool is_whole(std::int64_t brick, const Block& block) const {
+    const float* conductance = &system_.conductance[brick * 6 * HeatSystem::kColour];
+    return std::all_of(block.slots.begin(), block.slots.end(),
+                       [&](int slot) { return system_.is_cell(brick, slot); }) &&
+           std::all_of(block.links.begin(), block.links.end(), [&](int link) { return conductance[link] > 0; });
+  }
+
+  // Numbers a brick's pieces from 0, each colour apart: `parent_` holds twice the number, plus the colour of the block.
+  void find_pieces(std::int64_t brick) {
+    std::int32_t* parent = &parent_[brick * kSlots];
+    std::fill_n(parent, kSlots, -1);
+    std::array<int, 8> open;
+    std::array<std::int32_t, 2> found{};
+    for (int seed = 0; seed < kSlots; ++seed) {
+      if (!system_.is_cell(brick, seed) || parent[seed] >= 0) continue;
+      const Block& block = *block_of_slot_[seed];
+      const int colour = colour_of(brick, block.place);
+      const std::int32_t piece = 2 * found[colour]++ + colour;
+      if (is_whole(brick, block)) {
+        for (const int slot : block.slots) parent[slot] = piece;
+        continue;
+      }
+      int waiting = 0;
+      parent[seed] = piece;
+      open[waiting++] = seed;
+      while (waiting > 0) {
+        const int slot = open[--waiting];
+        for (int direction = 0; direction < 6; ++direction) {
+          const Step& step = steps_[slot][direction];
+          if (!step.stays_in_block || parent[step.slot] >= 0 ||
+              !(conductance(brick, slot, direction, {brick, step.slot}) > 0))
+            continue;
+          parent[step.slot] = piece;
+          open[waiting++] = step.slot;
+        }
+      }
+    }
+    pieces_[brick] = found;
+  }
+
+  int colour_of(std::int64_t brick, const glm::ivec3& block) const {
+    const glm::ivec3 at = block_of(system_.corners[brick]) + block;
+    return (at.x + at.y + at.z) & 1;
+  }
+
+  // Colour 0 first, else in the order of bricks, which keeps neighbours close in memory.
+  void number_pieces() {
+    graph_.spacing = system_.spacing * glm::dvec3(halved_ + glm::i16vec3(1));
+    std::vector<std::array<std::int32_t, 2>> first(pieces_);
+    std::int32_t next = 0;
+    for (int colour = 0; colour < 2; ++colour) {
+      for (auto& of_brick : first) next += std::exchange(of_brick[colour], next);
+      if (colour == 0) graph_.red_count = next;
+    }
+    graph_.position.resize(next);
+    parallel_for(system_.brick_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t brick = begin; brick < end; ++brick)
+        for (int slot = 0; slot < kSlots; ++slot) {
+          std::int32_t& parent = parent_[brick * kSlots + slot];
+          if (parent < 0) continue;
+          parent = first[brick][parent & 1] + (parent >> 1);
+          graph_.position[parent] = glm::i16vec3(block_of(system_.corners[brick] + HeatSystem::voxel_of(slot)));
+        }
+    });
+    first_ = std::move(first);
+  }
+
+  // The links of a brick's pieces: sums over the faces of their cells.
+  //   found  room that bricks share
+  void find_rows(std::int64_t brick, std::vector<Row>& found, Rows& rows) const {
+    const std::array<std::int32_t, 2>& count = pieces_[brick];
+    found.resize(count[0] + count[1]);
+    for (Row& row : found) row.clear();
+    for (int slot = 0; slot < kSlots; ++slot) {
+      const std::int32_t parent = parent_[brick * kSlots + slot];
+      if (parent < 0) continue;
+      Row& row = found[parent < graph_.red_count ? parent - first_[brick][0] : count[0] + parent - first_[brick][1]];
+      double own = system_.diagonal[brick * kSlots + slot];
+      for (int direction = 0; direction < 6; ++direction) {
+        const auto other = neighbour(brick, slot, direction);
+        const float g = conductance(brick, slot, direction, other);
+        if (!(g > 0)) continue;
+        own -= g;
+        const std::int32_t to = parent_[other.first * kSlots + other.second];
+        if (to == parent) continue;
+        const float across = halved_[direction >> 1] ? g * kCoarseConductance : g;
+        row.linked += across;
+        row.add(to, across, direction);
+      }
+      row.lost += std::max(own, 0.0);
+    }
+    for (std::int32_t k = 0; k < std::ssize(found); ++k) {
+      rows.cell.push_back(k < count[0] ? first_[brick][0] + k : first_[brick][1] + k - count[0]);
+      rows.count.push_back(found[k].count);
+      rows.diagonal.push_back(static_cast<float>(found[k].linked + kCoarseConductance * found[k].lost));
+      rows.neighbour.insert(rows.neighbour.end(), found[k].to.begin(), found[k].to.begin() + found[k].count);
+      rows.conductance.insert(rows.conductance.end(), found[k].conductance.begin(),
+                              found[k].conductance.begin() + found[k].count);
+    }
+  }
+
+  void join(std::vector<Rows>& rows) {
+    graph_.first.assign(graph_.size() + 1, 0);
+    graph_.diagonal.resize(graph_.size());
+    for (const Rows& some : rows)
+      for (std::size_t k = 0; k < some.cell.size(); ++k) graph_.first[some.cell[k] + 1] = some.count[k];
+    for (std::int64_t i = 0; i < graph_.size(); ++i) graph_.first[i + 1] += graph_.first[i];
+    graph_.neighbour.resize(graph_.first.back());
+    graph_.conductance.resize(graph_.first.back());
+    parallel_for(std::ssize(rows), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t r = begin; r < end; ++r) {
+        Rows some = std::move(rows[r]);
+        std::int64_t from = 0;
+        for (std::size_t k = 0; k < some.cell.size(); from += some.count[k++]) {
+          const std::int32_t to = graph_.first[some.cell[k]];
+          std::copy_n(some.neighbour.begin() + from, some.count[k], graph_.neighbour.begin() + to);
+          std::copy_n(some.conductance.begin() + from, some.count[k], graph_.conductance.begin() + to);
+          graph_.diagonal[some.cell[k]] = some.diagonal[k];
+        }
+      }
+    });
+  }
+
+  const HeatSystem& system_;
+  const glm::i16vec3 halved_;
+  std::array<Block, kSlots> blocks_;
+  std::array<const Block*, kSlots> block_of_slot_;
+  std::array<std::array<Step, 6>, kSlots> steps_;
+  ZeroedVector<std::int32_t> parent_;                // bricks, slots
+  std::vector<std::array<std::int32_t, 2>> pieces_;  // of each brick, by colour: how many
+  std::vector<std::array<std::int32_t, 2>> first_;   // likewise: the number of the first
+  CellGraph graph_;
+};
+}  // namespace
+
+CoarseHeat coarsen(const HeatSystem& system) { return Coarsening(system).run(); }
+
+}  // namespace limber

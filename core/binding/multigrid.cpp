@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/binding/multigrid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+
+#include <Eigen/Dense>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+constexpr std::int64_t kGrain = 1024;       // cells a block of a parallel loop
+constexpr std::int64_t kCoarsestSize = 64;  // solved directly
+constexpr int kMostLevels = 12;
+
+int colour_of(const glm::i16vec3& p) { return (p.x + p.y + p.z) & 1; }
+}  // namespace
+
+glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
+  const double closest = std::min({spacing.x, spacing.y, spacing.z});
+  return {spacing.x < 1.5 * closest, spacing.y < 1.5 * closest, spacing.z < 1.5 * closest};
+}
+
+namespace {
+
+// Numbers the cells of the next level: connected sets of cells within one block, 2 x 2 x 2 where cells are cubes. A
+// cell that is joined to none has no part in it (-1): relaxing solves it.
+std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
+  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
+  coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
+  std::vector<std::int32_t> parent(fine.size(), -1);
+  std::vector<glm::i16vec3> position;
+  std::vector<std::int32_t> open;
+  for (std::int32_t seed = 0; seed < fine.size(); ++seed) {
+    if (parent[seed] >= 0 || fine.first[seed] == fine.first[seed + 1]) continue;
+    const glm::i16vec3 block = fine.position[seed] >> halved;
+    const auto aggregate_number = static_cast<std::int32_t>(position.size());
+    position.push_back(block);
+    parent[seed] = aggregate_number;
+    open.push_back(seed);
+    while (!open.empty()) {
+      const std::int32_t i = open.back();
+      open.pop_back();
+      for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
+        const std::int32_t j = fine.neighbour[k];
+        if (parent[j] >= 0 || (fine.position[j] >> halved) != block) continue;
+        parent[j] = aggregate_number;
+        open.push_back(j);
+      }
+    }
+  }
+
+  // Colour 0 first, else in the order met, which keeps neighbours close in memory.
+  std::vector<std::int32_t> number(position.size());
+  std::int32_t next = 0;
+  for (int colour = 0; colour < 2; ++colour) {
+    for (size_t a = 0; a < position.size(); ++a)
+      if (colour_of(position[a]) == colour) {
+        number[a] = next++;
+        coarse.position.push_back(position[a]);
+      }
+    if (colour == 0) coarse.red_count = next;
+  }
+  for (std::int32_t& p : parent)
+    if (p >= 0) p = number[p];
+  return parent;
+}
+
+// The cells below `count` of each aggregate, as lists one behind the other.
+void list_children(const std::vector<std::int32_t>& parent, std::int64_t count, std::int64_t aggregates,
+                   std::vector<std::int32_t>& first, std::vector<std::int32_t>& child) {
+  first.assign(aggregates + 1, 0);
+  for (std::int64_t i = 0; i < count; ++i)
+    if (parent[i] >= 0) ++first[parent[i] + 1];
+  for (std::int64_t c = 0; c < aggregates; ++c) first[c + 1] += first[c];
+  child.resize(first.back());
+  std::vector<std::int32_t> place(first.begin(), first.end() - 1);
+  for (std::int64_t i = 0; i < count; ++i)
+    if (parent[i] >= 0) child[place[parent[i]]++] = static_cast<std::int32_t>(i);
+}
+
+CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
+  CellGraph coarse;
+  parent = aggregate(fine, coarse);
+  const std::int64_t size = coarse.size();
+  std::vector<std::int32_t> child_first, child;
+  list_children(parent, fine.size(), size, child_first, child);
+
+  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
+  const auto across = [&](const glm::i16vec3& step) {
+    const int axis = step.x != 0 ? 0 : step.y != 0 ? 1 : 2;
+    return halved[axis] ? kCoarseConductance : 1.0f;
+  };
+  struct Links {
+    std::vector<std::int32_t> neighbour;
+    std::vector<float> conductance;
+  };
+  std::vector<Links> blocks((size + kGrain - 1) / kGrain);
+  coarse.first.assign(size + 1, 0);
+  coarse.diagonal.assign(size, 0);
+  const auto link = [&](std::int32_t c, Links& links) {
+    const std::size_t start = links.neighbour.size();
+    double linked = 0, lost = 0;
+    for (std::int32_t m = child_first[c]; m < child_first[c + 1]; ++m) {
+      const std::int32_t i = child[m];
+      double own = fine.diagonal[i];
+      for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
+        own -= fine.conductance[k];
+        const std::int32_t d = parent[fine.neighbour[k]];
+        if (d == c) continue;
+        std::size_t at = start;
+        while (at < links.neighbour.size() && links.neighbour[at] != d) ++at;
+        if (at == links.neighbour.size()) {
+          links.neighbour.push_back(d);
+          links.conductance.push_back(0);
+        }
+        const float g = fine.conductance[k] * across(coarse.position[c] - coarse.position[d]);
+        links.conductance[at] += g;
+        linked += g;
+      }
+      lost += std::max(own, 0.0);
+    }
+    coarse.diagonal[c] = static_cast<float>(linked + kCoarseConductance * lost);
+    coarse.first[c + 1] = static_cast<std::int32_t>(links.neighbour.size() - start);
+  };
+  parallel_for(size, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) link(static_cast<std::int32_t>(c), blocks[begin / kGrain]);
+  });
+  for (std::int64_t c = 0; c < size; ++c) coarse.first[c + 1] += coarse.first[c];
+  for (Links& links : blocks) {
+    coarse.neighbour.insert(coarse.neighbour.end(), links.neighbour.begin(), links.neighbour.end());
+    coarse.conductance.insert(coarse.conductance.end(), links.conductance.begin(), links.conductance.end());
+    links = {};
+  }
+  return coarse;
+}
+}  // namespace
+
+Multigrid::Multigrid(CellGraph finest) {
+  levels_.push_back({std::move(finest), {}});
+  while (levels_.back().graph.size() > kCoarsestSize && std::ssize(levels_) < kMostLevels) {
+    Level next;
+    next.graph = coarsen(levels_.back().graph, levels_.back().parent);
+    if (next.graph.size() == 0 || next.graph.size() == levels_.back().graph.size()) {
+      levels_.back().parent.clear();
+      break;
+    }
+    Level& level = levels_.back();
+    list_children(level.parent, level.graph.red_count, next.graph.size(), level.first_red, level.red);
+    levels_.push_back(std::move(next));
+  }
+  const CellGraph& graph = levels_.back().graph;
+  if (graph.size() > 8 * kCoarsestSize) return;  // many small pieces: sweeps do it
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(graph.size(), graph.size());
+  for (std::int64_t i = 0; i < graph.size(); ++i) {
+    dense(i, i) += graph.diagonal[i];
+    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k)
+      dense(i, graph.neighbour[k]) -= graph.conductance[k];
+  }
+  const Eigen::MatrixXd inverse = dense.ldlt().solve(Eigen::MatrixXd::Identity(graph.size(), graph.size()));
+  if (inverse.allFinite()) coarsest_inverse_.assign(inverse.data(), inverse.data() + inverse.size());
+}
+
+template <int Lanes>
+class Multigrid::Solver {
+ public:
+  using Sums = std::array<double, Lanes>;
+
+  explicit Solver(const Multigrid& grid) : grid_(grid), at_(grid.levels_.size()) {
+    for (size_t l = 0; l < at_.size(); ++l) {
+      at_[l].x.resize(grid.levels_[l].graph.size() * Lanes);
+      if (l > 0) at_[l].b.resize(at_[l].x.size());
+    }
+  }
+
+  SolveReport solve(std::vector<float> b, std::vector<float>& x, double residual, int most_iterations,
+                    const Progress& progress) {
+    const CellGraph& graph = grid_.finest();
+    std::vector<float> p(b.size()), q(b.size());
+    const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+      for (int l = 0; l < Lanes; ++l) sums[l] += double(b[i * Lanes + l]) * b[i * Lanes + l];
+    });
+    std::vector<float>& r = b;  // from here on
+    Sums rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+      float acc[Lanes];
+      gather(graph, x.data(), i, acc);
+      for (int l = 0; l < Lanes; ++l) {
+        const float value = b[i * Lanes + l] + acc[l] - graph.diagonal[i] * x[i * Lanes + l];
+        r[i * Lanes + l] = value;
+        sums[l] += double(value) * value;
+      }
+    });
+
+    SolveReport report;
+    std::array<bool, Lanes> open;
+    auto check = [&] {
+      bool any = false;
+      report.residual = 0;
+      for (int l = 0; l < Lanes; ++l) {
+        const double relative = bb[l] > 0 ? std::sqrt(rr[l] / bb[l]) : 0;
+        report.residual = std::max(report.residual, relative);
+        open[l] = relative > residual;
+        any |= open[l];
+      }
+      return any;
+    };
+    Sums rz_before{};
+    while (check() && report.iterations < most_iterations && !progress.cancelled()) {
+      std::vector<float>& z = at_[0].x;
+      cycle(0, r, false);
+      const Sums rz = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        for (int l = 0; l < Lanes; ++l) sums[l] += double(r[i * Lanes + l]) * z[i * Lanes + l];
+      });
+      float beta[Lanes], alpha[Lanes];
+      for (int l = 0; l < Lanes; ++l)
+        beta[l] = open[l] && report.iterations > 0 && rz_before[l] > 0 ? static_cast<float>(rz[l] / rz_before[l]) : 0;
+      for_cells(graph.size(), [&](std::int64_t i) {
+        for (int l = 0; l < Lanes; ++l) p[i * Lanes + l] = z[i * Lanes + l] + beta[l] * p[i * Lanes + l];
+      });
+      const Sums pq = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        float acc[Lanes];
+        gather(graph, p.data(), i, acc);
+        for (int l = 0; l < Lanes; ++l) {
+          const float value = graph.diagonal[i] * p[i * Lanes + l] - acc[l];
+          q[i * Lanes + l] = value;
+          sums[l] += double(value) * p[i * Lanes + l];
+        }
+      });
+      for (int l = 0; l < Lanes; ++l) alpha[l] = open[l] && pq[l] > 0 ? static_cast<float>(rz[l] / pq[l]) : 0;
+      rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
+        for (int l = 0; l < Lanes; ++l) {
+          x[i * Lanes + l] += alpha[l] * p[i * Lanes + l];
+          const float value = r[i * Lanes + l] -= alpha[l] * q[i * Lanes + l];
+          sums[l] += double(value) * value;
+        }
+      });
+      rz_before = rz;
+      ++report.iterations;
+    }
+    return report;
+  }
+
+  // x = M^-1 b on a level, where M is symmetric: one visit of the coarser levels between two mirrored half sweeps, or
+  // two.
+  void cycle(size_t level, const std::vector<float>& b, bool twice = true) {
+    const Level& here = grid_.levels_[level];
+    const CellGraph& graph = here.graph;
+    std::vector<float>& x = at_[level].x;
+    if (here.parent.empty()) return solve_coarsest(graph, b, x);
+
+    // From x = 0 the first half sweep needs no neighbours.
+    for_cells(graph.red_count, [&](std::int64_t i) {
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
+    });
+    relax(graph, graph.red_count, graph.size(), b, x);
+    visit_coarser(level, b);
+    if (twice) {
+      relax(graph, graph.red_count, graph.size(), b, x);
+      relax(graph, 0, graph.red_count, b, x);
+      relax(graph, graph.red_count, graph.size(), b, x);
+      visit_coarser(level, b);
+    }
+    relax(graph, graph.red_count, graph.size(), b, x);
+    relax(graph, 0, graph.red_count, b, x);
+  }
+
+  const std::vector<float>& solution() const { return at_[0].x; }
+
+ private:
+  struct Vectors {
+    std::vector<float> x, b;
+  };
+
+  template <class Body>
+  static void for_cells(std::int64_t begin, std::int64_t end, const Body& body) {
+    parallel_for(end - begin, kGrain, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t i = begin + first; i < begin + last; ++i) body(i);
+    });
+  }
+  template <class Body>
+  static void for_cells(std::int64_t count, const Body& body) {
+    for_cells(0, count, body);
+  }
+  template <class Body>
+  static Sums sum_over(std::int64_t count, const Body& body) {
+    std::vector<Sums> part((count + kGrain - 1) / kGrain, Sums{});
+    parallel_for(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+      Sums sums{};
+      for (std::int64_t i = begin; i < end; ++i) body(i, sums);
+      part[begin / kGrain] = sums;
+    });
+    Sums total{};
+    for (const Sums& sums : part)
+      for (int l = 0; l < Lanes; ++l) total[l] += sums[l];
+    return total;
+  }
+
+  // acc = sum over neighbours of conductance x
+  static void gather(const CellGraph& graph, const float* x, std::int64_t i, float (&acc)[Lanes]) {
+    for (int l = 0; l < Lanes; ++l) acc[l] = 0;
+    for (std::int32_t k = graph.first[i], end = graph.first[i + 1]; k < end; ++k) {
+      const float c = graph.conductance[k];
+      const float* from = x + std::int64_t{graph.neighbour[k]} * Lanes;
+      for (int l = 0; l < Lanes; ++l) acc[l] += c * from[l];
+    }
+  }
+
+  void relax(const CellGraph& graph, std::int64_t begin, std::int64_t end, const std::vector<float>& b,
+             std::vector<float>& x) {
+    for_cells(begin, end, [&](std::int64_t i) {
+      float acc[Lanes];
+      gather(graph, x.data(), i, acc);
+      const float scale = 1 / graph.diagonal[i];
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = (b[i * Lanes + l] + acc[l]) * scale;
+    });
+  }
+
+  // After a half sweep over the black cells only the red ones have a residual.
+  void visit_coarser(size_t level, const std::vector<float>& b) {
+    const Level& here = grid_.levels_[level];
+    std::vector<float>& x = at_[level].x;
+    std::vector<float>& coarse_b = at_[level + 1].b;
+    for_cells(std::ssize(here.first_red) - 1, [&](std::int64_t c) {
+      float sum[Lanes] = {};
+      for (std::int32_t k = here.first_red[c]; k < here.first_red[c + 1]; ++k) {
+        const std::int64_t i = here.red[k];
+        float acc[Lanes];
+        gather(here.graph, x.data(), i, acc);
+        for (int l = 0; l < Lanes; ++l) sum[l] += b[i * Lanes + l] + acc[l] - here.graph.diagonal[i] * x[i * Lanes + l];
+      }
+      for (int l = 0; l < Lanes; ++l) coarse_b[c * Lanes + l] = sum[l];
+    });
+    cycle(level + 1, coarse_b);
+    const std::vector<float>& correction = at_[level + 1].x;
+    for_cells(here.graph.size(), [&](std::int64_t i) {
+      if (here.parent[i] < 0) return;
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] += correction[std::int64_t{here.parent[i]} * Lanes + l];
+    });
+  }
+
+  void solve_coarsest(const CellGraph& graph, const std::vector<float>& b, std::vector<float>& x) {
+    if (grid_.coarsest_inverse_.empty()) {
+      std::fill(x.begin(), x.end(), 0.0f);
+      for (int sweep = 0; sweep < 8; ++sweep) {
+        relax(graph, 0, graph.red_count, b, x);
+        relax(graph, graph.red_count, graph.size(), b, x);
+      }
+      for (int sweep = 0; sweep < 8; ++sweep) {
+        relax(graph, graph.red_count, graph.size(), b, x);
+        relax(graph, 0, graph.red_count, b, x);
+      }
+      return;
+    }
+    const std::int64_t n = graph.size();
+    for (std::int64_t i = 0; i < n; ++i) {
+      double acc[Lanes] = {};
+      for (std::int64_t j = 0; j < n; ++j)
+        for (int l = 0; l < Lanes; ++l) acc[l] += grid_.coarsest_inverse_[i * n + j] * b[j * Lanes + l];
+      for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = static_cast<float>(acc[l]);
+    }
+  }
+
+  const Multigrid& grid_;
+  std::vector<Vectors> at_;
+};
+
+template <int Lanes>
+class Multigrid::LanesCycle : public Multigrid::Cycle {
+ public:
+  explicit LanesCycle(const Multigrid& grid) : solver_(grid) { b.resize(grid.finest().size() * Lanes); }
+  const std::vector<float>& run() override {
+    solver_.cycle(0, b);
+    return solver_.solution();
+  }
+
+ private:
+  Solver<Lanes> solver_;
+};
+
+namespace {
+// body(std::integral_constant<int, lanes>)
+template <class Body>
+auto with_lanes(int lanes, const Body& body) {
+  switch (lanes) {
+    case 1: return body(std::integral_constant<int, 1>());
+    case 2: return body(std::integral_constant<int, 2>());
+    case 3: return body(std::integral_constant<int, 3>());
+    case 4: return body(std::integral_constant<int, 4>());
+    case 5: return body(std::integral_constant<int, 5>());
+    case 6: return body(std::integral_constant<int, 6>());
+    case 7: return body(std::integral_constant<int, 7>());
+    default: return body(std::integral_constant<int, 8>());
+  }
+}
+}  // namespace
+
+SolveReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
+                             int most_iterations, const Progress& progress) const {
+  return with_lanes(lanes, [&](auto count) {
+    return Solver<count>(*this).solve(std::move(b), x, residual, most_iterations, progress);
+  });
+}
+
+std::unique_ptr<Multigrid::Cycle> Multigrid::cycle(int lanes) const {
+  return with_lanes(lanes,
+                    [&](auto count) -> std::unique_ptr<Cycle> { return std::make_unique<LanesCycle<count>>(*this); });
+}
+
+}  // namespace limber

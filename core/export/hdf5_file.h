@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An HDF5 file to be written: data sets of up to three dimensions (packed, the last dimension fastest) and attributes.
+// The library is loaded when the first file is written (hdf5_codec.h).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace limber {
+
+class Hdf5File {
+ public:
+  void data(const std::string& name, const std::vector<std::uint8_t>& values, const std::vector<std::int64_t>& size);
+  void data(const std::string& name, const std::vector<std::int16_t>& values, const std::vector<std::int64_t>& size);
+  void data(const std::string& name, const std::vector<float>& values, const std::vector<std::int64_t>& size);
+
+  // Of a data set that was added before, or of "/".
+  void attribute(const std::string& object, const std::string& name, double value);
+  void attribute(const std::string& object, const std::string& name, std::int32_t value);
+  void attribute(const std::string& object, const std::string& name, const std::string& text);
+  void attribute(const std::string& object, const std::string& name, const std::vector<float>& values);
+  void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
+
+  // Throws Error when the library is missing or the file cannot be written.
+  void write(const Path& path) const;
+
+ private:
+  struct Item {
+    std::string object, attribute;  // no attribute: a data set
+    int type;
+    std::vector<std::int64_t> size;
+    std::vector<char> bytes;
+  };
+  template <class Value>
+  void add(const std::string& object, const std::string& attribute, const Value* values, std::size_t count,
+           const std::vector<std::int64_t>& size);
+  std::vector<Item> items_;
+};
+
+}  // namespace limber

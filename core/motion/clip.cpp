@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/clip.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+
+// The keys on either side of a frame, and how far it is from the first to the second: [0, 1].
+template <class Value>
+struct Between {
+  const std::pair<const int, Value>*before, *after;
+  double share;
+};
+
+template <class Value>
+Between<Value> around(const std::map<int, Value>& track, int frame) {
+  const auto after = track.lower_bound(frame);
+  if (after == track.end()) return {&*track.rbegin(), &*track.rbegin(), 0};
+  if (after == track.begin() || after->first == frame) return {&*after, &*after, 0};
+  const auto before = std::prev(after);
+  return {&*before, &*after, static_cast<double>(frame - before->first) / (after->first - before->first)};
+}
+
+}  // namespace
+
+Clip clip_of(std::shared_ptr<const Motion> motion, std::string name, int start) {
+  Clip clip;
+  clip.name = std::move(name);
+  const double rate = 1 / motion->frame_time;
+  clip.rate = std::isfinite(rate) && rate >= 0.01 && rate <= 10'000 ? std::round(rate * 1000) / 1000 : 30;
+  clip.start = clip.range_start = start;
+  clip.last = std::max(0, motion->frame_count - 1);
+  clip.range_end = clip.end();
+  clip.motion = std::move(motion);
+  return clip;
+}
+
+std::string unique_clip_name(const std::vector<std::shared_ptr<const Clip>>& clips, const std::string& wanted) {
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(clips.begin(), clips.end(), [&](const auto& clip) { return clip->name == name; });
+  };
+  std::string name = wanted;
+  for (int number = 2; taken(name); ++number) name = wanted + " " + std::to_string(number);
+  return name;
+}
+
+ClipOnRig::ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Armature> armature,
+                     const ClipOnRig* before)
+    : clip_(std::move(clip)),
+      armature_(std::move(armature)) {
+  if (!clip_->motion) return;
+  if (before && before->armature_ == armature_ && before->clip_->motion == clip_->motion &&
+      before->clip_->map == clip_->map && before->clip_->retarget == clip_->retarget) {
+    retarget_ = before->retarget_;
+    problem_ = before->problem_;
+    return;
+  }
+  try {
+    const RetargetMap known = known_part(clip_->map, *clip_->motion, *armature_);
+    if (known.sources.empty() && !clip_->map.sources.empty())
+      throw Error("the map names no bone of this rig", clip_->name, "match the joints again");
+    RetargetMap map = clip_->map.sources.empty() ? match_by_names(*clip_->motion, *armature_) : known;
+    map.stances = clip_->map.stances;
+    retarget_ = std::make_shared<const Retarget>(*clip_->motion, *armature_, map, clip_->retarget);
+  } catch (const Error& error) {
+    problem_ = error.what();
+  }
+}
+
+Pose ClipOnRig::base_at(int frame) const {
+  if (!retarget_) return rest_pose(*armature_);
+  const int most = clip_->motion->frame_count - 1;
+  const std::int64_t wanted = std::int64_t{frame} - clip_->start + clip_->first;
+  const int last = std::clamp(clip_->last, 0, most), first = std::clamp(clip_->first, 0, last);
+  return retarget_->at(static_cast<int>(std::clamp<std::int64_t>(wanted, first, last)));
+}
+
+Pose ClipOnRig::at(int frame) const {
+  Pose pose = base_at(frame);
+  const Keys& keys = clip_->keys;
+  if (keys.empty()) return pose;
+
+  std::map<int, Pose> bases;  // few: bones are mostly keyed together
+  const auto base = [&](int at) -> const Pose& {
+    const auto found = bases.find(at);
+    return found != bases.end() ? found->second : bases.emplace(at, base_at(at)).first->second;
+  };
+  for (int bone = 0; bone < std::ssize(armature_->bones); ++bone) {
+    const auto track = keys.bones.find(armature_->bones[bone].name);
+    if (track == keys.bones.end() || track->second.empty()) continue;
+    const auto [before, after, share] = around(track->second, frame);
+    if (!retarget_ || before->first == frame) {
+      pose.rotation[bone] =
+          share == 0 ? before->second : glm::normalize(glm::slerp(before->second, after->second, share));
+      continue;
+    }
+    const auto turn = [&](const auto& key) {
+      return glm::normalize(key.second * glm::conjugate(base(key.first).rotation[bone]));
+    };
+    const glm::dquat turned =
+        share == 0 ? turn(*before) : glm::normalize(glm::slerp(turn(*before), turn(*after), share));
+    pose.rotation[bone] = glm::normalize(turned * pose.rotation[bone]);
+  }
+  if (!keys.root.empty()) {
+    const auto [before, after, share] = around(keys.root, frame);
+    const auto moved = [&](const auto& key) { return key.second - base(key.first).root_translation; };
+    pose.root_translation = before->first == frame
+                                ? before->second
+                                : pose.root_translation + glm::mix(moved(*before), moved(*after), share);
+  }
+  return pose;
+}
+
+}  // namespace limber

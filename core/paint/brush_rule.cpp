@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/paint/brush_rule.h"
+
+namespace limber {
+
+// Each made by a source of core/paint/brushes.
+BrushRule add_brush();
+BrushRule subtract_brush();
+BrushRule set_brush();
+BrushRule multiply_brush();
+BrushRule smooth_brush();
+BrushRule sharpen_brush();
+BrushRule average_brush();
+BrushRule smear_brush();
+BrushRule joint_capsule_brush();
+
+std::span<const BrushRule> brush_rules() {
+  static const std::vector<BrushRule> kBrushes = {
+      add_brush(),     subtract_brush(), set_brush(),   multiply_brush(),      smooth_brush(),
+      sharpen_brush(), average_brush(),  smear_brush(), joint_capsule_brush(),
+  };
+  return kBrushes;
+}
+
+const BrushRule& rule_of(BrushKind kind) { return brush_rules()[static_cast<std::size_t>(kind)]; }
+
+}  // namespace limber

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Blends what two bones share at their joint over so many millimetres along them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/paint/brush_rule.h"
+
+namespace limber {
+
+namespace {
+
+class JointCapsuleSide final : public BrushSide {
+ public:
+  JointCapsuleSide(const BrushView& view, int bone) : child_(bone) {
+    const Bone& child = view.body.armature.bones[bone];
+    parent_ = child.parent;
+    if (parent_ < 0)
+      throw Error("this bone has no joint to blend across", child.name, "choose a bone that has a parent");
+    const Bone& parent = view.body.armature.bones[parent_];
+    // Across the plane that halves the joint's angle.
+    glm::dvec3 normal(0);
+    for (const glm::dvec3 way : {child.head - parent.head, child.tail - child.head})
+      if (glm::length(way) > 0) normal += glm::normalize(way);
+    if (glm::length(normal) < 1e-6) normal = child.tail - child.head;
+    normal = glm::normalize(normal) / std::max(view.brush.blend_mm, 1e-6);
+    const AffineTransform world = world_from_voxel(view.body.volume.grid);
+    for (int axis = 0; axis < 3; ++axis) along_[axis] = glm::dot(normal, world.linear[axis]);
+    at_origin_ = glm::dot(normal, world.offset - child.head) + 0.5;
+  }
+
+  std::optional<WeightChange> change(const WeightRules& rules, Influence& influence, const glm::ivec3& voxel,
+                                     double cover) const override {
+    const std::array<int, 2> both{child_, parent_};
+    const int total = WeightRules::sum_of(influence, both),
+              before = WeightRules::sum_of(influence, std::span(&child_, 1));
+    const double at = std::clamp(glm::dot(along_, glm::dvec3(voxel)) + at_origin_, 0.0, 1.0),
+                 blend = at * at * (3 - 2 * at);
+    return rules.divide(influence, child_, parent_,
+                        static_cast<int>(std::lround(before + (blend * total - before) * cover)));
+  }
+
+ private:
+  const int child_;
+  int parent_ = -1;
+  glm::dvec3 along_{0};  // share of the blend a voxel further along each axis
+  double at_origin_ = 0;
+};
+
+}  // namespace
+
+BrushRule joint_capsule_brush() {
+  return {.kind = BrushKind::JointCapsule,
+          .id = "capsule",
+          .name = "Joint capsule",
+          .sentence = "Blends the active bone with its parent over so many mm about their joint.",
+          .one_bone = true,
+          .side = [](const BrushView& view, std::span<const int> bones) -> std::unique_ptr<BrushSide> {
+            return std::make_unique<JointCapsuleSide>(view, bones[0]);
+          }};
+}
+
+}  // namespace limber

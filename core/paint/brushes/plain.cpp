@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The brushes that look at nothing but the painted bones' weight.
+#include <algorithm>
+
+#include "core/paint/brush_rule.h"
+
+namespace limber {
+
+namespace {
+
+int drawn_to(double to, int before, int covered) {
+  const double made = before + (to - before) * (covered / double(kFullWeight));
+  return static_cast<int>(std::clamp(made, 0.0, double(kFullWeight)) + 0.5);
+}
+
+}  // namespace
+
+BrushRule add_brush() {
+  return {.kind = BrushKind::Add,
+          .id = "add",
+          .name = "Add",
+          .sentence = "Adds to the active bone's weight.",
+          .paint = [](double before, double cover, double full, const Brush&) { return before + cover * full; },
+          .paint_whole = [](int before, int covered, const Brush&) { return std::min(before + covered, kFullWeight); }};
+}
+
+BrushRule subtract_brush() {
+  return {.kind = BrushKind::Subtract,
+          .id = "subtract",
+          .name = "Subtract",
+          .sentence = "Takes from the active bone's weight.",
+          .paint = [](double before, double cover, double full, const Brush&) { return before - cover * full; },
+          .paint_whole = [](int before, int covered, const Brush&) { return std::max(before - covered, 0); }};
+}
+
+BrushRule set_brush() {
+  return {.kind = BrushKind::Set,
+          .id = "set",
+          .name = "Set",
+          .sentence = "Sets the active bone's weight to the brush's value.",
+          .takes_value = true,
+          .paint = [](double before, double cover, double full,
+                      const Brush& brush) { return before + (brush.value * full - before) * cover; },
+          .paint_whole = [](int before, int covered,
+                            const Brush& brush) { return drawn_to(brush.value * kFullWeight, before, covered); }};
+}
+
+BrushRule multiply_brush() {
+  return {.kind = BrushKind::Multiply,
+          .id = "multiply",
+          .name = "Multiply",
+          .sentence = "Multiplies the active bone's weight by the brush's value.",
+          .takes_value = true,
+          .paint = [](double before, double cover, double,
+                      const Brush& brush) { return before * (1 + (brush.value - 1) * cover); },
+          .paint_whole = [](int before, int covered,
+                            const Brush& brush) { return drawn_to(before * brush.value, before, covered); }};
+}
+
+}  // namespace limber

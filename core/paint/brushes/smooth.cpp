@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The brushes that draw weights to the mean around, or away from it.
+#include "core/paint/brush_rule.h"
+
+namespace limber {
+
+namespace {
+
+// Of the radius: the width of the curve that weights are drawn to the mean by.
+constexpr double kWidth = 0.45;
+
+class SmoothSide : public BrushSide {
+ public:
+  explicit SmoothSide(const BrushView& view) : view_(view) {}
+
+  void begin_dab(const DabView& dab) override {
+    std::vector<int> bricks;
+    for (const Reached::Brick& part : dab.reached.bricks) bricks.push_back(part.brick);
+    view_.smooth.spread(bricks, kWidth * view_.brush.radius, view_.weights);
+  }
+  bool target_at(const VoxelView& at, WeightSum& target) const override {
+    if (view_.smooth.is_uniform()) return false;
+    view_.smooth.at(at.brick, at.cell, target);
+    return !target.empty();
+  }
+
+ private:
+  const BrushView view_;
+};
+
+class SharpenSide final : public SmoothSide {
+ public:
+  using SmoothSide::SmoothSide;
+
+  // As far again from the mean as it is.
+  bool target_at(const VoxelView& at, WeightSum& target) const override {
+    if (!SmoothSide::target_at(at, target)) return false;
+    for (auto& [_, weight] : target) weight = -weight;
+    add_to(target, at.own, 2);
+    std::erase_if(target, [](const auto& t) { return t.second <= 0; });
+    return !target.empty();
+  }
+};
+
+}  // namespace
+
+BrushRule smooth_brush() {
+  return {.kind = BrushKind::Smooth,
+          .id = "smooth",
+          .name = "Smooth",
+          .sentence = "Draws weights towards those around.",
+          .looks_around = true,
+          .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
+            return std::make_unique<SmoothSide>(view);
+          }};
+}
+
+BrushRule sharpen_brush() {
+  return {.kind = BrushKind::Sharpen,
+          .id = "sharpen",
+          .name = "Sharpen",
+          .sentence = "Draws weights away from those around.",
+          .looks_around = true,
+          .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
+            return std::make_unique<SharpenSide>(view);
+          }};
+}
+
+}  // namespace limber

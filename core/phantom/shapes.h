@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The shapes that the procedural anatomy is modelled from, as signed distances in mm: negative inside, and close
+// enough to a true distance that layers (skin, cortex) cut from it have an even thickness.
+//   Cone       a sphere swept from a to b while its radius changes (exact) [Quilez, "Round Cone"]
+//   Ellipsoid  first-order distance, scaled by the gradient
+//   Plate      a triangle thickened by a radius (exact)
+//   Loft       elliptic cross sections at stations along a straight axis, interpolated smoothly; limbs and trunk
+// A Solid applies shapes one after the other: added with a smooth union, or cut away with a smooth difference.
+#pragma once
+
+#include <span>
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace limber::phantom {
+
+// World from local coordinates, mm. Axes are orthonormal and may mirror, which is how a left limb becomes a right one.
+struct Frame {
+  glm::dvec3 origin{0};
+  glm::dmat3 axes{1};
+
+  glm::dvec3 point(const glm::dvec3& local) const { return origin + axes * local; }
+  glm::dvec3 vector(const glm::dvec3& local) const { return axes * local; }
+  // The world axis of a turn about a local axis: a mirror turns the sense of rotation around.
+  glm::dvec3 turn_axis(const glm::dvec3& local) const { return axes * local * glm::determinant(axes); }
+  Frame at(const glm::dvec3& local_origin) const { return {point(local_origin), axes}; }
+  Frame turned(const glm::dvec3& local_axis, double degrees) const;  // about its origin
+  Frame mirrored_x() const;                                          // across the world plane x = 0
+};
+
+struct Box {
+  glm::dvec3 low{1e30}, high{-1e30};
+
+  void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  void add(const Box& box) { low = glm::min(low, box.low), high = glm::max(high, box.high); }
+  Box grown(double by) const { return {low - by, high + by}; }
+  bool touches(const Box& other) const {
+    return glm::all(glm::lessThanEqual(low, other.high)) && glm::all(glm::lessThanEqual(other.low, high));
+  }
+};
+
+struct Cone {
+  glm::dvec3 a, b;
+  double radius_a, radius_b;
+};
+
+struct Ellipsoid {
+  Frame frame;
+  glm::dvec3 radii;
+};
+
+struct Plate {
+  glm::dvec3 a, b, c;
+  double radius;
+};
+
+// One cross section: an ellipse (or a superellipse with a higher exponent, squarer) in the frame's xy plane at height
+// z.
+struct Station {
+  double z;
+  glm::dvec2 centre, radii;
+  double exponent = 2;
+};
+
+class Loft {
+ public:
+  // stations  by falling or rising z, two or more
+  // rounding  radius of the edges of both ends, mm
+  Loft(const Frame& frame, std::vector<Station> stations, double rounding);
+  double distance(const glm::dvec3& p) const;
+  Box bounds() const;
+
+ private:
+  struct Sample {
+    glm::dvec2 centre, radii;
+    double exponent;
+  };
+  Frame frame_;
+  double low_, high_, rounding_;
+  std::vector<Sample> samples_;  // even in z
+};
+
+using Shape = std::variant<Cone, Ellipsoid, Plate, Loft>;
+
+double distance(const Shape& shape, const glm::dvec3& p);
+Box bounds(const Shape& shape);
+
+// Smooth minimum: equals the smaller of a and b where they differ by `blend` or more, and dips below by blend / 4 at
+// most [Quilez, polynomial].
+double smooth_min(double a, double b, double blend);
+
+struct Solid {
+  struct Step {
+    enum class Kind { Add, Cut } kind;
+    Shape shape;
+    double blend;  // mm
+  };
+  std::vector<Step> steps;
+  Box box;  // of what was added
+
+  Solid() = default;
+  explicit Solid(const Shape& shape) { add(shape); }
+  Solid& add(const Shape& shape, double blend = 0);
+  Solid& cut(const Shape& shape, double blend = 0);
+  // A chain of cones through points with radii.
+  Solid& add_tube(const Frame& frame, std::span<const glm::dvec4> points_and_radii, double blend = 0);
+  double distance(const glm::dvec3& p) const;
+};
+
+}  // namespace limber::phantom

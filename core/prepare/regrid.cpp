@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// regrid() of core/prepare/prepare.h.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/prepare/prepare.h"
+
+namespace limber {
+
+namespace {
+constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
+constexpr double kLargestSpacing = 1e6;  // mm: what reading a volume believes
+// Shares closer than this part of a voxel's volume are equal: they come from sums of products of lengths.
+constexpr double kTie = 1e-9;
+// Insertions ripple: a voxel given to skin may now part others. In practice two rounds settle.
+constexpr int kMostRounds = 8;
+
+struct Share {
+  Label label;
+  double volume;  // in old voxels
+};
+using Shares = std::vector<Share>;  // of few labels: searched in line
+
+void add_share(Shares& shares, Label label, double volume) {
+  for (Share& share : shares)
+    if (share.label == label) {
+      share.volume += volume;
+      return;
+    }
+  shares.push_back({label, volume});
+}
+
+double share_of(const Shares& shares, Label label) {
+  for (const Share& share : shares)
+    if (share.label == label) return share.volume;
+  return 0;
+}
+
+// An interval of old voxels along one axis with how much of each it covers. Old voxel i covers [i, i + 1].
+struct Span {
+  double low, high;
+  int first, end;  // old voxels that it touches, within the volume
+  int reach;       // end, or one more where it reaches out of the volume into air
+  double cover(int i) const { return std::min(high, i + 1.0) - std::max(low, static_cast<double>(i)); }
+};
+
+Span span(double low, double high, int size) {
+  // A box that ends where a voxel ends does not touch the next one, whatever rounding says.
+  const double first = std::clamp(std::floor(low + kTie), 0.0, double(size)), end = std::ceil(high - kTie);
+  const int inside = static_cast<int>(std::clamp(end, 0.0, double(size)));
+  return {low, high, static_cast<int>(first), inside, end > inside ? inside + 1 : inside};
+}
+
+class Regrid {
+ public:
+  Regrid(const LabelVolume& from, const Grid& grid) : from_(from), to_{grid, {}} {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double ratio = grid.spacing[axis] / from.grid.spacing[axis];
+      for (int i = 0; i < grid.size[axis]; ++i)
+        spans_[axis].push_back(span(i * ratio, (i + 1) * ratio, from.grid.size[axis]));
+    }
+    to_.voxels.resize(grid.voxel_count());
+    const glm::dvec3 ratio = grid.spacing / from.grid.spacing;
+    volume_ = ratio.x * ratio.y * ratio.z;
+  }
+
+  LabelVolume run(Progress& progress) {
+    vote(progress);
+    // Air first, because skin must be closed; what is put there stays. Then inside, which must not open the skin again.
+    if (!every_voxel_lies_in_an_old_one()) {
+      locked_.assign(to_.voxels.size(), false);
+      std::vector<std::int64_t> ignored, changed;
+      progress.update("regrid", 0.7);
+      close_all(all_insertions(Closing::Air), Closing::Air, ignored);
+      progress.update("regrid", 0.85);
+      close_all(all_insertions(Closing::Inside), Closing::Inside, changed);
+      close_all(insertions_around(changed, Closing::Air), Closing::Air, ignored);
+    }
+    return std::move(to_);
+  }
+
+ private:
+  enum class Closing { Air, Inside };
+  struct Insertion {
+    std::int64_t voxel;
+    Label label;
+    double share;
+  };
+
+  const LabelVolume& from_;
+  LabelVolume to_;
+  std::vector<Span> spans_[3];
+  std::vector<bool> locked_;
+  double volume_;  // of a new voxel, in old voxels
+
+  bool every_voxel_lies_in_an_old_one() const {
+    return std::all_of(std::begin(spans_), std::end(spans_), [](const std::vector<Span>& spans) {
+      return std::all_of(spans.begin(), spans.end(),
+                         [](const Span& s) { return s.end - s.first == 1 && s.high - s.low <= 1 + kTie; });
+    });
+  }
+
+  void gather(const Span& x, const Span& y, const Span& z, Shares& shares) const {
+    shares.clear();
+    double inside = 0;
+    for (int k = z.first; k < z.end; ++k)
+      for (int j = y.first; j < y.end; ++j) {
+        const double area = z.cover(k) * y.cover(j);
+        const Label* row = &from_.voxels[from_.grid.index({0, j, k})];
+        for (int i = x.first; i < x.end;) {
+          const Label label = row[i];
+          double length = x.cover(i);
+          for (++i; i < x.end && row[i] == label; ++i) length += x.cover(i);
+          add_share(shares, label, area * length);
+          inside += area * length;
+        }
+      }
+    const double outside = (x.high - x.low) * (y.high - y.low) * (z.high - z.low) - inside;
+    if (outside > kTie) add_share(shares, 0, outside);
+  }
+
+  // The label of all old voxels of a box when they have only one, as nearly everywhere.
+  std::optional<Label> only_label(const Span& x, const Span& y, const Span& z) const {
+    if (x.reach > x.end || y.reach > y.end || z.reach > z.end || x.first == x.end || y.first == y.end ||
+        z.first == z.end)
+      return std::nullopt;
+    const Label label = from_.at({x.first, y.first, z.first});
+    for (int k = z.first; k < z.end; ++k)
+      for (int j = y.first; j < y.end; ++j) {
+        const Label* row = &from_.voxels[from_.grid.index({0, j, k})];
+        for (int i = x.first; i < x.end; ++i)
+          if (row[i] != label) return std::nullopt;
+      }
+    return label;
+  }
+
+  void gather(const glm::ivec3& v, Shares& shares) const {
+    gather(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z], shares);
+  }
+
+  // Label with the largest share among `candidates`, or among all; nothing when two are equal.
+  static std::optional<Label> largest(const Shares& shares, double volume) {
+    const auto most = std::max_element(shares.begin(), shares.end(),
+                                       [](const Share& a, const Share& b) { return a.volume < b.volume; });
+    for (const Share& share : shares)
+      if (share.label != most->label && share.volume > most->volume - kTie * volume) return std::nullopt;
+    return most->label;
+  }
+
+  Label break_tie(const glm::ivec3& v, const Shares& shares, double volume) const {
+    double most = 0;
+    for (const Share& share : shares) most = std::max(most, share.volume);
+    Span grown[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const Span& s = spans_[axis][v[axis]];
+      grown[axis] = span(s.low - 1, s.high + 1, from_.grid.size[axis]);
+    }
+    Shares around;
+    gather(grown[0], grown[1], grown[2], around);
+    std::optional<Share> best;
+    for (const Share& share : shares) {
+      if (share.volume < most - kTie * volume) continue;
+      const double wide = share_of(around, share.label);
+      if (!best || wide > best->volume + kTie * volume ||
+          (wide > best->volume - kTie * volume && share.label < best->label))
+        best = {share.label, wide};
+    }
+    return best->label;
+  }
+
+  void vote(Progress& progress) {
+    const glm::ivec3 size = to_.grid.size;
+    constexpr int kSlices = 16;
+    for (int first = 0; first < size.z; first += kSlices) {
+      progress.update("regrid", 0.7 * first / size.z);
+      const int rows = size.y * std::min(kSlices, size.z - first);
+      parallel_for(rows, 16, [&](std::int64_t begin, std::int64_t end) {
+        Shares shares;
+        for (std::int64_t row = begin; row < end; ++row) {
+          glm::ivec3 v(0, row % size.y, first + row / size.y);
+          Label* out = &to_.voxels[to_.grid.index(v)];
+          for (; v.x < size.x; ++v.x) {
+            if (const auto only = only_label(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z])) {
+              out[v.x] = *only;
+              continue;
+            }
+            gather(v, shares);
+            const auto winner = shares.size() == 1 ? shares[0].label : largest(shares, volume_);
+            out[v.x] = winner ? *winner : break_tie(v, shares, volume_);
+          }
+        }
+      });
+    }
+  }
+
+  // Do labels a and b meet in the old voxels of both boxes: by a face, or by edges and corners too?
+  bool met(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b, bool corners) const {
+    glm::ivec3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(spans_[axis][p[axis]].first, spans_[axis][q[axis]].first);
+      high[axis] = std::max(spans_[axis][p[axis]].reach, spans_[axis][q[axis]].reach);
+    }
+    for (int z = low.z; z < high.z; ++z)
+      for (int y = low.y; y < high.y; ++y)
+        for (int x = low.x; x < high.x; ++x) {
+          if (from_.at_or_air({x, y, z}) != a) continue;
+          for (int k = std::max(z - 1, low.z); k <= std::min(z + 1, high.z - 1); ++k)
+            for (int j = std::max(y - 1, low.y); j <= std::min(y + 1, high.y - 1); ++j)
+              for (int i = std::max(x - 1, low.x); i <= std::min(x + 1, high.x - 1); ++i)
+                if ((corners || std::abs(i - x) + std::abs(j - y) + std::abs(k - z) == 1) &&
+                    from_.at_or_air({i, j, k}) == b)
+                  return true;
+        }
+    return false;
+  }
+
+  // What should stand between neighbours p and q whose labels never met.
+  std::optional<Insertion> insertion(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b) const {
+    Shares of_p, of_q, together;
+    gather(p, of_p);
+    gather(q, of_q);
+    for (const Shares* shares : {&of_p, &of_q})
+      for (const Share& share : *shares)
+        if (share.label != 0 && share.label != a && share.label != b) add_share(together, share.label, share.volume);
+    if (together.empty()) return std::nullopt;
+    const Share between = *std::max_element(together.begin(), together.end(), [](const Share& s, const Share& t) {
+      return s.volume < t.volume || (s.volume == t.volume && s.label > t.label);
+    });
+    const double in_p = share_of(of_p, between.label), in_q = share_of(of_q, between.label);
+    const std::int64_t i = to_.grid.index(p), k = to_.grid.index(q);
+    bool p_gives_way = in_p > in_q || (in_p == in_q && i < k);
+    // Air gives way only where most of its box is tissue, so that the body keeps its volume.
+    if (a == 0) p_gives_way = share_of(of_p, 0) < 0.5 * volume_;
+    if (b == 0) p_gives_way = share_of(of_q, 0) >= 0.5 * volume_;
+    const bool take_p = !locked_[i] && (locked_[k] || p_gives_way);
+    if (!take_p && locked_[k]) return std::nullopt;
+    return Insertion{take_p ? i : k, between.label, take_p ? in_p : in_q};
+  }
+
+  // What neighbours p and q, a step apart, ask for.
+  void add_insertion(const glm::ivec3& p, const glm::ivec3& step, Closing closing,
+                     std::vector<Insertion>& insertions) const {
+    const glm::ivec3 q = p + step;
+    const Label a = to_.at(p), b = to_.at(q);
+    if (a == b || (closing == Closing::Air) != (a == 0 || b == 0)) return;
+    const bool by_face = std::abs(step.x) + std::abs(step.y) + std::abs(step.z) == 1;
+    if ((!by_face && closing == Closing::Inside) || met(p, q, a, b, !by_face)) return;
+    if (const auto found = insertion(p, q, a, b)) insertions.push_back(*found);
+  }
+
+  static glm::ivec3 step_to_neighbour(int n) {
+    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+  }  // 0 to 26; 13 is no step
+
+  std::vector<Insertion> insertions_of_slice(int z, Closing closing) const {
+    std::vector<Insertion> insertions;
+    const glm::ivec3 size = to_.grid.size;
+    // Half of the neighbours: each pair once.
+    std::vector<glm::ivec3> steps;
+    for (int n = 14; n < 27; ++n)
+      if (z + step_to_neighbour(n).z < size.z) steps.push_back(step_to_neighbour(n));
+    for (int y = 0; y < size.y; ++y) {
+      const Label* row = &to_.voxels[to_.grid.index({0, y, z})];
+      for (const glm::ivec3& step : steps) {
+        if (y + step.y < 0 || y + step.y >= size.y) continue;
+        const Label* other = row + to_.grid.index(step);
+        for (int x = std::max(0, -step.x); x < size.x - std::max(0, step.x); ++x)
+          if (row[x] != other[x]) add_insertion({x, y, z}, step, closing, insertions);
+      }
+    }
+    return insertions;
+  }
+
+  std::vector<Insertion> insertions_around(const std::vector<std::int64_t>& changed, Closing closing) const {
+    std::vector<Insertion> insertions;
+    const glm::ivec3 size = to_.grid.size;
+    for (const std::int64_t i : changed) {
+      const glm::ivec3 p(i % size.x, i / size.x % size.y, i / (std::int64_t{size.x} * size.y));
+      for (int n = 0; n < 27; ++n)
+        if (to_.grid.contains(p + step_to_neighbour(n))) add_insertion(p, step_to_neighbour(n), closing, insertions);
+    }
+    return insertions;
+  }
+
+  std::vector<Insertion> all_insertions(Closing closing) const {
+    std::vector<std::vector<Insertion>> of_slice(to_.grid.size.z);
+    parallel_for(to_.grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t z = begin; z < end; ++z) of_slice[z] = insertions_of_slice(static_cast<int>(z), closing);
+    });
+    std::vector<Insertion> all;
+    for (const auto& insertions : of_slice) all.insert(all.end(), insertions.begin(), insertions.end());
+    return all;
+  }
+
+  // Makes insertions and those that they call for in turn; the voxels that changed are added to `changed`.
+  void close_all(std::vector<Insertion> insertions, Closing closing, std::vector<std::int64_t>& changed) {
+    for (int round = 0; round < kMostRounds && !insertions.empty(); ++round) {
+      // Of several for one voxel the largest share wins, then the smaller label.
+      std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
+        if (a.voxel != b.voxel) return a.voxel < b.voxel;
+        return a.share != b.share ? a.share > b.share : a.label < b.label;
+      });
+      std::vector<std::int64_t> now;
+      for (const Insertion& one : insertions)
+        if (now.empty() || now.back() != one.voxel) {
+          now.push_back(one.voxel);
+          to_.voxels[one.voxel] = one.label;
+          if (closing == Closing::Air) locked_[one.voxel] = true;
+        }
+      changed.insert(changed.end(), now.begin(), now.end());
+      insertions = insertions_around(now, closing);
+    }
+  }
+};
+}  // namespace
+
+LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progress& progress) {
+  std::ostringstream asked;
+  asked << spacing.x << " x " << spacing.y << " x " << spacing.z << " mm";
+  Grid grid = volume.grid;
+  double count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(spacing[axis] > 0) || spacing[axis] > kLargestSpacing)
+      throw Error("a spacing must be a positive number of millimetres, a million at most", asked.str(),
+                  "choose for example --spacing 2");
+    const double extent = volume.grid.size[axis] * volume.grid.spacing[axis] / spacing[axis];
+    count *= std::max(1.0, std::ceil(extent - kTie));
+    if (!(count <= static_cast<double>(kMostVoxels)))
+      throw Error("the new volume would have more than " + std::to_string(kMostVoxels) + " voxels", asked.str(),
+                  "choose a coarser spacing");
+    grid.size[axis] = static_cast<int>(std::max(1.0, std::ceil(extent - kTie)));
+  }
+  if (spacing == volume.grid.spacing) return volume;
+
+  // The lowest corner of the lowest voxel stays where it is.
+  grid.spacing = spacing;
+  grid.origin = volume.grid.origin + volume.grid.direction * (0.5 * (spacing - volume.grid.spacing));
+  return Regrid(volume, grid).run(progress);
+}
+
+}  // namespace limber

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/volume/connected_components.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/volume/label_runs.h"
+
+namespace limber {
+
+namespace {
+using Run = Components::Run;
+
+// First x from `begin` on with another label than there; four voxels at a time.
+int end_of_run(const Label* row, int begin, int size) {
+  const std::uint64_t four = row[begin] * std::uint64_t{0x0001000100010001};
+  int x = begin;
+  for (std::uint64_t word; x + 4 <= size; x += 4) {
+    std::memcpy(&word, row + x, sizeof word);
+    if (word != four) return x + std::countr_zero(word ^ four) / 16;
+  }
+  while (x < size && row[x] == row[begin]) ++x;
+  return x;
+}
+
+//   expected  about how many there will be
+std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
+                               std::size_t expected, std::int64_t* runs_in_row) {
+  std::vector<Run> runs;
+  runs.reserve(expected);
+  const glm::ivec3 size = volume.grid.size;
+  for (int y = 0; y < size.y; ++y) {
+    if (in_rows && !(*in_rows)[y + std::int64_t{size.y} * z]) continue;
+    const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
+    const std::size_t before = runs.size();
+    for (int x = end_of_air(row, 0, size.x); x < size.x;) {
+      const int begin = x;
+      x = end_of_run(row, begin, size.x);
+      if (!of_labels || (*of_labels)[row[begin]]) runs.push_back({begin, x, row[begin], 0});
+      if (x < size.x && row[x] == 0) x = end_of_air(row, x, size.x);
+    }
+    runs_in_row[y] = static_cast<std::int64_t>(runs.size() - before);
+  }
+  return runs;
+}
+
+std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
+  while (parent[run] != run) run = parent[run] = parent[parent[run]];
+  return run;
+}
+
+// The earlier root wins, so that a component's root is its first run.
+void join(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
+  if (parent[a] == parent[b]) return;
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  if (a != b) parent[std::max(a, b)] = std::min(a, b);
+}
+}  // namespace
+
+Components connected_components(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels) {
+  const glm::ivec3 size = volume.grid.size;
+  const std::int64_t rows = std::int64_t{size.y} * size.z;
+  Components result;
+  result.first_run.assign(rows + 1, 0);
+  std::vector<std::vector<Run>> of_slice(size.z);
+  parallel_for(size.z, 4, [&](std::int64_t begin, std::int64_t end) {
+    std::size_t expected = 0;
+    for (std::int64_t z = begin; z < end; ++z) {
+      of_slice[z] =
+          runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), expected, &result.first_run[1 + z * size.y]);
+      expected = of_slice[z].size() + of_slice[z].size() / 4;  // as many as in the slice before, and some more
+    }
+  });
+  std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
+  if (result.first_run.back() > INT32_MAX)
+    throw Error("the volume is too intricate to find its connected pieces",
+                std::to_string(result.first_run.back()) + " runs", "use a coarser spacing");
+  result.runs.reserve(result.first_run.back());
+  for (auto& runs : of_slice) {
+    result.runs.insert(result.runs.end(), runs.begin(), runs.end());
+    std::vector<Run>().swap(runs);
+  }
+
+  std::vector<std::int32_t> parent(result.runs.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto join_rows = [&](std::int64_t row, std::int64_t other) {
+    std::int64_t a = result.first_run[row], b = result.first_run[other];
+    const std::int64_t a_end = result.first_run[row + 1], b_end = result.first_run[other + 1];
+    const auto join_touching = [&](std::int64_t i, std::int64_t k) {
+      const Run &first = result.runs[i], &second = result.runs[k];
+      // Runs that only meet at a corner touch too, hence <=.
+      if (first.label == second.label && first.begin <= second.end && second.begin <= first.end)
+        join(parent, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
+    };
+    while (a < a_end && b < b_end) {
+      join_touching(a, b);
+      const std::int32_t a_stops = result.runs[a].end, b_stops = result.runs[b].end;
+      // Of two that stop together each may still meet the other's follower at a corner.
+      if (a_stops == b_stops && a + 1 < a_end) join_touching(a + 1, b);
+      if (a_stops < b_stops) ++a;
+      else ++b;
+    }
+  };
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y) {
+      const std::int64_t row = y + std::int64_t{size.y} * z;
+      if (result.first_run[row] == result.first_run[row + 1]) continue;
+      if (y > 0) join_rows(row, row - 1);
+      if (z > 0)
+        for (int k = -1; k <= 1; ++k)
+          if (y + k >= 0 && y + k < size.y) join_rows(row, row - size.y + k);
+    }
+
+  for (std::size_t i = 0; i < result.runs.size(); ++i) {
+    const std::int32_t root = root_of(parent, static_cast<std::int32_t>(i));
+    if (root == static_cast<std::int32_t>(i)) {
+      result.runs[i].component = static_cast<std::int32_t>(result.voxels.size());
+      result.voxels.push_back(0);
+    } else {
+      result.runs[i].component = result.runs[root].component;
+    }
+    result.voxels[result.runs[i].component] += result.runs[i].end - result.runs[i].begin;
+  }
+  return result;
+}
+
+}  // namespace limber

@@ -1,5 +1,0 @@
-// SPDX-License-Identifier: AGPL-3.0-or-later
-// The program that parses volumes for Limber, in a process without rights (volume_reader.h). It is no command.
-#include "core/volume/serve_volume.h"
-
-int main(int argc, char** argv) { return limber::serve_volume(argc, argv); }

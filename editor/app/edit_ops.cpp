@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator_polls.h"
+#include "editor/dialogs/redo_last_operator.h"
+#include "editor/resample/results.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/list_navigation.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string nothing_to_undo(const Editor& editor) { return editor.history.can_undo() ? "" : "Nothing to undo"; }
+std::string nothing_to_redo(const Editor& editor) { return editor.history.can_redo() ? "" : "Nothing to redo"; }
+
+// The row that the keyboard is in is renamed by the list itself; this is for what is chosen, from anywhere.
+std::string nothing_to_rename(const Editor& editor) {
+  return editor.shown_popup == "Result" || editor.selection.tissue || needs_bone(editor).empty() || shown_result(editor)
+             ? ""
+             : "Choose a tissue or a bone, or show a result first";
+}
+
+void rename(Editor& editor) {
+  editor.arrangement().sidebar = true;
+  const auto result = shown_result(editor);
+  // Whoever picks a bone lets the tissues go.
+  if (editor.shown_popup != "Result" && !editor.selection.tissue && needs_bone(editor).empty()) {
+    const std::string& name = editor.document().armature->bones[*editor.selection.bone].name;
+    editor.open_sections["Outliner"] = editor.outliner.open["armature"] = true;
+    return begin_renaming(editor, "outlinerbone " + name, name);
+  }
+  const bool of_result = result && (!editor.selection.tissue || editor.shown_popup == "Result");
+  if (of_result) {
+    editor.open_sections["Outliner"] = editor.outliner.open["results"] = true;
+    return begin_renaming(editor, "outlinerresult " + result->name, result->name);
+  }
+  const Tissue* tissue = editor.document().tissues->find(*editor.selection.tissue);
+  editor.open_sections["Tissues"] = true;
+  editor.tissue_search.clear();
+  begin_renaming(editor, "tissues" + std::to_string(tissue->label), tissue->name);
+}
+
+// A step back or on in the history. Bones that come back with it are chosen; else what was chosen stays so, by name.
+void step(Editor& editor, bool (History::*go)()) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  (editor.history.*go)();
+  const std::shared_ptr<const Armature> after = editor.document().armature;
+  if (!before || !after || before == after) return;
+  Selection next = editor.selection;
+  next.bone.reset();
+  next.bones.clear();
+  for (int bone = 0; bone < std::ssize(after->bones); ++bone)
+    if (!before->find(after->bones[bone].name)) next.bones.insert(bone);
+  if (!next.bones.empty()) next.bone = *next.bones.begin();
+  else
+    for (const int bone : editor.selection.bones)
+      if (const auto found = bone < std::ssize(before->bones) ? after->find(before->bones[bone].name) : std::nullopt) {
+        next.bones.insert(*found);
+        if (editor.selection.bone == bone) next.bone = found;
+      }
+  if (!next.bones.empty()) editor.selection = {.bone = next.bone.value_or(*next.bones.begin()), .bones = next.bones};
+  else editor.selection = std::move(next);
+}
+
+}  // namespace
+
+std::vector<Operator> edit_operators() {
+  return {
+      {"edit.undo", "Undo", icon::kUndo, "Edit", "Takes the last edit back.",
+       [](Editor& e) { step(e, &History::undo); }, nothing_to_undo},
+      {"edit.redo", "Redo", icon::kRedo, "Edit", "Does the edit again that was taken back.",
+       [](Editor& e) { step(e, &History::redo); }, nothing_to_redo},
+      {"edit.adjust_last", "Adjust last operation", "", "Edit",
+       "Does what was done last again with other numbers, as the same step of the history.",
+       [](Editor& e) { e.last_operation->wanted_at_pointer = true; }, why_not_adjust},
+      {"edit.rename", "Rename", icon::kRename, "Edit",
+       "Gives the chosen tissue or bone, or the result that is shown, another name.", rename, nothing_to_rename},
+      {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",
+       [](Editor& e) {
+         e.arrangement().sidebar = true;
+         e.open_sections["History"] = true;
+         e.wanted_section = "History";
+       }},
+  };
+}
+
+}  // namespace limber::editor

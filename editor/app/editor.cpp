@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/editor.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "editor/app/editor_session.h"
+#include "editor/app/event_dispatch.h"
+#include "editor/app/poll_jobs.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/frame_timing.h"
+#include "editor/context/keep_preferences.h"
+#include "editor/context/panels.h"
+#include "editor/context/transform_settings.h"
+#include "editor/dialogs/redo_last_operator.h"
+#include "editor/files/import.h"
+#include "editor/files/project_session.h"
+#include "editor/files/tour.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/live_preview.h"
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/fem_overlay.h"
+#include "editor/resample/overlap_overlay.h"
+#include "editor/resample/results.h"
+#include "editor/rig/bone_table.h"
+#include "editor/rig/joint_axis_fit.h"
+#include "editor/screen/steady.h"
+#include "editor/seams/seam_view.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/shown/test_pose.h"
+#include "editor/skin/paint_mode.h"
+#include "editor/skin/weight_display.h"
+#include "editor/ui/asset_path.h"
+#include "editor/ui/keyboard.h"
+#include "editor/ui/tooltip.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kCameraMove = 0.18;  // s
+constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
+constexpr double kJobPulse = 0.1;     // s between frames while a job runs
+constexpr int kJobsAtOnce = 2;
+constexpr int kMostTurns = 200;        // of the panels within a frame, for what was typed since the last
+constexpr int kMostAgain = 3;          // that a frame's panels are laid out once more
+constexpr float kTurnSeconds = 1e-5f;  // no time passes between them
+constexpr double kUploadTime = 0.008;  // s of a frame that weights take on their way to the card
+
+// Made when it is needed first.
+template <class Picture>
+Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
+  if (!picture) picture = std::make_unique<Picture>(views.renderer);
+  return *picture;
+}
+
+// Side by side each place shows one side, else both lie upon one another.
+void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place,
+                       double now) {
+  const glm::ivec2 size(place.rect.size());
+  if (size.x < 1 || size.y < 1) return;
+  const bool one = !place.side_a, other = views.other_scene && (place.side_a || !layout.by_sides);
+  if (place.id == ViewId::Body) {
+    if (one) views.body.picture->draw(views.scene, views.body.camera, size, now);
+    if (other) drawn(views, views.body.other).draw(*views.other_scene, views.body.camera, size, now);
+    else if (!views.other_scene) views.body.other.reset();
+    return;
+  }
+  SliceState& slice = slice_of(views, place.id);
+  if (!slice.fitted) fit(slice, tissue_box(views, document, std::nullopt), place.rect.size());
+  const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
+  slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
+  if (one) slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
+  if (other) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
+  else if (!views.other_scene) slice.other.reset();
+}
+
+Layout layout_of(const Editor& editor, const glm::ivec2& size) {
+  Layout layout = arrange(size, editor.look.scale, editor.arrangement());
+  return side_by_side(editor) ? in_sides(std::move(layout), editor.comparison.share, editor.look.scale) : layout;
+}
+
+bool is_complete(const SliceState& slice) {
+  return slice.picture->complete() && (!slice.other || slice.other->complete());
+}
+
+void move_camera(BodyView& body, double now, bool at_once) {
+  if (!body.move) return;
+  const double t = at_once ? 1 : glm::clamp((now - body.move->start) / kCameraMove, 0.0, 1.0);
+  body.camera = between(body.move->from, body.move->to, 1 - (1 - t) * (1 - t) * (1 - t));
+  if (t >= 1) body.move.reset();
+}
+
+// A press, a turn of the wheel, a key: any of them ends the move of a camera.
+bool begins_something(const Event& event) {
+  if (const auto* button = std::get_if<ButtonChanged>(&event)) return button->down;
+  if (const auto* key = std::get_if<KeyChanged>(&event)) return key->down && key->key < Key::Ctrl;
+  return std::holds_alternative<Wheeled>(event);
+}
+
+void ended(const Editor& editor, const char* part_of_frame) {
+  if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
+}
+
+// The panels are drawn once more in the frame that is shown.
+void begin_turn_without_input(Editor& editor) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImGui::EndFrame();
+  io.DeltaTime = kTurnSeconds;
+  io.MouseWheel = io.MouseWheelH = editor.input.wheel = editor.input.wheel_sideways = 0;
+  ImGui::NewFrame();
+}
+
+void show_preferred(Editor& editor) {
+  const Preferences& preferences = editor.preferences;
+  Views& views = *editor.views;
+  views.grid = preferences.grid;
+  views.axes = preferences.axes;
+  views.scale_bar = preferences.scale_bar;
+  views.letters = preferences.letters;
+  views.show_cross_hair = preferences.cross_hair;
+  views.display = preferences.display == "xray"     ? render::Display::XRay
+                  : preferences.display == "tissue" ? render::Display::Tissue
+                                                    : render::Display::Solid;
+  apply_preferences(editor);
+}
+
+}  // namespace
+
+void Dialog::escape(Editor& editor) { editor.close_dialog(); }
+
+Editor::Editor(Host& host, const Preferences& preferences)
+    : host(host),
+      preferences(preferences),
+      keymap(read_keymap(asset("keymap.json"))),
+      operators(gather_operators()),
+      jobs(kJobsAtOnce, [&host] { host.wake(); }),
+      arrangements(preferences.arrangements),
+      handling(std::make_unique<Handling>()),
+      skin(std::make_unique<SkinDisplay>()),
+      fem(std::make_unique<FemView>()),
+      fem_overlay(std::make_unique<FemOverlay>()),
+      trial(std::make_unique<TestPose>()),
+      difference(std::make_unique<DifferenceView>()),
+      overlap(std::make_unique<OverlapView>()),
+      seams(std::make_unique<SeamView>()),
+      bone_table(std::make_unique<BoneTable>()),
+      timeline(std::make_unique<Timeline>()),
+      last_operation(std::make_unique<LastOperation>()) {
+  before_change = stop_playing;
+  IMGUI_CHECKVERSION();
+  imgui = ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigInputTextCursorBlink = false;  // an idle editor draws nothing
+  io.ConfigDragClickToInputText = true;   // a click without a drag types a number
+  io.ClipboardUserData = &host;
+  io.GetClipboardTextFn = [](void* user) {
+    static std::string text;
+    text = static_cast<Host*>(user)->clipboard();
+    return text.c_str();
+  };
+  io.SetClipboardTextFn = [](void* user, const char* text) { static_cast<Host*>(user)->set_clipboard(text); };
+  teach_imgui_keys();
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  views.emplace();
+  live = std::make_unique<LivePose>([&host] { host.wake(); });
+  show_preferred(*this);
+  apply_look(look, preferences.theme, scale_for(preferences, host));
+  layout = arrange(host.size(), look.scale, arrangement());
+}
+
+Editor::~Editor() {
+  preferences.arrangements = arrangements;
+  write_preferences(*this);
+  ImGui::SetCurrentContext(imgui);
+  each_frame.clear();
+  pictures.clear();
+  views.reset();
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext(imgui);
+}
+
+void Editor::open_dialog(std::unique_ptr<Dialog> dialog) {
+  if (!of_users_act_) return waiting_dialogs_.push_back(std::move(dialog));
+  next_dialog_ = std::move(dialog);
+  await_field(*this);
+}
+void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
+
+bool Editor::busy() const { return jobs.busy() || live->busy() || skin->shares.busy(); }
+
+double Editor::rest() const {
+  if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
+  if (layout.place_of(ViewId::Body) &&
+      (!views->body.picture->complete() || (views->body.other && !views->body.other->complete())))
+    return 0;
+  for (const ViewPlace& place : layout.view_places)
+    if (place.id != ViewId::Body && !is_complete(views->slices[static_cast<std::size_t>(axis_of(place.id))])) return 0;
+  double seconds = kLongestRest;
+  seconds = std::min(seconds, wake_at_ - now);
+  if (busy()) seconds = std::min(seconds, kJobPulse);
+  return std::clamp(seconds, 0.0, kLongestRest);
+}
+
+void Editor::take_input() {
+  std::vector<Event> events;
+  if (!keyboard.waits())
+    events = host.events.take_frame(keyboard.typed ? KeysFor::Text : KeysFor::Commands, input.modifiers());
+  const InputState before = input;
+  input.wheel = input.wheel_sideways = 0;
+  for (const Event& event : events) input.apply(event);
+  if (!events.empty()) touch();
+  if (std::any_of(events.begin(), events.end(), begins_something)) views->body.move.reset();
+  tell_imgui(events, input);
+  ImGui::NewFrame();
+  dispatch(*this, events, before);
+}
+
+// Each key that does more than insert a character has its turn of the panels, without new pictures of the views. Ends
+// with the input of the frame that is shown.
+void Editor::read_typed_text() {
+  for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
+    layout = layout_of(*this, host.size());
+    draw();
+    change_dialog();
+    ImGui::EndFrame();
+    ImGui::GetIO().DeltaTime = kTurnSeconds;
+    take_input();
+  }
+}
+
+// What a job's end brings does not take the keyboard from a field, nor does it stand under a pressed button.
+void Editor::meet_jobs() {
+  const std::size_t errors = messages.errors.size();
+  of_users_act_ = false;
+  open_waiting_files(*this);
+  if (modal && !modal->frame(*this, ImGui::GetIO().DeltaTime)) modal.reset();
+  if (poll_jobs(*this)) touch();
+  std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
+  of_users_act_ = true;
+  const auto first = messages.errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors, messages.errors.size()));
+  std::move(first, messages.errors.end(), std::back_inserter(waiting_errors_));
+  messages.errors.erase(first, messages.errors.end());
+  if ((waiting_errors_.empty() && waiting_dialogs_.empty()) || next_dialog_ || !may_interrupt(*this)) return;
+  if (!waiting_errors_.empty()) {
+    messages.errors = std::exchange(waiting_errors_, {});
+  } else {
+    open_dialog(std::move(waiting_dialogs_.front()));
+    waiting_dialogs_.pop_front();
+  }
+  touch();
+}
+
+void Editor::change_dialog() {
+  if (!next_dialog_) return;
+  dialog = std::move(*next_dialog_);
+  next_dialog_.reset();
+  touch();
+}
+
+void Editor::draw_views() {
+  update_scene(*views, document(), selection, preferences.theme == "dark");
+  views->scene.line_scale = look.scale;
+  live->follow(*this);
+  show_posed(*this);
+  show_weights(*this);
+  show_fem(*this);
+  show_difference(*this);
+  show_overlap(*this);
+  show_bone_table(*this);
+  show_proposed_joint(*this);
+  move_camera(views->body, now, preferences.reduce_motion);
+  ended(*this, "pose");
+  const Document shown = shown_document(*this);
+  views->renderer.begin_frame(kUploadTime);
+  for (const ViewPlace& place : layout.view_places) {
+    draw_view_picture(*views, shown, layout, place, now);
+    ended(*this, place.id == ViewId::Body ? "body" : "slice");
+  }
+  hover_views(*this);
+  follow_brush(*this);
+  ended(*this, "hover");
+}
+
+void Editor::draw() {
+  widgets.begin_frame();
+  cursor = Cursor::Arrow;
+  place.windows.clear();
+  window = layout.window;
+  tooltip_delay = preferences.tooltip_delay;
+  dialog_open = dialog || !messages.errors.empty();
+  draw_top_bar(*this);
+  draw_tool_header(*this);
+  draw_views_region(*this);
+  draw_tool_strip(*this);
+  draw_bottom(*this);
+  draw_status_bar(*this);
+  draw_sidebar(*this);
+  draw_splitters(*this);
+  draw_start_screen(*this);
+  draw_tour(*this);
+  draw_toasts(*this);
+  if (dialog && messages.errors.empty()) dialog->draw(*this);
+  draw_error_message(*this);
+  draw_tooltip(*this);
+  widgets.end_frame();
+  follow_keyboard(*this);
+  if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
+  host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
+  // Regions stand behind popups and dialogs, in the order in which they were drawn.
+  for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name)
+    ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
+}
+
+void Editor::frame(double time) {
+  ImGui::SetCurrentContext(imgui);
+  ImGuiIO& io = ImGui::GetIO();
+  io.DeltaTime = static_cast<float>(glm::clamp(time - now, 1e-4, 0.25));
+  now = time;
+  wake_at_ = 1e300;
+  if (frames_wanted_ > 0) --frames_wanted_;
+
+  const glm::ivec2 size = host.size();
+  if (size.x < 1 || size.y < 1) return;  // minimized
+  if (glm::vec2(size) != layout.window.size()) touch();
+  if (apply_look_if_changed(*this)) touch();
+  io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+  layout = layout_of(*this, size);
+  ImGui_ImplOpenGL3_NewFrame();
+  const bool pressed = input.down(MouseButton::Left) || input.down(MouseButton::Right);
+  take_input();
+  read_typed_text();
+  // A press meets what was shown when it was made, before a job changes it.
+  if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
+    draw();
+    note_pressed(*this);
+    change_dialog();
+    begin_turn_without_input(*this);
+  }
+  ended(*this, "input");
+  meet_jobs();
+  ended(*this, "jobs");
+  layout = layout_of(*this, size);
+  advance_time(*this);
+  ended(*this, "time");
+  draw_views();
+  draw();
+  for (int again = 0; again < kMostAgain && has_moved_under_pointer(*this); ++again) {
+    begin_turn_without_input(*this);
+    draw();
+  }
+  ended(*this, "panels");
+  await_next_frame(*this);
+  follow_tour(*this);
+  keep_edits(*this);
+  keep_remembered(*this);
+  ended(*this, "keeping");
+  change_dialog();
+
+  if (const std::string title = name.empty() ? "Limber" : name + " - Limber"; title != shown_title)
+    host.set_title(shown_title = title);
+
+  ImGui::Render();
+  host.present([this, size] {
+    ImGui::SetCurrentContext(imgui);
+    glViewport(0, 0, size.x, size.y);
+    const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(look.theme.void_);
+    glClearColor(gap.x, gap.y, gap.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  });
+  ended(*this, "window");
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/app/editor_session.h"
+
+#include "core/base/error.h"
+#include "editor/file_browser/thumbnails.h"
+#include "editor/files/file_filters.h"
+#include "editor/files/project_session.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kRestBeforeWriting = 1;  // s
+
+Path file_of(const Editor& editor) { return editor.folders.config / "remembered.json"; }
+
+void write_changed(Editor& editor) {
+  RememberedOnDisk& disk = editor.remembered_on_disk;
+  disk.changed_at.reset();
+  disk.contents = editor.remembered;
+  try {
+    write_remembered(editor.remembered, file_of(editor));
+  } catch (const Error& error) {
+    if (!disk.failure_told) editor.messages.warn("Recent files cannot be kept", parts_of(error.what()).where);
+    disk.failure_told = true;
+  }
+}
+
+}  // namespace
+
+void begin_sitting(Editor& editor, const Folders& folders, std::vector<Path> files) {
+  editor.folders = folders;
+  if (!folders.config.empty()) {
+    std::string warning;
+    editor.remembered = editor.remembered_on_disk.contents = read_remembered(file_of(editor), warning);
+    if (const ErrorMessage parts = parts_of(warning); !warning.empty())
+      editor.messages.warn(parts.what, parts.what_to_do);
+  }
+  editor.remembered_on_disk.named = editor.remembered.recents;
+  name_recent_operators(editor);
+  look_for_leftovers(editor);
+  editor.start_screen = files.empty() && editor.remembered.show_start;
+  if (editor.start_screen) look_at_recents(editor);
+  editor.to_open = std::move(files);
+}
+
+void keep_remembered(Editor& editor) {
+  RememberedOnDisk& disk = editor.remembered_on_disk;
+  if (editor.remembered.recents != disk.named) {
+    disk.named = editor.remembered.recents;
+    name_recent_operators(editor);
+    if (editor.start_screen) look_at_recents(editor);
+  }
+  if (editor.folders.config.empty()) return;
+  if (editor.remembered == disk.contents) return disk.changed_at.reset();
+  if (!disk.changed_at) disk.changed_at = editor.now;
+  if (editor.now - *disk.changed_at >= kRestBeforeWriting) write_changed(editor);
+  else editor.wake_at(*disk.changed_at + kRestBeforeWriting);
+}
+
+void end_sitting(Editor& editor) {
+  if (!editor.folders.config.empty() && !(editor.remembered == editor.remembered_on_disk.contents))
+    write_changed(editor);
+}
+
+}  // namespace limber::editor

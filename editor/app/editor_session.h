@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What joins one sitting at the editor to the next: recent files and the like are read at the start and written a
+// second after they changed and at the end; leftovers of a sitting that crashed are looked for.
+#pragma once
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+// Before the first frame. With `files` to open there is no start screen.
+void begin_sitting(Editor& editor, const Folders& folders, std::vector<Path> files);
+// Once a frame.
+void keep_remembered(Editor& editor);
+// At the end.
+void end_sitting(Editor& editor);
+
+}  // namespace limber::editor

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator_polls.h"
+#include "editor/screen/command_search.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+std::vector<Operator> search_operators() {
+  return {
+      {"search.commands", "Search commands", icon::kSearch, "Help",
+       "Finds any command by a few letters of its name, and runs it.",
+       [](Editor& e) { e.open_dialog(open_command_search()); }},
+      {"edit.repeat_last", "Repeat", icon::kRedo, "Edit", "Runs the last command once more.",
+       [](Editor& e) { run(e, std::string(e.last_operator)); },
+       [](const Editor& e) { return e.last_operator.empty() ? std::string("Nothing was run yet") : std::string(); }},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator_polls.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+Operator to_workspace(const char* id, const char* label, const char* icon, const char* sentence, Workspace workspace) {
+  return {id,       label,
+          icon,     "Workspace",
+          sentence, [workspace](Editor& e) { e.workspace = workspace; },
+          nullptr,  [workspace](const Editor& e) { return e.workspace == workspace; }};
+}
+
+Operator by_step(const char* id, const char* label, int step) {
+  return {id, label, "", "Workspace", "Goes to the neighbouring workspace.", [step](Editor& e) {
+            e.workspace = static_cast<Workspace>((static_cast<int>(e.workspace) + step + 4) % 4);
+          }};
+}
+
+}  // namespace
+
+std::vector<Operator> workspace_operators() {
+  return {
+      to_workspace("workspace.rig", "Rig", icon::kRig, "Fits a skeleton into the bones.", Workspace::Rig),
+      to_workspace("workspace.skin", "Skin", icon::kSkin, "Paints how tissue follows the bones.", Workspace::Skin),
+      to_workspace("workspace.pose", "Pose", icon::kPose, "Turns joints, or scrubs a motion.", Workspace::Pose),
+      to_workspace("workspace.resample", "Resample", icon::kResample, "Writes the posed body as a new label volume.",
+                   Workspace::Resample),
+      {"workspace.pie", "Workspace menu", "", "Workspace", "Lists the workspaces at the pointer.",
+       [](Editor& e) { e.open_popup = "Workspaces"; }},
+      by_step("workspace.previous", "Previous workspace", -1),
+      by_step("workspace.next", "Next workspace", 1),
+  };
+}
+
+}  // namespace limber::editor

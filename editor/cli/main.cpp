@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The program: the editor, or with a subcommand the command line.
+#include <filesystem>
+
+#include "core/cmd/command.h"
+#include "core/cmd/experiment.h"
+#include "editor/app/main_loop.h"
+#include "editor/cli/command.h"
+#include "editor/files/study_pictures.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Limber changes the pose of labelled voxel anatomy. Without a command it opens the editor.", "limber");
+  std::vector<std::string> files;
+  app.add_option("FILE", files, "volumes or a project to open in the editor")->check([](const std::string& name) {
+    // A word that is no file is most likely a command with a slip in it.
+    const bool is_word = name.find_first_of("./") == std::string::npos;
+    return is_word && !std::filesystem::exists(name) ? "there is neither a command nor a file " + name : std::string();
+  });
+  app.require_subcommand(0, 1);
+  limber::cmd::add_commands(app);
+  limber::cmd::add_experiment(app, limber::editor::start_pictures);
+  limber::editor::add_editor(app);
+  limber::editor::add_render(app);
+  app.callback([&] {
+    if (app.get_subcommands().empty()) limber::editor::run_editor({.files = {files.begin(), files.end()}});
+  });
+  return limber::cmd::run(app, argc, argv);
+}

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG]
+// [--orthographic]
+//        [--display solid|xray|tissue] [--hide L,L] [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane
+//        X,Y,Z,NX,NY,NZ]
+//        [--rig RIG] [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs]
+//        [--preview]
+//        [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light]
+// A picture without a window or a display. A project brings its own skeleton, pose and visibility.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/binding/heat_diffusion.h"
+#include "core/bones/bone_parts.h"
+#include "core/cmd/body_options.h"
+#include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
+#include "core/cmd/pose_options.h"
+#include "core/deform/preview_map.h"
+#include "core/deform/skinning.h"
+#include "core/project/project_io.h"
+#include "core/resample/resample.h"
+#include "core/rig_io/rig_io.h"
+#include "core/seams/find_seams.h"
+#include "core/skin/weights_io.h"
+#include "core/volume_io/grey_image.h"
+#include "editor/cli/command.h"
+#include "editor/volume/body_seams.h"
+#include "render/gl/egl_context.h"
+#include "render/image_io.h"
+#include "render/scene/tissue_appearance.h"
+#include "render/view.h"
+
+namespace limber::editor {
+
+namespace {
+
+using namespace render;
+
+struct Options {
+  cmd::BodyOptions body;
+  cmd::PoseOptions pose;
+  cmd::RunOptions run;
+  std::string weights, output, size = "1280x720", slice, armature = "octahedron", method = "mix";
+  StandardView view = StandardView::Front;
+  Display display = Display::Solid;
+  double turn = 0, tilt = 0, zoom = 1;
+  std::vector<double> hide, clip_box, clip_plane;
+  std::vector<std::string> opacity;
+  std::optional<double> at;
+  std::optional<int> turntable;
+  bool orthographic = false, outline = false, transparent = false, light = false, grid = false, preview = false;
+};
+
+glm::ivec2 size_of(const std::string& text) {
+  int width = 0, height = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) != 2 || end != static_cast<int>(text.size()) ||
+      width < 1 || height < 1 || width > 8192 || height > 8192)
+    throw Error("this is no size of a picture", "--size " + text,
+                "write WIDTHxHEIGHT in pixels, each 1 to 8192, as in 1280x720");
+  return {width, height};
+}
+
+TissueLook& look_at(Visibility& visibility, const TissueTable& tissues, double file_value, const std::string& where) {
+  const Tissue* tissue = tissues.find_file_value(file_value);
+  if (!tissue) throw Error("no tissue has this label", where, "use labels that `limber info` lists");
+  return visibility.looks[tissue->label];
+}
+
+// `visibility` with what the command changes of it.
+Visibility visibility_of(const Options& options, const TissueTable& tissues, Visibility visibility) {
+  for (const double label : options.hide) {
+    char text[32];
+    std::snprintf(text, sizeof text, "--hide %.15g", label);
+    look_at(visibility, tissues, label, text).visible = false;
+  }
+  for (const std::string& request : options.opacity) {
+    double label = 0, opacity = 0;
+    int end = 0;
+    if (std::sscanf(request.c_str(), "%lf=%lf%n", &label, &opacity, &end) != 2 ||
+        end != static_cast<int>(request.size()) || !(opacity >= 0) || opacity > 1)
+      throw Error("this is no label and opacity", "--opacity " + request,
+                  "write LABEL=OPACITY with an opacity of 0 to 1");
+    look_at(visibility, tissues, label, "--opacity " + request).opacity = static_cast<float>(opacity);
+  }
+  return visibility;
+}
+
+render::Clip clip_of(const Options& options, const Visibility& visibility) {
+  const auto point = [](const std::vector<double>& v, size_t first) {
+    return glm::dvec3(v[first], v[first + 1], v[first + 2]);
+  };
+  render::Clip clip;
+  if (visibility.clip_box.enabled) clip.box = {visibility.clip_box.low, visibility.clip_box.high};
+  if (visibility.clip_plane.enabled) clip.plane = {visibility.clip_plane.point, visibility.clip_plane.normal};
+  if (!options.clip_box.empty()) {
+    const glm::dvec3 a = point(options.clip_box, 0), b = point(options.clip_box, 3);
+    clip.box = {glm::min(a, b), glm::max(a, b)};
+  }
+  if (!options.clip_plane.empty()) {
+    const glm::dvec3 normal = point(options.clip_plane, 3);
+    if (!(glm::length(normal) > 0))
+      throw Error("a plane needs a direction", "--clip-plane", "give a normal that is not zero");
+    clip.plane = {point(options.clip_plane, 0), glm::normalize(normal)};
+  }
+  return clip;
+}
+
+Document read_files(const Options& options, Progress& progress) {
+  Document document;
+  cmd::Body body;
+  if (options.body.rig.empty()) {
+    if (cmd::wants_pose(options.pose) || !options.weights.empty())
+      throw Error("a pose needs a skeleton", "--rig", "name the rig");
+    body.file = read_volume(options.body.volume, progress);
+    cmd::warn(body.file.warnings);
+    std::optional<TissueTable> user;
+    if (!options.body.tissues.empty()) user = read_tissue_table(options.body.tissues);
+    body.tissues = merge_tissue_tables(body.file.tissues, user ? &*user : nullptr);
+    require_labels(body.file.volume, body.tissues, options.body.volume);
+    if (!options.body.bones.empty()) body.tissues = with_bones(std::move(body.tissues), options.body.bones);
+  } else {
+    body = cmd::read_body(options.body, progress);
+    document.armature = std::make_shared<const Armature>(std::move(body.rig));
+  }
+  document.volume = std::make_shared<const LabelVolume>(std::move(body.file.volume));
+  document.tissues = std::make_shared<const TissueTable>(std::move(body.tissues));
+  return document;
+}
+
+Document read_document(const Options& options, Progress& progress) {
+  if (!is_project(options.body.volume)) return read_files(options, progress);
+  if (!options.body.rig.empty() || !options.body.tissues.empty() || !options.body.bones.empty() ||
+      !options.weights.empty())
+    throw Error("a project has its own rig, tissues and weights", options.body.volume,
+                "leave out --rig, --tissues, --bones and --weights");
+  Project project = read_project(options.body.volume, progress);
+  cmd::warn(project.warnings);
+  Document& document = project.document;
+  if (!document.volume || !document.tissues)
+    throw Error("there is nothing to draw: the project has no volume", options.body.volume, "import one in the editor");
+  if (!document.armature && cmd::wants_pose(options.pose))
+    throw Error("a pose needs a skeleton", options.body.volume, "add one to the project");
+  return std::move(document);
+}
+
+std::shared_ptr<const Seams> seams_of(const Document& document, const TissueVoxels& tissue, const BoneParts& parts,
+                                      Progress& progress) {
+  if (document.seams) return document.seams;
+  return std::make_shared<const Seams>(
+      find_seams(*document.volume, tissue, *document.tissues, *document.armature, parts, progress));
+}
+
+SkinWeights weights_of(const Options& options, const Document& document, Progress& progress) {
+  if (document.weights) return *document.weights;
+  TissueVoxels tissue(*document.volume);
+  if (options.weights.empty()) {
+    const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress,
+                                        usable_bone_map(seam_source(document)));
+    tissue.set_seams(seams_of(document, tissue, parts, progress));
+    return diffuse_heat(*document.volume, tissue, *document.tissues, *document.armature, parts, {}, progress);
+  }
+  WeightsFile file = read_weights(options.weights, *document.volume, tissue, *document.armature);
+  cmd::warn(file.warnings);
+  return std::move(file.weights);
+}
+
+// The tissue where the bones carry it, in voxel coordinates of `grid`: so that a posed body is framed alike however it
+// is drawn.
+std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, const TissueVoxels& tissue,
+                                       const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest,
+                                       Blend blend) {
+  const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
+  const AffineTransform to_world = world_from_voxel(rest_grid), to_voxel = voxel_from_world(grid);
+  std::vector<std::array<glm::dvec3, 2>> boxes(tissue.bricks().size(), {glm::dvec3(1e300), glm::dvec3(-1e300)});
+  parallel_for(std::ssize(boxes), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end; ++brick) {
+      auto influence = weights.chunk(brick).begin();
+      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+        std::array<limber::BoneWeight, 4> influences;
+        int count = 0;
+        const Influence follows = *influence++;
+        for (; count < 4 && follows.weight[count]; ++count)
+          influences[count] = {follows.bone[count], double(follows.weight[count])};
+        const glm::dvec3 posed =
+            to_voxel * blend_point(blend, bones, {influences.data(), size_t(count)}, to_world * glm::dvec3(voxel));
+        boxes[brick] = {glm::min(boxes[brick][0], posed - 0.5), glm::max(boxes[brick][1], posed + 0.5)};
+      });
+    }
+  });
+  std::array<glm::dvec3, 2> all = boxes.at(0);
+  for (const auto& [low, high] : boxes) all = {glm::min(all[0], low), glm::max(all[1], high)};
+  return all;
+}
+
+// The body and its skeleton, posed.
+struct PosedScene {
+  Scene scene;
+  std::optional<std::array<glm::dvec3, 2>> tissue;  // where a pose carries it: voxel coordinates of the scene's volume
+};
+PosedScene posed_scene(const Options& options, const Document& document, Progress& progress) {
+  PosedScene result{{.volume = document.volume, .armature = document.armature}, {}};
+  Scene& scene = result.scene;
+  if (!document.armature) return result;
+  Pose pose = document.pose ? *document.pose : rest_pose(*document.armature);
+  if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
+  if (pose == rest_pose(*document.armature)) return result;
+  const SkinWeights weights = weights_of(options, document, progress);
+  const Blend blend = blend_named(options.method);
+  const Method method = blend == Blend::Linear  ? Method(LinearBlend{})
+                        : blend == Blend::Mixed ? Method(MixedBlend{})
+                                                : Method(DualQuaternion{});
+  const TissueVoxels tissue(*document.volume);
+  scene.posed_from_rest = posed_from_rest(*document.armature, pose);
+  if (options.preview) {
+    LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
+    scene.pose = preview.update(scene.posed_from_rest, blend);
+    result.tissue =
+        box_of_posed(document.volume->grid, document.volume->grid, tissue, weights, scene.posed_from_rest, blend);
+    return result;
+  }
+  const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress,
+                                      usable_bone_map(seam_source(document)));
+  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, method,
+                         {.seams = seams_of(document, tissue, parts, progress)}, progress);
+  scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
+  result.tissue =
+      box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);
+  return result;
+}
+
+// The world box of the tissue (and the clip box), which the picture is to show.
+std::array<glm::dvec3, 2> box_of_tissue(const PosedScene& posed, const render::Clip& clip) {
+  const LabelVolume& volume = *posed.scene.volume;
+  glm::dvec3 from, to;
+  if (posed.tissue) {
+    from = (*posed.tissue)[0], to = (*posed.tissue)[1];
+  } else {
+    glm::ivec3 low = volume.grid.size, high(-1);
+    size_t i = 0;
+    for (int z = 0; z < volume.grid.size.z; ++z)
+      for (int y = 0; y < volume.grid.size.y; ++y)
+        for (int x = 0; x < volume.grid.size.x; ++x, ++i)
+          if (volume.voxels[i] != 0)
+            low = glm::min(low, glm::ivec3(x, y, z)), high = glm::max(high, glm::ivec3(x, y, z));
+    if (high.x < 0) low = glm::ivec3(0), high = volume.grid.size - 1;
+    from = glm::dvec3(low) - 0.5;
+    to = glm::dvec3(high) + 0.5;
+  }
+  if (clip.box) {
+    from = glm::max(from, (*clip.box)[0]);
+    to = glm::max(glm::min(to, (*clip.box)[1]), from);
+  }
+  const AffineTransform to_world = world_from_voxel(volume.grid);
+  glm::dvec3 world_low(1e300), world_high(-1e300);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p =
+        to_world * glm::dvec3(corner & 1 ? to.x : from.x, corner & 2 ? to.y : from.y, corner & 4 ? to.z : from.z);
+    world_low = glm::min(world_low, p);
+    world_high = glm::max(world_high, p);
+  }
+  return {world_low, world_high};
+}
+
+Camera turned(const Camera& camera, double turn_degrees, double tilt_degrees) {
+  Camera result = camera;
+  const double radians = std::numbers::pi / 180;
+  const glm::dvec3 right = camera.world_from_view * glm::dvec3(1, 0, 0);
+  result.world_from_view = glm::normalize(glm::angleAxis(turn_degrees * radians, glm::dvec3(0, 0, 1)) *
+                                          glm::angleAxis(-tilt_degrees * radians, right) * camera.world_from_view);
+  return result;
+}
+
+Image picture_3d(Renderer& renderer, const Scene& scene, const Camera& camera, const glm::ivec2& size) {
+  View3D view(renderer);
+  for (double now = 0; now == 0 || !view.complete(); now += 1) view.draw(scene, camera, size, now);
+  return view.read();
+}
+
+Image picture_slice(Renderer& renderer, const PosedScene& posed, const Options& options, const glm::ivec2& size) {
+  static const std::map<std::string, SliceAxis> axes = {
+      {"axial", SliceAxis::Axial}, {"coronal", SliceAxis::Coronal}, {"sagittal", SliceAxis::Sagittal}};
+  const auto [low, high] = box_of_tissue(posed, {});
+  SliceCamera camera{.axis = axes.at(options.slice), .centre = (low + high) / 2.0};
+  const SliceFrame frame = frame_of(camera.axis);
+  if (options.at) camera.centre += frame.normal * (*options.at - glm::dot(camera.centre, frame.normal));
+  const double width = std::abs(glm::dot(high - low, frame.right)), height = std::abs(glm::dot(high - low, frame.down));
+  camera.millimetres_per_pixel = 1.06 * std::max({width / size.x, height / size.y, 1e-6}) / options.zoom;
+  SliceView view(renderer);
+  view.draw(posed.scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
+  return view.read();
+}
+
+// NAME-0000.png beside NAME.png
+std::string numbered(const std::string& path, int number) {
+  const std::filesystem::path whole(path);
+  char suffix[16];
+  std::snprintf(suffix, sizeof suffix, "-%04d", number);
+  return (whole.parent_path() / (whole.stem().string() + suffix + whole.extension().string())).string();
+}
+
+cmd::OptionFiles files_of_pictures(const Options& options, const std::string& name) {
+  cmd::OptionFiles files;
+  if (!options.turntable) files.written.emplace_back(name);
+  for (int i = 0; i < options.turntable.value_or(0); ++i) files.written.emplace_back(numbered(name, i));
+  return files;
+}
+
+void run(const Options& options) {
+  const glm::ivec2 size = size_of(options.size);
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  cmd::CommandProgress progress(options.run.progress);
+  check_place(options.turntable ? numbered(options.output, 0) : options.output);
+
+  const Document document = read_document(options, progress);
+  const Visibility visibility =
+      visibility_of(options, *document.tissues, document.visibility ? *document.visibility : Visibility{});
+  PosedScene posed = posed_scene(options, document, progress);
+  Scene& scene = posed.scene;
+  scene.looks = std::make_shared<const LabelLooks>(looks_of(*document.tissues, visibility));
+  scene.display = options.display;
+  scene.clip = clip_of(options, visibility);
+  scene.bone_shape = options.armature == "none"       ? BoneShape::None
+                     : options.armature == "stick"    ? BoneShape::Stick
+                     : options.armature == "cylinder" ? BoneShape::Cylinder
+                                                      : BoneShape::Octahedron;
+  scene.bones_in_front = options.display == Display::XRay;
+  scene.grid = options.grid;
+  scene.dark_background = !options.light;
+  scene.transparent_background = options.transparent;
+
+  const HeadlessContext context;
+  Renderer renderer;
+  if (!options.slice.empty()) {
+    write_png(picture_slice(renderer, posed, options, size), options.output);
+  } else {
+    Camera camera;
+    if (options.orthographic) camera.projection = Projection::Orthographic;
+    camera = turned(looking_from(options.view, camera), options.turn, options.tilt);
+    const auto [low, high] = box_of_tissue(posed, scene.clip);
+    camera = zoomed(framing(camera, low, high, double(size.x) / size.y), 1 / options.zoom);
+    const int pictures = options.turntable.value_or(1);
+    for (int i = 0; i < pictures; ++i) {
+      progress.update("pictures", double(i) / pictures);
+      const Image image = picture_3d(renderer, scene, turned(camera, 360.0 * i / pictures, 0), size);
+      write_png(image, options.turntable ? numbered(options.output, i) : options.output);
+    }
+  }
+  if (!renderer.note().empty()) cmd::warn(renderer.note());
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto* command = app.add_subcommand("render", "a picture of a volume or a project, no display needed");
+  auto options = std::make_shared<Options>();
+  command->add_option("VOLUME", options->body.volume, "label volume or project")->required();
+  cmd::writes(command->add_option("-o,--output", options->output, "PNG"), [options](const std::string& name) {
+    return files_of_pictures(*options, name);
+  })->required();
+  command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
+  command->add_option("--bones", options->body.bones, "labels that are bone, as in the file")
+      ->delimiter(',')
+      ->type_name("L,L");
+  command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--view", options->view, "from where")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, StandardView>{{"front", StandardView::Front},
+                                                                              {"back", StandardView::Back},
+                                                                              {"left", StandardView::Left},
+                                                                              {"right", StandardView::Right},
+                                                                              {"top", StandardView::Top},
+                                                                              {"bottom", StandardView::Bottom}}));
+  command->add_option("--turn", options->turn, "degrees about the vertical axis, from that view");
+  command->add_option("--tilt", options->tilt, "degrees down on it, from that view");
+  command->add_option("--zoom", options->zoom, "closer than what shows all")->check(CLI::Range(0.01, 100.0));
+  command->add_flag("--orthographic", options->orthographic, "without perspective");
+  command->add_option("--display", options->display, "solid, xray or tissue")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
+          {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
+  command->add_option("--hide", options->hide, "labels not shown, as in the file")->delimiter(',')->type_name("L,L");
+  command->add_option("--opacity", options->opacity, "of a label in the tissue display, 0 to 1")->type_name("L=A");
+  command->add_option("--clip-box", options->clip_box, "two corners, voxels: only what lies between is shown")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("X,Y,Z,X,Y,Z");
+  command->add_option("--clip-plane", options->clip_plane, "point and normal, mm: the normal's side is hidden")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("X,Y,Z,NX,NY,NZ");
+  command->add_option("--rig", options->body.rig, "rig to draw, and to pose by");
+  command->add_option("--armature", options->armature, "octahedron, stick, cylinder or none")
+      ->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
+  command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
+  cmd::add_pose_options(*command, options->pose);
+  command
+      ->add_option("--method", options->method,
+                   "of the pose: lbs (linear), dqs (dual quaternions) or mix (between the two)")
+      ->check(CLI::IsMember({"lbs", "dqs", "mix"}))
+      ->capture_default_str();
+  command->add_flag("--preview", options->preview,
+                    "the pose as the editor shows it while a bone is dragged: coarser, at once");
+  command->add_option("--slice", options->slice, "a slice instead")
+      ->check(CLI::IsMember({"axial", "coronal", "sagittal"}));
+  command->add_option("--at", options->at, "where the slice lies on its axis, mm (default: the middle)");
+  command->add_flag("--outline", options->outline, "only the borders of tissues in the slice");
+  command->add_option("--turntable", options->turntable, "N pictures all around, NAME-0000.png on")
+      ->check(CLI::Range(1, 9999));
+  command->add_flag("--transparent", options->transparent, "no background");
+  command->add_flag("--light", options->light, "the light theme's background");
+  command->add_flag("--grid", options->grid, "with the ground grid");
+  cmd::add_run_options(*command, options->run);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::editor

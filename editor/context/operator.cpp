@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+
+#include <algorithm>
+#include <new>
+
+#include "core/base/error.h"
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+namespace {
+
+// For Repeat and for the search, which offers what was used last and most.
+void note_use(Editor& editor, const Operator& op) {
+  if (op.id == "search.commands" || op.id == "edit.repeat_last" || op.id == "edit.adjust_last" ||
+      needs_pointer(editor, op))
+    return;
+  editor.last_operator = op.id;
+  auto& recent = editor.preferences.recent_commands;
+  std::erase(recent, op.id);
+  recent.insert(recent.begin(), op.id);
+  if (recent.size() > Preferences::kMostRecent) recent.pop_back();
+  editor.preferences.command_counts[op.id] += 1;
+}
+
+// Looking around and choosing do not touch the pose.
+bool goes_on_while_playing(const Operator& op) {
+  constexpr const char* kSuch[] = {"view.",    "slice.",  "select.", "motion.",  "workspace.",
+                                   "compare.", "search.", "help.",   "file.save"};
+  return std::any_of(std::begin(kSuch), std::end(kSuch), [&](const char* such) { return op.id.starts_with(such); });
+}
+
+}  // namespace
+
+const Operator* find_operator(const Editor& editor, std::string_view id) {
+  const auto found =
+      std::find_if(editor.operators.begin(), editor.operators.end(), [&](const Operator& op) { return op.id == id; });
+  return found == editor.operators.end() ? nullptr : &*found;
+}
+
+std::string why_not(const Editor& editor, const Operator& op) { return op.why_not ? op.why_not(editor) : ""; }
+
+bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act) {
+  try {
+    act(editor);
+    return true;
+  } catch (const Cancelled&) {
+  } catch (const Error& error) {
+    editor.messages.show_error(error.what(), label);
+  } catch (const std::bad_alloc&) {
+    editor.messages.show_error("There is not enough memory: " + label + ": close something, or use a coarser volume");
+  } catch (const std::exception& error) {
+    editor.messages.show_error(std::string("A mistake of the program itself: ") + label + ": " + error.what());
+  }
+  return false;
+}
+
+void run(Editor& editor, const Operator& op) {
+  editor.touch();
+  if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
+  if (!goes_on_while_playing(op)) editor.before_change(editor);
+  if (attempt(editor, op.label, op.run)) note_use(editor, op);
+}
+
+bool needs_pointer(const Editor& editor, const Operator& op) {
+  bool any = false;
+  for (const auto& [context, bindings] : editor.keymap.contexts)
+    for (const Binding& binding : bindings) {
+      if (binding.operator_id != op.id) continue;
+      if (binding.chord.kind == Chord::Kind::Key) return false;
+      any = true;
+    }
+  return any;
+}
+
+void run(Editor& editor, std::string_view id) {
+  if (const Operator* op = find_operator(editor, id)) run(editor, *op);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The regions of the window and what stands in them: one file each. Panels draw and ask; what the user wants goes
+// through an operator.
+#pragma once
+
+#include "editor/context/editor.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+// Regions
+void draw_top_bar(Editor& editor);
+void draw_tool_header(Editor& editor);
+void draw_tool_strip(Editor& editor);
+void draw_views_region(Editor& editor);
+void draw_sidebar(Editor& editor);
+void draw_bottom(Editor& editor);
+void draw_status_bar(Editor& editor);
+void draw_splitters(Editor& editor);
+void draw_start_screen(Editor& editor);
+void draw_tour(Editor& editor);
+
+// In the views
+void draw_body_overlay(Editor& editor, const ViewPlace& place);
+void draw_slice_overlay(Editor& editor, const ViewPlace& place);
+bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
+bool draw_fem_legend(Editor& editor, const Rect& view);     // the same of finite elements
+// Of marked voxels: where volumes differ, or claim a voxel twice. Returns how much of the corner it takes, in pixels at
+// scale 1.
+float draw_marks_legend(Editor& editor, const Rect& view);
+void draw_side_chip(Editor& editor, const ViewPlace& place);  // in a title's place: whose side it is
+void put_swatch(const Look& look, const glm::vec2& corner, Colour colour);
+void draw_weights_at_pointer(Editor& editor);
+void draw_empty_view(Editor& editor, const Rect& rect);
+void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
+void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state);
+// Finds what the pointer is over.
+void hover_views(Editor& editor);
+
+// Sections of the sidebar
+void draw_outliner(Editor& editor, Column& column);
+void draw_bones(Editor& editor, Column& column);
+void draw_tissues(Editor& editor, Column& column);
+void draw_tissue(Editor& editor, Column& column);
+void draw_bone(Editor& editor, Column& column);
+void draw_fit_check(Editor& editor, Column& column);
+void draw_display(Editor& editor, Column& column);
+void draw_clipping(Editor& editor, Column& column);
+void draw_under_cursor(Editor& editor, Column& column);
+void draw_motion(Editor& editor, Column& column);
+void draw_layers(Editor& editor, Column& column);
+void draw_weight_problems(Editor& editor, Column& column);
+void draw_seam_section(Editor& editor, Column& column);
+void draw_bone_table(Editor& editor, Column& column);
+void draw_brush_section(Editor& editor, Column& column);
+void draw_history(Editor& editor, Column& column);
+void draw_live_volume(Editor& editor, Column& column);
+void draw_steps(Editor& editor, Column& column);
+void draw_running(Editor& editor, Column& column);
+void draw_resample(Editor& editor, Column& column);
+void draw_gates(Editor& editor, Column& column);
+void draw_provenance(Editor& editor, Column& column);
+
+// In the bottom area
+void draw_console(Editor& editor, const Rect& rect);
+void draw_results(Editor& editor, const Rect& rect);
+void draw_change_plot(Editor& editor, const Rect& rect);
+void draw_timeline(Editor& editor, const Rect& rect);
+
+// In the status bar: the job at work takes its place left of `right`; returns what is left.
+float draw_job_slot(Editor& editor, const Rect& bar, float right);
+
+// Messages
+void draw_toasts(Editor& editor);
+void draw_error_message(Editor& editor);
+
+}  // namespace limber::editor

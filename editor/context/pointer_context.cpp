@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/pointer_context.h"
+
+#include <imgui_internal.h>
+
+namespace limber::editor {
+
+namespace {
+
+// The sidebar and the area below the views have keys of their own, the views' are not theirs.
+bool is_over(const char* region) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  return window && std::string_view(window->RootWindow->Name) == region;
+}
+
+}  // namespace
+
+bool over_timeline(const Editor& editor) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  return window && std::string_view(window->RootWindow->Name) == "##bottom" &&
+         editor.timeline_area.contains(editor.input.pointer) && editor.arrangement().timeline &&
+         !editor.arrangement().console;
+}
+
+const ViewPlace* hovered_view(const Editor& editor) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  if (window && std::string_view(window->RootWindow->Name) != "##views") return nullptr;
+  return editor.layout.view_at(editor.input.pointer);
+}
+
+std::vector<std::string> contexts(const Editor& editor) {
+  std::vector<std::string> contexts;
+  const ViewPlace* view = hovered_view(editor);
+  if (view && view->id != ViewId::Body) contexts.push_back("slice");
+  if (view && view->id == ViewId::Body) contexts.push_back("view3d");
+  if (over_timeline(editor)) contexts.push_back("timeline");
+  if (is_over("##sidebar")) contexts.push_back("sidebar");
+  constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};
+  contexts.push_back(kWorkspaces[static_cast<int>(editor.workspace)]);
+  contexts.push_back("select");
+  if (!view && !is_over("##sidebar") && !is_over("##bottom")) contexts.push_back("view3d");
+  contexts.push_back("global");
+  return contexts;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/dialogs/form_dialog.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "editor/dialogs/dialog.h"
+#include "editor/dialogs/redo_last_operator.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture = 240;
+constexpr std::size_t kMostBeside = 4;
+constexpr int kMostLines = 5;  // of what comes out
+
+bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
+  const Look& look = editor.look;
+  float widest = 0;
+  for (const std::string& choice : field.choices) widest = std::max(widest, width_of_button(editor, {"", choice}));
+  const float width = std::round(rect.width() / static_cast<float>(field.choices.size()));
+  if (field.choices.size() > kMostBeside || widest > width) {
+    const bool changed = choice_field(editor, rect, field.choices, field.chosen);
+    if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) &&
+        !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId))
+      tooltip(editor, rect, field.label, field.sentence);
+    return changed;
+  }
+  const int before = field.chosen;
+  for (int i = 0; i < std::ssize(field.choices); ++i) {
+    const Rect place{{rect.low.x + width * static_cast<float>(i), rect.low.y},
+                     {rect.low.x + width * static_cast<float>(i + 1) - look.px(1), rect.high.y}};
+    if (button(editor, field.choices[i], place,
+               {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain}))
+      field.chosen = i;
+    if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.sentence);
+  }
+  return field.chosen != before;
+}
+
+class Form final : public Dialog {
+ public:
+  explicit Form(FormRequest request) : request_(std::move(request)) {}
+
+  void draw(Editor& editor) override;
+  bool key(Editor&, const Chord& chord) override {
+    if (chord.key != Key::Return && chord.key != Key::NumEnter) return false;
+    return accept_ = true;
+  }
+
+ private:
+  FormRequest request_;
+  bool accept_ = false;
+  bool focused_ = false;               // the first field that is typed into has been given the keyboard
+  std::string words_;                  // of the last picture: what it is laid out for
+  std::vector<std::string> problems_;  // of each field, as they stood when no button was down: what it is laid out for
+};
+
+// What is wrong with a number; empty where nothing is.
+std::string problem_of(const FormField& field) {
+  if (field.kind != FormField::Kind::Number || (field.value >= field.low && field.value <= field.high)) return "";
+  char low[48], high[48];
+  std::snprintf(low, sizeof low, field.format, field.low);
+  std::snprintf(high, sizeof high, field.format, field.high);
+  return std::string("From ") + low + " to " + high + (*field.unit ? std::string(" ") + field.unit : "") + ".";
+}
+
+// Without what is wrong with it; at scale 1.
+float height_of(const Look& look, const FormField& field) {
+  if (field.kind != FormField::Kind::Fact) return kRow;
+  return std::max(
+      kRow, 16 + height_of_wrapped(look.fonts.regular, field.text, look.px(kWidth - 36 - kLabel - 8)) / look.scale);
+}
+
+void Form::draw(Editor& editor) {
+  const Look& look = editor.look;
+  const float sentence =
+      height_of_wrapped(look.fonts.regular, request_.sentence, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
+  // Nothing moves under a pressed button.
+  if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
+    problems_.clear();
+    for (const FormField& field : request_.fields) problems_.push_back(problem_of(field));
+  }
+  float fields = 0;
+  for (std::size_t i = 0; i < problems_.size(); ++i)
+    fields += height_of(look, request_.fields[i]) + (problems_[i].empty() ? 0 : kProblem);
+  const float said = std::max(
+      52.0f, 20 + height_of_wrapped(look.fonts.small, words_, look.px(kWidth - 36 - 24), kMostLines) / look.scale);
+  Rect rect = begin_dialog(editor, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0),
+                           36 + 18 + sentence + fields + said + 28 + 18);
+  if (request_.picture) {
+    const float left = rect.high.x - look.px(kPicture);
+    request_.picture(editor, {{left, rect.low.y}, rect.high}, request_.fields);
+    rect.high.x = left - look.px(18);
+  }
+  put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
+  float y = rect.low.y + look.px(sentence);
+  for (std::size_t i = 0; i < request_.fields.size(); ++i) {
+    FormField& field = request_.fields[i];
+    const bool typed_into = field.kind == FormField::Kind::Text || field.kind == FormField::Kind::Number;
+    const float end = y + look.px(height_of(look, field));
+    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, end}}, look.px(kLabel),
+               typed_into && !std::exchange(focused_, true), OutOfRange::Stays);
+    y = end;
+    if (const std::string& wrong = problems_[i]; !wrong.empty()) {
+      put_text(editor, look.fonts.small, look.theme.warn,
+               Rect{{rect.low.x + look.px(kLabel + 8), y - look.px(3)}, {rect.high.x, y + look.px(kProblem - 3)}},
+               wrong);
+      y += look.px(kProblem);
+    }
+  }
+
+  std::string outcome, problem;
+  bool ready = std::all_of(request_.fields.begin(), request_.fields.end(),
+                           [](const FormField& field) { return problem_of(field).empty(); });
+  try {
+    if (request_.outcome && ready) outcome = request_.outcome(editor, request_.fields);
+  } catch (const Error& error) {
+    problem = error.what();
+    ready = false;
+  } catch (const NotYet& waiting) {
+    outcome = waiting.words;
+    ready = false;
+  }
+  const std::string& words = problem.empty() ? outcome : problem;
+  if (words != words_ && !editor.input.down(MouseButton::Left)) {
+    words_ = words;
+    editor.touch();
+  }
+  float x = rect.low.x;
+  if (!problem.empty()) {
+    put_icon(look.fonts.regular, look.theme.warn, Rect{{x, y + look.px(8)}, {x + look.px(18), y + look.px(26)}},
+             icon::kWarning);
+    x += look.px(24);
+  }
+  put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)},
+              rect.high.x - x, words, kMostLines);
+
+  const ButtonLook action{"", request_.action, ButtonStyle::Primary, ready};
+  const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28),
+              cancel = look.px(80);
+  const Rect primary{{rect.high.x - width, low}, rect.high};
+  const bool pressed = button(editor, request_.action, primary, action);
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    tooltip(editor, primary, request_.action, ready ? request_.sentence : problem,
+            Chord{Chord::Kind::Key, {}, Key::Return});
+  if (button(editor, "Cancel", {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}},
+             {"", "Cancel"}))
+    editor.close_dialog();
+  end_dialog(editor);
+
+  if (!(pressed || std::exchange(accept_, false)) || !ready) return;
+  editor.close_dialog();
+  attempt(editor, request_.title, [this](Editor& e) { act_adjustably(e, request_.fields, request_.act); });
+}
+
+}  // namespace
+
+bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus, OutOfRange numbers) {
+  const Look& look = editor.look;
+  const PathScope path(editor, field.label);
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + label_width, row.high.y}},
+           field.label);
+  const Rect rect{{row.low.x + label_width + look.px(8), row.low.y + look.px(4)},
+                  {row.high.x, row.high.y - look.px(4)}};
+  if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
+  if (field.kind == FormField::Kind::Text) return text_field(editor, "text", rect, field.text, "", focus);
+  if (field.kind == FormField::Kind::Fact) {
+    const int lines = std::max(1, static_cast<int>((row.height() - look.px(12)) / look.fonts.regular->FontSize));
+    put_wrapped(editor, look.fonts.regular, look.theme.text, {rect.low.x, row.low.y + look.px(8)}, rect.width(),
+                field.text, lines);
+    return false;
+  }
+  bool committed = false;
+  if (numbers == OutOfRange::Clamped)
+    number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+  else
+    committed =
+        judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or click it and type.");
+  return committed;
+}
+
+FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format,
+                    const char* unit) {
+  FormField field{std::move(label), std::move(sentence)};
+  field.value = value;
+  field.low = low;
+  field.high = high;
+  field.format = format;
+  field.unit = unit;
+  return field;
+}
+
+FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen) {
+  FormField field{std::move(label), std::move(sentence), FormField::Kind::Choice};
+  field.choices = std::move(choices);
+  field.chosen = chosen;
+  return field;
+}
+
+FormField text_of(std::string label, std::string sentence, std::string text) {
+  FormField field{std::move(label), std::move(sentence), FormField::Kind::Text};
+  field.text = std::move(text);
+  return field;
+}
+
+FormField fact_of(std::string label, std::string text) {
+  FormField field{std::move(label), ""};
+  field.kind = FormField::Kind::Fact;
+  field.text = std::move(text);
+  return field;
+}
+
+std::unique_ptr<Dialog> make_form(FormRequest request) { return std::make_unique<Form>(std::move(request)); }
+
+}  // namespace limber::editor

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/dialogs/text_viewer.h"
+
+#include <utility>
+
+#include "editor/dialogs/dialog.h"
+#include "editor/ui/asset_path.h"
+#include "editor/ui/markdown.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 760, kHeight = 600, kChapters = 200, kMargin = 22;
+
+class Reader final : public Dialog {
+ public:
+  Reader(std::string title, std::string text) : title_(std::move(title)), text_(std::move(text)) {}
+
+  void draw(Editor& editor) override {
+    const Look& look = editor.look;
+    const Rect rect = begin_dialog(editor, title_, kWidth, kHeight);
+    const Rect body{rect.low - look.px(18) + glm::vec2(look.line(), 0), rect.high + look.px(18) - look.line()};
+    if (blocks_.empty())
+      blocks_ = parse_markdown(text_, [&](const std::string& id) {
+        const auto chord = editor.keymap.chord_of(id);
+        return chord ? to_text(*chord) : std::string("(no key)");
+      });
+    take_keys(editor, body.height());
+    const float middle = body.low.x + look.px(kChapters);
+    draw_chapters(editor, {body.low, {middle, body.high.y}});
+    fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.line2);
+    draw_text(editor, {{middle + look.line(), body.low.y}, body.high});
+    end_dialog(editor);
+  }
+
+ private:
+  bool is_chapter(int block) const { return blocks_[block].kind == Block::Kind::Heading; }
+
+  void take_keys(Editor& editor, float page) {
+    if (!editor.messages.errors.empty()) return;
+    const float line = editor.look.px(48);
+    const std::pair<Key, float> moves[] = {{Key::Down, line},
+                                           {Key::Up, -line},
+                                           {Key::PageDown, page - line},
+                                           {Key::PageUp, line - page},
+                                           {Key::Space, page - line},
+                                           {Key::Home, -1e9f},
+                                           {Key::End, 1e9f}};
+    for (const auto& [key, by] : moves)
+      if (ImGui::IsKeyPressed(static_cast<int>(key))) scroll_by_ += by;
+  }
+
+  void draw_chapters(Editor& editor, const Rect& rect) {
+    const Look& look = editor.look;
+    ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), look.theme.head, look.px(8),
+                                              ImDrawFlags_RoundCornersBottomLeft);
+    Column column(editor, "chapters", rect);
+    column.space(8);
+    for (int b = 0; b < std::ssize(blocks_); ++b) {
+      if (!is_chapter(b)) continue;
+      const std::string title = plain_text(blocks_[b]);
+      const Rect row = column.row(28);
+      const Pressed pressed = press_area(editor, title, row);
+      if (b == seen_chapter_) fill(row, look.theme.accent_soft);
+      else if (pressed.hovered) fill(row, look.theme.hover);
+      put_text(editor, look.fonts.regular, b == seen_chapter_ ? look.theme.accent_text : look.theme.text,
+               Rect{{row.low.x + look.px(14), row.low.y}, {row.high.x - look.px(6), row.high.y}}, title);
+      if (pressed.clicked) go_to_ = b;
+    }
+  }
+
+  void draw_text(Editor& editor, const Rect& rect) {
+    const Look& look = editor.look;
+    Column column(editor, "text", rect);
+    ImGui::SetScrollY(ImGui::GetScrollY() + std::exchange(scroll_by_, 0.0f));
+    const float top = ImGui::GetCursorScreenPos().y, left = rect.low.x + look.px(kMargin),
+                right = rect.high.x - look.px(kMargin + 6);
+    float y = top + look.px(16);
+    seen_chapter_ = -1;
+    for (int b = 0; b < std::ssize(blocks_); ++b) {
+      const Block& block = blocks_[b];
+      if (is_chapter(b)) {
+        y += look.px(14);
+        if (std::exchange(go_to_, go_to_ == b ? -1 : go_to_) == b) {
+          ImGui::SetScrollY(y - top - look.px(10));
+          editor.touch();
+        }
+        if (seen_chapter_ < 0 || y < rect.low.y + rect.height() / 3) seen_chapter_ = b;
+      }
+      y = draw_block(editor, block, left, right, y) + look.px(block.kind == Block::Kind::Point ? 5 : 10);
+    }
+    column.space((y - top) / look.scale + 16);
+  }
+
+  // Word after word, in as many lines as they need; returns the lower end.
+  float draw_block(Editor& editor, const Block& block, float left, float right, float y) {
+    const Look& look = editor.look;
+    const bool big = block.kind == Block::Kind::Title, heading = block.kind == Block::Kind::Heading;
+    const float line = big ? look.px(40) : look.px(22);
+    if (block.kind == Block::Kind::Point) {
+      fill({{left + look.px(4), y + look.px(9)}, {left + look.px(8), y + look.px(13)}}, look.theme.text3, look.px(2));
+      left += look.px(18);
+    }
+    float x = left;
+    for (const Run& run : block.runs) {
+      const bool code = run.style == Run::Style::Code || run.style == Run::Style::Key;
+      ImFont* font = big                                          ? look.fonts.title
+                     : heading || run.style == Run::Style::Strong ? look.fonts.semibold
+                     : code                                       ? look.fonts.mono
+                                                                  : look.fonts.regular;
+      const Colour colour = code ? look.theme.accent_text
+                            : heading || big || run.style == Run::Style::Strong || run.style == Run::Style::Name
+                                ? look.theme.text
+                                : look.theme.text2;
+      const float blank = text_size(font, " ").x;
+      for (std::size_t at = 0; at < run.text.size();) {
+        if (run.text[at] == ' ') {
+          if (x > left) x += blank;
+          ++at;
+          continue;
+        }
+        const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
+        const std::string_view word = std::string_view(run.text).substr(at, end - at);
+        const float width = text_size(font, word).x;
+        if (x > left && x + width > right) {
+          x = left;
+          y += line;
+        }
+        ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
+                                            im(glm::round(glm::vec2(x, y + (line - font->FontSize) / 2))), colour,
+                                            word.data(), word.data() + word.size());
+        x += width;
+        at = end;
+      }
+    }
+    editor.widgets.add_text(plain_text(block));
+    return y + line;
+  }
+
+  std::string title_, text_;
+  std::vector<Block> blocks_;
+  int go_to_ = -1, seen_chapter_ = -1;
+  float scroll_by_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name) {
+  return std::make_unique<Reader>(title, read_file(asset(asset_name)));
+}
+
+}  // namespace limber::editor

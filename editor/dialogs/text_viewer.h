@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The program's own documents, read in the window: chapters at the left, the text beside them.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+// `asset_name`: a Markdown file of the assets. Throws Error when it is missing.
+std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name);
+
+}  // namespace limber::editor

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/file_browser/bookmarks.h"
+
+#include <cstdlib>
+
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kRecentFolders = 6;
+
+// Disks and sticks that are mounted where desktops mount them.
+void add_volumes(std::vector<Place>& places) {
+  const char* user = std::getenv("USER");
+  for (const Path& base : {user ? Path("/media") / user : Path("/media"),
+                           user ? Path("/run/media") / user : Path("/run/media"), Path("/mnt")}) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(base, error)) {
+      if (places.size() > 12) return;
+      if (entry.is_directory(error)) places.push_back({icon::kVolume, entry.path().filename().string(), entry.path()});
+    }
+  }
+}
+
+}  // namespace
+
+bool is_folder(const Path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+std::vector<Place> places_of(const Editor& editor) {
+  std::vector<Place> places;
+  const auto add = [&](const char* icon, const std::string& name, const Path& path) {
+    if (!is_folder(path)) return;
+    for (const Place& place : places)
+      if (place.path == path) return;
+    places.push_back({icon, name, path});
+  };
+  const Path home = home_folder();
+  if (!editor.project_path.empty()) add(icon::kFolder, "Project's folder", editor.project_path.parent_path());
+  add(icon::kFolder, "Home", home);
+  for (const char* name : {"Desktop", "Documents", "Downloads"}) add(icon::kFolder, name, home / name);
+  add(icon::kVolume, "Computer", "/");
+  add_volumes(places);
+  const std::size_t most = places.size() + kRecentFolders;
+  const auto add_recent = [&](const Path& folder) {
+    if (places.size() < most) add(icon::kHistory, folder.filename().string(), folder);
+  };
+  for (const Path& folder : editor.remembered.recent_folders) add_recent(folder);
+  for (const Recent& one : editor.remembered.recents) add_recent(one.path.parent_path());
+  return places;
+}
+
+}  // namespace limber::editor

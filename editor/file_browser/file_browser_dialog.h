@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The dialog behind browse(): file_browser.cpp is what it does, file_browser_view.cpp how it looks.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "editor/file_browser/bookmarks.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/ui/widgets.h"
+
+namespace limber::editor {
+
+class FileBrowser final : public Dialog {
+ public:
+  FileBrowser(Editor& editor, FileRequest request);
+  void escape(Editor& editor) override;
+  void draw(Editor& editor) override;
+
+ private:
+  enum class Focus { List, Places };
+  bool saving() const { return request_.kind == FileRequest::Kind::Save; }
+  bool folders_only() const { return request_.kind == FileRequest::Kind::OpenFolder; }
+
+  void go_to(Editor& editor, const Path& folder);
+  // What has been read meanwhile, and the rows it makes.
+  void follow(Editor& editor);
+  void arrange_rows(Editor& editor);
+  const DirectoryEntry* chosen() const { return row_ < std::ssize(rows_) ? &contents_.entries[rows_[row_]] : nullptr; }
+  void select(const std::string& name);
+  bool path_is_typed() const { return search_.starts_with("/") || search_.starts_with("~"); }
+
+  // Keys: everything without a mouse.
+  void take_keys(Editor& editor);
+  void move_row(Editor&);
+  // A field that is being typed in knows only what was typed: a text from elsewhere makes it another field.
+  void set_name(const std::string& name);
+  void take_ending(const FileFilter& filter);
+  void go_up(Editor& editor);
+  void toggle_hidden(Editor& editor);
+
+  void leave(Editor& editor);
+  void finish(Editor& editor, const Path& path);
+  // Return or the primary button.
+  void accept(Editor& editor);
+  void accept_typed(Editor& editor);
+  void accept_name(Editor& editor);
+  void enter(Editor& editor, const DirectoryEntry& entry);
+  void make_folder(Editor& editor);
+
+  void draw_places(Editor& editor, const Rect& rect);
+  // Crumbs, from the left as many of the last as fit; at the right the search.
+  void draw_path(Editor& editor, const Rect& rect);
+  static std::string crumb(const Path& path);
+  void draw_search(Editor& editor, const Rect& rect);
+  // The one field of text has the keyboard whenever nothing else is being pressed.
+  bool wants_focus(Editor& editor);
+  void draw_list(Editor& editor, const Rect& rect);
+  // True when it is to be opened.
+  bool draw_row(Editor& editor, const DirectoryEntry& entry, const Rect& row, int index, const glm::vec2& columns,
+                std::int64_t now);
+  static const char* icon_of(const std::string& name);
+  void open_row(Editor& editor, int index);
+  void column_head(Editor& editor, const char* title, const Rect& rect, SortBy by, Align align);
+  bool offers_dicom() const { return request_.takes_dicom && contents_.holds_dicom; }
+  float draw_dicom_offer(Editor& editor, const Rect& rect);
+  void finish_folder(Editor& editor);
+  float draw_new_folder(Editor& editor, const Rect& rect);
+  void draw_empty(Editor& editor, const Rect& rect);
+  void draw_foot(Editor& editor, const Rect& rect);
+  float draw_filter(Editor& editor, const Rect& rect);
+  void draw_replace(Editor& editor, const Rect& rect);
+
+  FileRequest request_;
+  std::vector<Place> places_;
+  Path folder_;
+  std::unique_ptr<DirectoryReader> reader_;
+  DirectoryContents contents_;
+  std::vector<int> rows_;  // shown, as places in the contents
+  std::string search_, name_, remark_, select_after_reading_;
+  std::optional<std::string> new_folder_;
+  std::optional<Path> replace_;
+  SortBy by_ = SortBy::Name;
+  Focus focus_ = Focus::List;
+  int row_ = 0, place_ = 0, filter_ = 0, text_ = 0;
+  bool falling_ = false, changed_ = true, reveal_ = false, refocus_ = true, row_moved_ = false, filter_open_ = false,
+       focus_new_folder_ = false;
+  bool text_was_empty_ = true;
+  bool seen_ = false;       // the key that opened it does nothing in it
+  bool had_error_ = false;  // keys belong to the message above
+};
+
+}  // namespace limber::editor

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/file_browser/thumbnails.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace fs = std::filesystem;
+
+std::string thumbnail_png(Editor& editor) {
+  Views& views = *editor.views;
+  if (!editor.document().volume) return "";
+  update_scene(views, editor.document(), editor.selection, true);
+  render::Scene scene = views.scene;
+  scene.grid = false;
+  scene.outlined.reset();
+  scene.dark_background = true;
+  render::View3D picture(views.renderer);
+  // The second call comes after a long rest: a whole picture at once.
+  for (double now = 0; now == 0 || !picture.complete(); now += 1)
+    picture.draw(scene, views.body.camera, kThumbnailSize, now, 1);
+  return render::png_of(picture.read());
+}
+
+Path cached_thumbnail(const Path& cache, const Path& path) {
+  std::error_code error;
+  const auto changed = fs::last_write_time(path, error).time_since_epoch().count();
+  const std::string key = path.string() + " " + std::to_string(error ? 0 : changed);
+  return cache / "thumbnails" / (sha256_of_bytes(key.data(), key.size()).substr(0, 24) + ".png");
+}
+
+void keep_thumbnail(Editor& editor, const Path& path) {
+  if (editor.folders.cache.empty()) return;
+  try {
+    const Path file = cached_thumbnail(editor.folders.cache, path);
+    fs::create_directories(file.parent_path());
+    write_file_atomically(file, thumbnail_png(editor));
+  } catch (const Error&) {
+  } catch (const fs::filesystem_error&) {
+  }
+}
+
+void look_at_recents(Editor& editor) {
+  start_task(editor, "", [recents = editor.remembered.recents, cache = editor.folders.cache](Progress&) -> Finish {
+    auto facts = std::make_shared<std::map<Path, RecentFacts>>();
+    for (std::size_t i = 0; i < std::min<std::size_t>(recents.size(), 8); ++i) {
+      const Path& path = recents[i].path;
+      RecentFacts& one = (*facts)[path];
+      std::error_code error;
+      one.missing = !fs::exists(path, error);
+      if (one.missing) continue;
+      try {
+        const std::string packed = path.extension() == ".limber" ? read_thumbnail(path) : "";
+        if (!packed.empty()) one.picture = std::make_shared<render::Image>(render::parse_png(packed, path.string()));
+        else if (!cache.empty())
+          one.picture = std::make_shared<render::Image>(render::read_png(cached_thumbnail(cache, path)));
+      } catch (const Error&) {  // none
+      }
+    }
+    return [facts](Editor& e) {
+      for (const auto& [path, one] : *facts) e.pictures.forget("recent " + path.string());
+      e.recent_facts = std::move(*facts);
+    };
+  });
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/export.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/base/output_files.h"
+#include "core/export/exporter.h"
+#include "core/export/gltf.h"
+#include "core/export/tet_phantom.h"
+#include "core/motion/bvh.h"
+#include "core/motion/motion_edit.h"
+#include "core/pose/pose_io.h"
+#include "core/report/fem_measures.h"
+#include "core/rig_io/rig_io.h"
+#include "core/skin/weights_io.h"
+#include "core/study/session_page.h"
+#include "core/volume_io/volume_io.h"
+#include "editor/dialogs/confirm_dialog.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/file_browser/temp_folder.h"
+#include "editor/files/study_pictures.h"
+#include "editor/resample/results.h"
+#include "editor/ui/icons.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+// As it moves the rig; without a rig, the motion itself.
+Motion motion_of_clip(const Document& document) {
+  const std::shared_ptr<const Clip> clip = document.clips[static_cast<std::size_t>(document.clip)];
+  if (!document.armature) return *clip->motion;
+  const ClipOnRig on_rig(clip, document.armature);
+  const int frames = std::max(0, clip->range_end - clip->range_start) + 1;
+  return motion_of_poses(*document.armature, frames, clip->rate,
+                         [&](int frame) { return on_rig.at(clip->range_start + frame); });
+}
+
+void write_export(ExportKind kind, const Document& document, const Path& path, Progress& progress) {
+  switch (kind) {
+    case ExportKind::Volume:
+      return write_volume(*document.volume, path, *document.tissues,
+                          document.volume_type ? *document.volume_type : FileType{});
+    case ExportKind::Tissues: return write_tissue_table(*document.tissues, path);
+    case ExportKind::Rig: return write_armature(*document.armature, path);
+    case ExportKind::Weights:
+      return write_weights(*document.weights, *document.volume, TissueVoxels(*document.volume), path);
+    case ExportKind::Pose: return write_pose(*document.pose, *document.armature, path);
+    case ExportKind::Motion: return write_bvh(motion_of_clip(document), path);
+    case ExportKind::Gltf:
+      return write_glb({*document.volume, *document.tissues, *document.armature, *document.weights}, document.clips,
+                       path, {}, progress);
+  }
+}
+
+void check_export(ExportKind kind, const Path& path) {
+  if (kind == ExportKind::Volume) check_writable(path);
+  else if (kind == ExportKind::Rig) check_armature_writable(path);
+  else if (kind == ExportKind::Weights) check_weights_writable(path);
+  else check_place(path);
+}
+
+// A picture of the body, drawn to its end.
+render::Image picture_of_body(Views& views, const render::Camera& camera, const glm::ivec2& size) {
+  render::View3D picture(views.renderer);
+  for (double now = 0; now == 0 || !picture.complete(); now += 1) picture.draw(views.scene, camera, size, now, 1);
+  return picture.read();
+}
+
+glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
+  const Rect* place = editor.layout.place_of(id);
+  return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
+}
+
+// Pictures that the editor's thread has drawn (the context is its own), for the task that writes them.
+struct TurntableBoard {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<render::Image> picture;
+  bool over = false;
+};
+
+Path numbered(const Path& path, int number) {
+  char suffix[16];
+  std::snprintf(suffix, sizeof suffix, "-%04d", number);
+  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+}  // namespace
+
+std::string why_not_export(const Editor& editor, ExportKind kind) {
+  const Document& document = editor.document();
+  switch (kind) {
+    case ExportKind::Volume:
+    case ExportKind::Tissues: return document.volume ? "" : "Open a volume first";
+    case ExportKind::Rig: return document.armature ? "" : "There is no rig yet";
+    case ExportKind::Weights: return document.weights ? "" : "There are no weights yet";
+    case ExportKind::Pose: return document.pose ? "" : "There is no pose yet";
+    case ExportKind::Motion:
+      return document.shown_clip() && (document.armature || document.shown_clip()->motion) ? ""
+                                                                                           : "There is no motion yet";
+    case ExportKind::Gltf:
+      return !document.volume     ? "Open a volume first"
+             : !document.armature ? "There is no rig yet"
+             : document.weights   ? ""
+                                  : "There are no weights yet";
+  }
+  return "";
+}
+
+void export_file(Editor& editor, ExportKind kind, const Path& path) {
+  check_export(kind, path);
+  start_task(editor, "Export " + path.filename().string(),
+             [kind, path, document = editor.document()](Progress& progress) -> Finish {
+               progress.update("write", 0);
+               write_export(kind, document, path, progress);
+               return [path](Editor& e) {
+                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+               };
+             });
+}
+
+namespace {
+
+// Of the label that most rest voxels in a tet have.
+TetMesh posed_mesh(const Result& result, const TissueTable& tissues) {
+  const SolvedMesh& solved = *result.solved;
+  const LabelVolume& rest = *result.from_volume;
+  const TissueVoxels tissue(rest);
+  const std::vector<std::int32_t> tets = tets_of_voxels(solved.mesh.tets.T, solved.mesh.tets.V, rest.grid, tissue);
+  std::vector<std::map<Label, int>> counts(static_cast<std::size_t>(solved.mesh.tets.T.rows()));
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& voxel) {
+    if (const std::int32_t tet = tets[static_cast<std::size_t>(place)]; tet >= 0)
+      ++counts[static_cast<std::size_t>(tet)][rest.at(voxel)];
+  });
+  std::vector<Label> labels;
+  for (const auto& count : counts)
+    labels.push_back(count.empty() ? Label{0}
+                                   : std::max_element(count.begin(), count.end(), [](const auto& x, const auto& y) {
+                                       return x.second < y.second;
+                                     })->first);
+  return organ_mesh(solved.V, solved.mesh.tets.T, labels, tissues);
+}
+
+std::vector<TissueMaterial> materials_at(const TissueTable& tissues, double frequency) {
+  TissueMaterials found = tissue_materials(tissues, read_dielectric_table(), frequency);
+  std::string unmatched;
+  for (const std::string& name : found.unmatched) unmatched += (unmatched.empty() ? "" : ", ") + name;
+  if (!unmatched.empty())
+    throw Error("no dielectric properties are known of: " + unmatched, "tissues",
+                "rename or merge them, or convert the exported volume with `limber convert --properties`");
+  return std::move(found.materials);
+}
+
+bool has_mesh(const Result& result) { return result.solved && result.from_volume; }
+
+void write_with(const Exporter& exporter, const Result& result, const TissueTable& tissues, const Path& path,
+                double frequency, Progress& progress, std::vector<std::string>& warnings) {
+  std::vector<TissueMaterial> materials;
+  if (exporter.needs_frequency) materials = materials_at(tissues, frequency);
+  if (std::string text = stand_ins_text(materials); !text.empty()) warnings.push_back(std::move(text));
+  std::optional<TetMesh> mesh;
+  if (exporter.takes_mesh && has_mesh(result)) mesh = posed_mesh(result, tissues);
+  write_export(exporter,
+               {*result.volume, tissues, std::move(materials), frequency, mesh ? &*mesh : nullptr, progress, warnings},
+               path);
+}
+
+//   frequency  Hz, of exporters that go by it
+void start_export(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
+  const Document& document = editor.document();
+  const auto tissues = result->from_tissues ? result->from_tissues : document.tissues;
+  start_task(editor, "Export " + path.filename().string(),
+             [result, path, frequency, tissues,
+              type = document.volume_type ? *document.volume_type : FileType{}](Progress& progress) -> Finish {
+               progress.update("write", 0);
+               std::vector<std::string> warnings;
+               const Exporter* exporter = exporter_for(path);
+               if (!exporter) write_volume(*result->volume, path, *tissues, type);
+               else write_with(*exporter, *result, *tissues, path, frequency, progress, warnings);
+               return [path, warnings](Editor& e) {
+                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+                 for (const std::string& warning : warnings) e.messages.warn(path.filename().string(), warning);
+               };
+             });
+}
+
+void ask_frequency(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  const auto tissues = result->from_tissues ? result->from_tissues : editor.document().tissues;
+  const auto outcome = [tissues](const Editor&, const std::vector<FormField>& fields) {
+    return std::to_string(materials_at(*tissues, fields[0].value * 1e6).size()) +
+           " tissues with permittivity and conductivity of the published tables.";
+  };
+  const auto act = [result, path](Editor& e, const std::vector<FormField>& fields) {
+    start_export(e, result, path, fields[0].value * 1e6);
+  };
+  editor.open_dialog(make_form({"Export " + path.filename().string(),
+                                "Permittivity and conductivity of tissue go by the frequency of the field.",
+                                "Export",
+                                {number_of("Frequency", "Of the field that is simulated.", 900, kLowestFrequency / 1e6,
+                                           kHighestFrequency / 1e6, "%g", "MHz")},
+                                outcome,
+                                act,
+                                {}}));
+}
+
+// A page of all results, oldest first.
+void export_page(Editor& editor, const Path& path) {
+  const Document& document = editor.document();
+  SessionPage session{editor.name.empty() ? "Untitled" : Path(editor.name).stem().string(), {}, document.tissues};
+  for (const auto& result : document.results)
+    session.results.push_back({result, result->from_armature && result->from_pose
+                                           ? name_of_pose(*result->from_armature, *result->from_pose)
+                                           : result->name});
+  start_task(editor, "Report " + path.filename().string(),
+             [session, path, scratch = editor.preferences.scratch_folder](Progress& progress) -> Finish {
+               const ScratchFolder folder(scratch);
+               write_file_atomically(path, session_page(session, folder.path(), start_pictures, progress));
+               return [path](Editor& e) {
+                 e.messages.ok((e.host.open_file(path) ? "Opened " : "Wrote ") + path.filename().string(),
+                               path.parent_path().string());
+               };
+             });
+}
+
+}  // namespace
+
+void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  const Exporter* exporter = exporter_for(path);
+  if (exporter) check_place(path);
+  else check_writable(path);
+  if (exporter && !exporter->takes_voxels && !has_mesh(*result))
+    throw Error("the result has no mesh", result->name, "choose one by finite elements that bends something");
+  if (exporter && exporter->needs_frequency) ask_frequency(editor, result, path);
+  else start_export(editor, result, path, 0);
+}
+
+void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  check_place(path);
+  if (path.extension() == ".html") return export_page(editor, path);
+  const std::string text =
+      path.extension() == ".json" ? result->report : text_of_report(result->name, *facts_of(editor, result));
+  start_task(editor, "Report " + path.filename().string(), [text, path](Progress&) -> Finish {
+    write_file_atomically(path, text);
+    return [path](Editor& e) { e.messages.ok("Wrote " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+void export_picture(Editor& editor, const Path& path) {
+  check_place(path);
+  Views& views = *editor.views;
+  const glm::ivec2 size = size_of_view(editor, views.active);
+  const bool body = views.active == ViewId::Body || !editor.layout.place_of(views.active);
+  auto image = std::make_shared<render::Image>(body ? picture_of_body(views, views.body.camera, size)
+                                                    : slice_of(views, views.active).picture->read());
+  start_task(editor, "Export " + path.filename().string(), [path, image](Progress&) -> Finish {
+    render::write_png(*image, path);
+    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  });
+}
+
+namespace {
+
+// A turn of the body, one picture a frame, so that the editor stays live.
+struct Turntable {
+  std::unique_ptr<render::View3D> view;
+  render::Camera camera;
+  glm::ivec2 size;
+  int pictures, drawn = 0;
+  double time = 0;
+
+  render::Camera turned() const {
+    render::Camera result = camera;
+    result.world_from_view = glm::normalize(
+        glm::angleAxis(2 * std::numbers::pi * drawn / pictures, glm::dvec3(0, 0, 1)) * camera.world_from_view);
+    return result;
+  }
+};
+
+void begin_turntable(Editor& editor, const Path& path, int pictures) {
+  auto board = std::make_shared<TurntableBoard>();
+  start_task(editor, "Export turntable", [path, board, pictures](Progress& progress) -> Finish {
+    struct Over {
+      TurntableBoard& board;
+      ~Over() {
+        const std::lock_guard lock(board.mutex);
+        board.over = true;
+      }
+    } over{*board};
+    for (int i = 0; i < pictures; ++i) {
+      render::Image image;
+      for (bool here = false; !here;) {
+        progress.update("pictures", static_cast<double>(i) / pictures);
+        std::unique_lock lock(board->mutex);
+        here = board->changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return board->picture.has_value(); });
+        if (!here) continue;
+        image = std::move(*board->picture);
+        board->picture.reset();
+      }
+      render::write_png(image, numbered(path, i));
+    }
+    return [path, pictures](Editor& e) {
+      e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string());
+    };
+  });
+
+  auto turn = std::make_shared<Turntable>();
+  turn->view = std::make_unique<render::View3D>(editor.views->renderer);
+  turn->camera = editor.views->body.camera;
+  turn->size = size_of_view(editor, ViewId::Body);
+  turn->pictures = pictures;
+  // Of the body as it was when the turn began, whatever is done to it meanwhile.
+  editor.each_frame.push_back([board, turn, scene = editor.views->scene](Editor& e) {
+    const std::lock_guard lock(board->mutex);
+    if (board->over || turn->drawn >= turn->pictures) return false;
+    e.touch();
+    if (board->picture) return true;
+    turn->view->draw(scene, turn->turned(), turn->size, turn->time += 1, 1);
+    board->picture = turn->view->read();
+    ++turn->drawn;
+    board->changed.notify_all();
+    return true;
+  });
+}
+
+}  // namespace
+
+void export_turntable(Editor& editor, const Path& path, int pictures) {
+  check_place(path);
+  int there = 0;
+  for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
+  if (there == 0) return begin_turntable(editor, path, pictures);
+  const std::string first = numbered(path, 0).filename().string(),
+                    last = numbered(path, pictures - 1).filename().string();
+  ask(editor,
+      {.title = "Replace pictures?",
+       .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " + last +
+                     " are there already.",
+                 path.parent_path().string()},
+       .icon = icon::kWarning,
+       .answers = {{"Cancel", {}}, {"Replace", [path, pictures](Editor& e) { begin_turntable(e, path, pictures); }}}});
+}
+
+}  // namespace limber::editor

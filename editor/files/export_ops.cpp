@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Parts of the project, results and their reports, and pictures into files.
+#include <algorithm>
+
+#include "core/export/exporter.h"
+#include "editor/context/operator_polls.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/files/export.h"
+#include "editor/files/file_filters.h"
+#include "editor/resample/results.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string stem_of(const Editor& editor) {
+  return editor.name.empty() ? "Untitled" : Path(editor.name).stem().string();
+}
+
+struct ExportFacts {
+  const char *id, *label, *sentence;
+  ExportKind kind;
+  std::vector<FileFilter> filters;  // the first one's first end is proposed
+  const char* suffix;               // of the proposed name
+};
+
+// "Export glTF" of "glTF...".
+std::string title_of(const std::string& label) { return "Export " + label.substr(0, label.find("...")); }
+
+Operator export_operator(const ExportFacts& facts) {
+  return {facts.id,
+          facts.label,
+          icon::kExport,
+          "File",
+          facts.sentence,
+          [facts](Editor& e) {
+            browse(e, {.purpose = "export",
+                       .title = title_of(facts.label),
+                       .action = "Export",
+                       .kind = FileRequest::Kind::Save,
+                       .filters = facts.filters,
+                       .name = stem_of(e) + facts.suffix + facts.filters[0].ends[0],
+                       .folder = e.project_path.parent_path(),
+                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) { export_file(ed, kind, path); }});
+          },
+          [kind = facts.kind](const Editor& e) { return why_not_export(e, kind); }};
+}
+
+Operator picture_operator(const char* id, const char* label, const char* sentence, const char* suffix,
+                          void (*act)(Editor&, const Path&)) {
+  return {id,
+          label,
+          icon::kCamera,
+          "File",
+          sentence,
+          [label, suffix, act](Editor& e) {
+            browse(e, {.purpose = "picture",
+                       .title = title_of(label),
+                       .action = "Export",
+                       .kind = FileRequest::Kind::Save,
+                       .filters = {{"PNG pictures", {".png"}}},
+                       .name = stem_of(e) + suffix + ".png",
+                       .folder = e.project_path.parent_path(),
+                       .chosen = act});
+          },
+          needs_volume};
+}
+
+// A name that files can have: "Fore 30°, DQ" -> "limb, Fore 30°, DQ".
+std::string file_name_of(const Editor& editor, const Result& result) {
+  std::string name = stem_of(editor) + ", " + result.name;
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name;
+}
+
+// Of the result that the table is about, whatever is shown when the file is chosen.
+//   name  that is proposed, without its end
+void browse_for_result(Editor& editor, const std::string& title, const char* purpose, const std::string& name,
+                       const std::vector<FileFilter>& filters,
+                       void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
+  const auto result = chosen_result(editor);
+  browse(editor, {.purpose = purpose,
+                  .title = title,
+                  .action = "Write",
+                  .kind = FileRequest::Kind::Save,
+                  .filters = filters,
+                  .name = name + filters[0].ends[0],
+                  .folder = editor.project_path.parent_path(),
+                  .chosen = [result, write](Editor& e, const Path& path) { write(e, result, path); }});
+}
+
+std::vector<FileFilter> formats_of(const Result& result) {
+  std::vector<FileFilter> formats = writable_volumes();
+  for (const Exporter& exporter : exporters())
+    if (exporter.takes_voxels || result.solved) formats.push_back({exporter.name, exporter.endings});
+  return formats;
+}
+
+std::string needs_result(const Editor& editor) {
+  return editor.document().results.empty() ? "Nothing was resampled yet" : "";
+}
+
+}  // namespace
+
+std::vector<Operator> export_operators() {
+  return {
+      export_operator({"file.export_volume", "Volume...", "Writes the labelled voxels.", ExportKind::Volume,
+                       writable_volumes(), ""}),
+      export_operator(
+          {"file.export_tissues",
+           "Tissues...",
+           "Writes names, colours and kinds of the tissues.",
+           ExportKind::Tissues,
+           {{"Limber tissues", {".json"}}, {"Slicer colour table", {".ctbl"}}, {"ITK-SNAP labels", {".txt"}}},
+           "-tissues"}),
+      export_operator({"file.export_rig",
+                       "Rig...",
+                       "Writes the skeleton at rest.",
+                       ExportKind::Rig,
+                       {{"Limber rig", {".json"}}, {"Bender armature", {".vtk"}}, {"BVH", {".bvh"}}},
+                       "-rig"}),
+      export_operator({"file.export_weights",
+                       "Weights...",
+                       "Writes how tissue follows the bones.",
+                       ExportKind::Weights,
+                       {{"Weights", {".nrrd"}}},
+                       "-weights"}),
+      export_operator({"file.export_pose",
+                       "Pose...",
+                       "Writes the pose of the rig.",
+                       ExportKind::Pose,
+                       {{"Limber pose", {".json"}}},
+                       "-pose"}),
+      export_operator({"file.export_motion",
+                       "Motion...",
+                       "Writes the motion as BVH.",
+                       ExportKind::Motion,
+                       {{"BVH", {".bvh"}}},
+                       "-motion"}),
+      export_operator({"file.export_gltf",
+                       "glTF...",
+                       "Writes the surface, the skeleton, the weights and every clip for other programs.",
+                       ExportKind::Gltf,
+                       {{"glTF", {".glb"}}},
+                       ""}),
+      {"file.export", "Export...", icon::kExport, "Result",
+       "Writes the chosen result: voxels, surfaces, or what openEMS, gprMax and others take.",
+       [](Editor& e) {
+         browse_for_result(e, "Export " + chosen_result(e)->name, "export", file_name_of(e, *chosen_result(e)),
+                           formats_of(*chosen_result(e)), export_result);
+       },
+       needs_result},
+      {"report.open", "Report...", icon::kReport, "Result",
+       "Writes a page of all results, with pictures and gates, and opens it; or the chosen one's figures as text or "
+       "JSON.",
+       [](Editor& e) {
+         browse_for_result(e, "Report", "report", stem_of(e) + "-results",
+                           {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},
+                           export_report);
+       },
+       needs_result},
+      picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
+      picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn",
+                       [](Editor& e, const Path& path) { export_turntable(e, path); }),
+  };
+}
+
+}  // namespace limber::editor

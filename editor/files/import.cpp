@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/import.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "core/autorig/rig_check.h"
+#include "core/base/error.h"
+#include "core/base/json_text.h"
+#include "core/motion/bvh.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/up_axis.h"
+#include "core/phantom/phantom.h"
+#include "core/pose/pose_io.h"
+#include "core/rig_io/rig_io.h"
+#include "core/skin/weights_io.h"
+#include "core/volume_io/dicom.h"
+#include "core/volume_io/grey_image.h"
+#include "core/volume_io/volume_files.h"
+#include "core/volume_io/volume_io.h"
+#include "editor/context/document_edits.h"
+#include "editor/file_browser/thumbnails.h"
+#include "editor/files/project_session.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
+#include "editor/rig/auto_rig.h"
+#include "editor/shown/frame_all.h"
+#include "editor/skin/weight_layers.h"
+#include "editor/volume/grey_image_panel.h"
+
+namespace limber::editor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kLargestJson = 64 << 20;  // bytes of a rig or pose
+
+std::string extension_of(const Path& path) {
+  std::string end = path.extension().string();
+  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+  return end;
+}
+
+FileKind kind_of_json(const Path& path) {
+  if (is_tissue_table(path)) return FileKind::Tissues;
+  const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestJson), path.string()), nullptr, false);
+  if (json.is_object() && json.contains("bones")) return json["bones"].is_array() ? FileKind::Rig : FileKind::Pose;
+  throw Error("this JSON file is neither a rig, a pose nor a tissue table", path.string(), "choose another file");
+}
+
+template <class T>
+std::shared_ptr<const T> shared(T value) {
+  return std::make_shared<const T>(std::move(value));
+}
+
+std::string imported(const Path& path) { return "Import " + path.filename().string(); }
+
+void warn_of(Editor& editor, const Path& path, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) editor.messages.warn(path.filename().string(), warning);
+}
+
+// What was made for another volume does not fit this one.
+Document with_volume(const VolumeFile& file) {
+  Document document;
+  document.tissues = shared(merge_tissue_tables(file.tissues, nullptr));
+  document.volume_type = shared(file.type);
+  return document;
+}
+
+[[noreturn]] void refuse(const std::string& what, const Path& path, const std::string& what_to_do) {
+  throw Error(what, path.string(), what_to_do);
+}
+
+std::string name_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::Project: return "the project";
+    case FileKind::Volume: return "the volume";
+    case FileKind::Tissues: return "the tissues";
+    case FileKind::Rig: return "the rig";
+    case FileKind::Weights: return "the weights";
+    case FileKind::Motion: return "the motion";
+    case FileKind::Pose: return "the pose";
+  }
+  return "";
+}
+
+// The file, and what is read with a volume.
+std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
+  std::vector<NamedFile> inputs;
+  for (const Path& file : kind == FileKind::Volume ? files_of_volume(path) : std::vector<Path>{path})
+    inputs.push_back({name_of(kind), file});
+  return inputs;
+}
+
+// ---- work: reads beside the editor, fits against the document as it was then
+
+// A volume's file: labels, a grey image, or both where whole values look like one.
+struct ReadVolume {
+  std::optional<VolumeFile> labels;
+  std::shared_ptr<const GreyVolume> image;
+  std::string doubt;  // of an image: why it is no label volume
+};
+
+ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
+  ReadVolume read;
+  try {
+    read.labels = read_volume(path, progress);
+  } catch (const Error&) {
+    if (summarize_volume(path).is_label) throw;
+    read.doubt = "its values are no whole numbers, or more than 65 535";
+  }
+  if (read.labels)
+    if (const auto doubt = grey_image_doubt(read.labels->volume, read.labels->tissues)) read.doubt = *doubt;
+  if (!read.doubt.empty()) read.image = shared(read_grey_volume(path, progress));
+  return read;
+}
+
+// Labels go in; of a grey image it is shown first, and only an answer takes it as labels.
+void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
+  if (!read.image) return take(editor);
+  show_grey_image(editor, {.image = read.image,
+                           .name = path.filename().string(),
+                           .doubt = read.doubt,
+                           .answer = read.labels ? answer : "",
+                           .as_labels = take});
+}
+
+using Change = std::function<void(Document&)>;
+struct Import {
+  Change change;
+  std::vector<std::string> warnings;
+  double inside = 1;     // of a rig: the share of its bones' length that is in tissue
+  ReadVolume read = {};  // of a volume
+  std::vector<NamedFile> inputs = {};
+};
+
+Import read_tissues(const Path& path, const Document& now) {
+  if (!now.volume) refuse("tissues need a volume", path, "open the volume that they name first");
+  const TissueTable table = read_tissue_table(path);
+  const bool any = std::any_of(table.tissues.begin(), table.tissues.end(),
+                               [&](const Tissue& t) { return now.tissues->find_file_value(t.file_value); });
+  if (!any) refuse("none of these tissues is in the volume", path, "choose the table that belongs to it");
+  auto merged = shared(merge_tissue_tables(*now.tissues, &table));
+  return {[merged](Document& d) { d.tissues = merged; }};
+}
+
+// A rig of which less is in tissue belongs to another body or to other units.
+constexpr double kMisplaced = 0.5;
+
+// A BVH file's joints stand upright whichever of its axes points up.
+ArmatureFile read_upright(const Path& path) {
+  if (extension_of(path) != ".bvh") return read_armature_file(path);
+  Motion motion = read_bvh(path);
+  Motion rest = motion;
+  rest.frame_count = 0;
+  rest.values.clear();
+  UpGuess up = up_axis_of(rest);
+  if (up.by == UpGuess::By::Nothing) up = up_axis_of(motion);
+  if (up.axis == UpAxis::Z) rest = y_up_from_z_up(rest);
+  ArmatureFile file{armature_of(rest), "BVH", motion.warnings};
+  if (up.axis == UpAxis::Z) file.warnings.push_back("Its z axis points up (" + reason_of(up) + "): turned upright.");
+  return file;
+}
+
+Import read_rig(const Path& path, const Document& now) {
+  ArmatureFile file = read_upright(path);
+  const bool tissue = now.volume && std::any_of(now.volume->voxels.begin(), now.volume->voxels.end(),
+                                                [](Label label) { return label != 0; });
+  const double inside = tissue ? check_rig(*now.volume, file.armature).whole : 1;
+  auto rig = shared(std::move(file.armature));
+  return {[rig](Document& d) {
+            d.armature = rig;
+            d.weights.reset();
+            d.layers.reset();
+            d.pose = pose_at_frame(d);
+          },
+          file.warnings, inside};
+}
+
+Import read_weights_file(const Path& path, const Document& now) {
+  if (!now.volume || !now.armature)
+    refuse("weights need a volume and a rig", path, now.volume ? "import the rig first" : "open the volume first");
+  WeightsFile file = read_weights(path, *now.volume, TissueVoxels(*now.volume), *now.armature);
+  auto weights = shared(std::move(file.weights));
+  return {[weights](Document& d) { set_weights(d, weights); }, file.warnings};
+}
+
+Import read_pose_file(const Path& path, const Document& now) {
+  if (!now.armature) refuse("a pose needs a rig", path, "import the rig first");
+  auto pose = shared(read_pose(path, *now.armature));
+  return {[pose](Document& d) { d.pose = pose; }};
+}
+
+Import read_motion(const Path& path) {
+  Motion read = read_bvh(path);
+  if (read.frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or choose another file");
+  if (const UpGuess up = up_axis_of(read); up.axis == UpAxis::Z) {
+    read = y_up_from_z_up(read);
+    read.warnings.push_back("Its z axis points up (" + reason_of(up) +
+                            "): turned upright. File > Import > Motion lets you choose.");
+  }
+  auto motion = shared(std::move(read));
+  return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_for(d, motion, name)); },
+          motion->warnings};
+}
+
+Import read_import(FileKind kind, const Path& path, const Document& now, Progress& progress) {
+  switch (kind) {
+    case FileKind::Tissues: return read_tissues(path, now);
+    case FileKind::Rig: return read_rig(path, now);
+    case FileKind::Weights: return read_weights_file(path, now);
+    case FileKind::Pose: return read_pose_file(path, now);
+    case FileKind::Motion: return read_motion(path);
+    case FileKind::Project: refuse("a project is opened, not imported", path, "use File > Open");
+    case FileKind::Volume: break;
+  }
+  ReadVolume read = read_labels_or_image(path, progress);
+  if (!read.labels) return {{}, {}, 1, std::move(read)};
+  VolumeFile& file = *read.labels;
+  Document replaced = with_volume(file);
+  replaced.volume = shared(std::move(file.volume));
+  return {[replaced](Document& d) {
+            Document before = std::move(d);
+            d = replaced;
+            d.clips = std::move(before.clips);
+            d.clip = before.clip;
+            d.frame = before.frame;
+          },
+          file.warnings, 1, std::move(read)};
+}
+
+// What an import was fitted against must still be there when it ends.
+bool same_basis(FileKind kind, const Document& then, const Document& now) {
+  if (kind == FileKind::Volume || kind == FileKind::Motion) return true;
+  if (then.volume != now.volume) return false;
+  return kind == FileKind::Tissues ? then.tissues == now.tissues
+                                   : kind == FileKind::Rig || then.armature == now.armature;
+}
+
+// Each file once the one before it is in.
+void open_in_order(Editor& editor, std::vector<std::pair<FileKind, Path>> files, Then then) {
+  if (files.empty()) {
+    if (then) then(editor);
+    return;
+  }
+  const auto [kind, path] = files.front();
+  files.erase(files.begin());
+  const Then next = [files, then](Editor& e) { open_in_order(e, files, then); };
+  if (kind == FileKind::Project) return open_project(editor, path, next);
+  if (kind == FileKind::Volume) return open_volume(editor, path, next);
+  import_file(editor, kind, path, next);
+}
+
+StepOfWork step_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::Rig: return StepOfWork::Rig;
+    case FileKind::Weights: return StepOfWork::Skin;
+    case FileKind::Pose:
+    case FileKind::Motion: return StepOfWork::Pose;
+    default: return StepOfWork::Prepare;
+  }
+}
+
+}  // namespace
+
+FileKind kind_of(const Path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw Error("there is no such file", path.string(), "it may have been moved or deleted");
+  if (fs::is_directory(path, error)) {
+    if (is_dicom_folder(path)) return FileKind::Volume;
+    throw Error("this folder holds no DICOM images", path.string(),
+                "choose the folder in which the images themselves lie");
+  }
+  if (is_project(path)) return FileKind::Project;
+  const std::string end = extension_of(path);
+  if (end == ".limber")
+    throw Error("this is no Limber project, or its beginning is damaged", path.string(), "choose another file");
+  if (end == ".json") return kind_of_json(path);
+  if (end == ".bvh") return FileKind::Motion;
+  if (end == ".vtk" || end == ".arm" || end == ".gltf" || end == ".glb") return FileKind::Rig;
+  if (is_weights_path(path)) return FileKind::Weights;
+  if (is_volume_path(path)) return FileKind::Volume;
+  return is_tissue_table(path) ? FileKind::Tissues : FileKind::Volume;  // a volume's reader says what is wrong with it
+}
+
+void open_files(Editor& editor, std::vector<Path> paths, Then then) {
+  if (paths.empty()) return;
+  const std::string label =
+      "Open " + (paths.size() == 1 ? paths[0].filename().string() : std::to_string(paths.size()) + " files");
+  start_task(editor, label, [paths = std::move(paths), then](Progress& progress) -> Finish {
+    std::vector<std::pair<FileKind, Path>> files;
+    for (const Path& path : paths) {
+      progress.update("files", static_cast<double>(files.size()) / static_cast<double>(paths.size()));
+      files.emplace_back(kind_of(path), fs::absolute(path).lexically_normal());
+    }
+    std::stable_sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 1; i < files.size(); ++i)
+      if (files[i].first <= FileKind::Volume)
+        throw Error("these are several volumes or projects", files[i].second.string(), "open one of them");
+    return [files, then](Editor& e) { open_in_order(e, files, then); };
+  });
+}
+
+void open_volume(Editor& editor, const Path& path, Then then) {
+  ask_about_unsaved(editor, [path, then](Editor& e) {
+    const int job = start_task(e, "Open " + path.filename().string(),
+                               [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
+                                 ReadVolume read = read_labels_or_image(path, progress);
+                                 if (!read.labels)
+                                   return [read, path](Editor& ed) { take_or_show(ed, read, path, "", {}); };
+                                 VolumeFile& file = *read.labels;
+                                 auto opened = std::make_shared<Opened>();
+                                 opened->document = with_volume(file);
+                                 opened->document.volume = shared(std::move(file.volume));
+                                 opened->extents = shared(extents_of(opened->document.volume));
+                                 opened->inputs = inputs_of(FileKind::Volume, path);
+                                 opened->name = path.stem().string();
+                                 opened->label = "Open " + path.filename().string();
+                                 opened->agreed = agreed;
+                                 opened->then = [path, then](Editor& ed) {
+                                   keep_thumbnail(ed, path);
+                                   if (then) then(ed);
+                                 };
+                                 const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
+                                   warn_of(ed, path, warnings);
+                                   add_recent(ed.remembered, path, std::time(nullptr));
+                                   replace_project(ed, opened);
+                                 };
+                                 return [take, path, read = std::move(read)](Editor& ed) {
+                                   take_or_show(ed, read, path, "Open as labels", take);
+                                 };
+                               });
+    e.step_of_job[job] = StepOfWork::Prepare;
+  });
+}
+
+void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
+  const int job =
+      start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
+        auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
+        import->inputs = inputs_of(kind, path);
+        const Finish take = [import, kind, path, then, before](Editor& e) {
+          if (!same_basis(kind, before, e.document()))
+            refuse("the project changed while the file was read", path, "import it once more");
+          Document next = e.document();
+          import->change(next);
+          commit(e, imported(path), std::move(next));
+          e.inputs.insert(e.inputs.end(), import->inputs.begin(), import->inputs.end());
+          warn_of(e, path, import->warnings);
+          if (kind == FileKind::Volume) {
+            e.selection = {};
+            frame_all(e, false);
+          }
+          if (then) then(e);
+          if (import->inside < kMisplaced) offer_fit(e, path.filename().string(), import->inside);
+        };
+        return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take); };
+      });
+  editor.step_of_job[job] = step_of(kind);
+}
+
+const SampleFacts& facts_of(Sample sample) {
+  static constexpr SampleFacts kFacts[] = {{"Arm", "2 mm \u00b7 skin, muscles, bones", "arm.png"},
+                                           {"Arm, X-ray", "2 mm \u00b7 the bones inside", "arm_xray.png"},
+                                           {"Body", "4 mm \u00b7 whole body", "body.png"},
+                                           {"Body, opened", "4 mm \u00b7 organs", "body_open.png"}};
+  return kFacts[static_cast<int>(sample)];
+}
+
+void open_sample(Editor& editor, Sample sample, Then then) {
+  ask_about_unsaved(editor, [sample, then](Editor& e) {
+    const SampleFacts& facts = facts_of(sample);
+    const int job = start_task(e, "Make sample: " + std::string(facts.name),
+                               [sample, then, &facts, agreed = e.history.revision()](Progress& progress) -> Finish {
+                                 const bool arm = sample == Sample::Arm || sample == Sample::ArmXray;
+                                 Phantom phantom = arm ? make_arm_phantom(2, progress) : make_body_phantom(4, progress);
+                                 auto opened = std::make_shared<Opened>();
+                                 Document& document = opened->document;
+                                 if (sample == Sample::BodyTissues) {
+                                   Visibility visibility;
+                                   for (const Tissue& tissue : phantom.tissues.tissues)
+                                     if (tissue.kind == TissueKind::Skin || tissue.kind == TissueKind::Fat ||
+                                         tissue.kind == TissueKind::Muscle)
+                                       visibility.looks[tissue.label].visible = false;
+                                   document.visibility = shared(std::move(visibility));
+                                 }
+                                 document.volume = shared(std::move(phantom.volume));
+                                 opened->extents = shared(extents_of(document.volume));
+                                 document.tissues = shared(std::move(phantom.tissues));
+                                 document.volume_type = shared(FileType{"NRRD", "uint8", true});
+                                 document.armature = shared(std::move(phantom.armature));
+                                 add_clip(document, clip_of(shared(std::move(phantom.motion)), "Motion"));
+                                 document.frame = 0;
+                                 opened->name = std::string(facts.name);
+                                 opened->label = "Open sample: " + opened->name;
+                                 opened->agreed = agreed;
+                                 opened->then = then;
+                                 return [opened, sample](Editor& ed) {
+                                   ed.views->display =
+                                       sample == Sample::ArmXray ? render::Display::XRay : render::Display::Solid;
+                                   replace_project(ed, opened);
+                                 };
+                               });
+    e.step_of_job[job] = StepOfWork::Prepare;
+  });
+}
+
+void open_waiting_files(Editor& editor) {
+  if (!editor.to_open.empty()) open_files(editor, std::exchange(editor.to_open, {}));
+}
+
+}  // namespace limber::editor

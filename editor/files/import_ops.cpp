@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Files into the open project.
+#include "editor/context/operator_polls.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/files/file_filters.h"
+#include "editor/files/import.h"
+#include "editor/files/project_session.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+struct ImportFacts {
+  const char *id, *label, *sentence;
+  FileKind kind;
+  FileFilter filter;
+};
+
+Operator import_operator(const ImportFacts& facts, std::string (*why_not)(const Editor&)) {
+  return {facts.id,
+          facts.label,
+          icon::kImport,
+          "File",
+          facts.sentence,
+          [facts](Editor& e) {
+            browse(e, {.purpose = facts.id,
+                       .title = std::string("Import: ") + facts.label,
+                       .action = "Import",
+                       .filters = {facts.filter},
+                       .takes_dicom = facts.kind == FileKind::Volume,
+                       .folder = e.project_path.parent_path(),
+                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) {
+                         kind == FileKind::Motion ? import_motion(ed, path) : import_file(ed, kind, path);
+                       }});
+          },
+          why_not};
+}
+
+void import_dicom(Editor& editor) {
+  browse(editor, {.purpose = "dicom",
+                  .title = "Import a folder of DICOM images",
+                  .action = "Open this folder",
+                  .kind = FileRequest::Kind::OpenFolder,
+                  .takes_dicom = true,
+                  .chosen = [](Editor& e, const Path& path) { open_files(e, {path}); }});
+}
+
+// Whatever it is: a volume replaces, the rest is added.
+void import_any(Editor& editor) {
+  browse(editor, {.purpose = "import",
+                  .title = "Import",
+                  .action = "Import",
+                  .filters = {readable_files()},
+                  .takes_dicom = true,
+                  .chosen = [](Editor& e, const Path& path) {
+                    start_task(e, "Import " + path.filename().string(), [path](Progress&) -> Finish {
+                      const FileKind kind = kind_of(path);
+                      return [kind, path](Editor& ed) {
+                        kind == FileKind::Project  ? open_project(ed, path)
+                        : kind == FileKind::Motion ? import_motion(ed, path)
+                                                   : import_file(ed, kind, path);
+                      };
+                    });
+                  }});
+}
+
+std::string needs_rig_and_volume(const Editor& editor) {
+  return !editor.document().volume ? "Open a volume first" : !editor.document().armature ? "Import a rig first" : "";
+}
+std::string needs_rig(const Editor& editor) { return editor.document().armature ? "" : "Import a rig first"; }
+
+}  // namespace
+
+std::vector<Operator> import_operators() {
+  return {
+      {"file.import", "Import...", icon::kImport, "File", "Brings a file of any kind into the open project.",
+       import_any},
+      import_operator({"file.import_volume", "Volume...", "Replaces the volume; what was made for the old one goes.",
+                       FileKind::Volume, volume_files()},
+                      nullptr),
+      {"file.import_dicom", "DICOM folder...", icon::kImport, "File", "Opens a folder of images as one volume.",
+       import_dicom},
+      import_operator({"file.import_rig",
+                       "Rig...",
+                       "Brings a skeleton into the project.",
+                       FileKind::Rig,
+                       {"Rigs", {".json", ".vtk", ".arm", ".bvh", ".gltf", ".glb"}}},
+                      nullptr),
+      import_operator({"file.import_motion",
+                       "Motion...",
+                       "Brings a BVH motion into the project.",
+                       FileKind::Motion,
+                       {"Motions", {".bvh"}}},
+                      nullptr),
+      import_operator({"file.import_weights",
+                       "Weights...",
+                       "Brings skin weights into the project.",
+                       FileKind::Weights,
+                       {"Weights", {".nrrd", ".mha"}}},
+                      needs_rig_and_volume),
+      import_operator({"file.import_tissues",
+                       "Tissues...",
+                       "Names, colours and kinds of the tissues.",
+                       FileKind::Tissues,
+                       {"Tissue tables", {".json", ".ctbl", ".txt", ".label"}}},
+                      needs_volume),
+      import_operator({"file.import_pose",
+                       "Pose...",
+                       "Brings a pose of the rig into the project.",
+                       FileKind::Pose,
+                       {"Poses", {".json"}}},
+                      needs_rig),
+  };
+}
+
+}  // namespace limber::editor

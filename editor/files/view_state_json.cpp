@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/view_state_json.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/json_text.h"
+#include "editor/context/layout_json.h"
+#include "editor/skin/weight_display.h"
+
+namespace limber::editor {
+
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr const char* kSchema = "limber-editor/1";
+constexpr double kFarthest = 1e6;  // mm, from which a place is seen or lies
+
+template <class Vector>
+Json json_of(const Vector& v) {
+  Json json = Json::array();
+  for (int i = 0; i < v.length(); ++i) json.push_back(v[i]);
+  return json;
+}
+
+void take(const Json& json, const char* key, bool& value) {
+  if (const auto found = json.find(key); found != json.end() && found->is_boolean()) value = *found;
+}
+
+template <class Number>
+void take(const Json& json, const char* key, double low, double high, Number& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number()) return;
+  const double number = *found;
+  if (number >= low && number <= high) value = static_cast<Number>(number);
+}
+
+// One of `count` choices, kept as its number.
+template <class Choice>
+void take_choice(const Json& json, const char* key, int count, Choice& value) {
+  int number = -1;
+  take(json, key, 0, count - 1, number);
+  if (number >= 0) value = static_cast<Choice>(number);
+}
+
+template <class Vector>
+bool take_vector(const Json& json, const char* key, Vector& value) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_array() || std::ssize(*found) != Vector::length()) return false;
+  Vector read = value;
+  for (int i = 0; i < Vector::length(); ++i) {
+    if (!(*found)[i].is_number() || !(std::abs((*found)[i].template get<double>()) <= kFarthest)) return false;
+    read[i] = (*found)[i].template get<typename Vector::value_type>();
+  }
+  value = read;
+  return true;
+}
+
+Json json_of(const render::Camera& camera) {
+  const glm::dquat& q = camera.world_from_view;
+  return {{"centre", json_of(camera.centre)},
+          {"distance", camera.distance},
+          {"world_from_view", {q.w, q.x, q.y, q.z}},
+          {"projection", static_cast<int>(camera.projection)}};
+}
+
+void restore(const Json& json, render::Camera& camera) {
+  glm::dvec4 turn(0);
+  glm::dvec3 centre = camera.centre;
+  if (!take_vector(json, "world_from_view", turn) || !take_vector(json, "centre", centre) ||
+      std::abs(glm::length(turn) - 1) > 1e-3)
+    return;
+  camera.centre = centre;
+  camera.world_from_view = glm::normalize(glm::dquat(turn[0], turn[1], turn[2], turn[3]));
+  take(json, "distance", 1e-2, kFarthest, camera.distance);
+  take_choice(json, "projection", 2, camera.projection);
+}
+
+}  // namespace
+
+std::string editor_state(const Editor& editor) {
+  const Views& views = *editor.views;
+  Json json{{"schema", kSchema},
+            {"workspace", static_cast<int>(editor.workspace)},
+            {"display", static_cast<int>(views.display)},
+            {"slices", static_cast<int>(views.slice_display)},
+            {"cross_hair", json_of(views.cross_hair)},
+            {"camera", json_of(views.body.camera)},
+            {"grid", views.grid},
+            {"axes", views.axes},
+            {"scale_bar", views.scale_bar},
+            {"letters", views.letters},
+            {"show_cross_hair", views.show_cross_hair},
+            {"bones", views.bones},
+            {"bone_shape", static_cast<int>(views.bone_shape)},
+            {"bone_names", views.bone_names},
+            {"bone_axes", views.bone_axes},
+            {"bones_in_front", views.bones_in_front}};
+  json["weights"] = {{"display", editor.skin->display ? static_cast<int>(*editor.skin->display) : 4},
+                     {"contours", editor.skin->contours}};
+  json["arrangements"] = Json::parse(json_text(editor.arrangements));
+  json["method"] = editor.resampling.method;
+  json["finite_elements"] = {{"quality", editor.resampling.quality}, {"contact", editor.resampling.contact}};
+  for (const SliceState& slice : views.slices)
+    json["slice_cameras"].push_back(
+        {{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
+  if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
+  return json.dump();
+}
+
+void restore_editor_state(Editor& editor, const std::string& text) {
+  const Json json = Json::parse(checked_json(text, "the state of the editor in the project"), nullptr, false);
+  if (!json.is_object() || json.value("schema", Json()) != kSchema) return;
+  Views& views = *editor.views;
+  take_choice(json, "workspace", 4, editor.workspace);
+  take_choice(json, "display", 3, views.display);
+  take_choice(json, "slices", 2, views.slice_display);
+  if (const Json method = json.value("method", Json());
+      method == "lbs" || method == "dqs" || method == "mix" || method == "fem")
+    editor.resampling.method = method;
+  if (const auto fem = json.find("finite_elements"); fem != json.end() && fem->is_object()) {
+    if (const Json quality = fem->value("quality", Json());
+        quality == "draft" || quality == "normal" || quality == "fine")
+      editor.resampling.quality = quality;
+    take(*fem, "contact", editor.resampling.contact);
+  }
+  if (const auto weights = json.find("weights"); weights != json.end() && weights->is_object()) {
+    int display = editor.skin->display ? static_cast<int>(*editor.skin->display) : 4;
+    take(*weights, "display", 0, 4, display);
+    editor.skin->display = display == 4 ? std::nullopt : std::optional(static_cast<render::WeightDisplay>(display));
+    take(*weights, "contours", editor.skin->contours);
+  }
+  take_vector(json, "cross_hair", views.cross_hair);
+  take(json, "grid", views.grid);
+  take(json, "axes", views.axes);
+  take(json, "scale_bar", views.scale_bar);
+  take(json, "letters", views.letters);
+  take(json, "show_cross_hair", views.show_cross_hair);
+  take(json, "bones", views.bones);
+  take_choice(json, "bone_shape", 3, views.bone_shape);
+  take(json, "bone_names", views.bone_names);
+  take(json, "bone_axes", views.bone_axes);
+  take(json, "bones_in_front", views.bones_in_front);
+  if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object())
+    restore(*camera, views.body.camera);
+  views.body.name.clear();
+  if (json.contains("arrangements")) restore(json["arrangements"].dump(), editor.arrangements);
+  if (const auto all = json.find("slice_cameras"); all != json.end() && all->is_array())
+    for (std::size_t i = 0; i < std::min(all->size(), views.slices.size()); ++i) {
+      if (!(*all)[i].is_object()) continue;
+      take_vector((*all)[i], "centre", views.slices[i].camera.centre);
+      take((*all)[i], "millimetres_per_pixel", 1e-6, 1e4, views.slices[i].camera.millimetres_per_pixel);
+    }
+  int tissue = -1;
+  take(json, "tissue", 0, 65535, tissue);
+  if (tissue >= 0 && editor.document().tissues && editor.document().tissues->find(static_cast<Label>(tissue))) {
+    editor.selection.tissue = static_cast<Label>(tissue);
+    editor.selection.tissues = {static_cast<Label>(tissue)};
+  }
+  editor.touch();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/motion_clip_edits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/same_skeleton.h"
+#include "core/motion/up_axis.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/motion/motion_clip_preview.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm of a file's unit; 0: found
+
+// What is known of a motion before it comes in.
+struct Incoming {
+  std::shared_ptr<const Motion> motion;
+  std::string name;
+  UpGuess up;
+  std::string facts, match;
+};
+
+std::string facts_of(const Motion& motion) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames in a second.",
+                static_cast<int>(motion.joints.size()), motion.frame_count, motion.frame_count * motion.frame_time,
+                1 / motion.frame_time);
+  return text;
+}
+
+// "ZXY; differs in 3 joints: Hips (XYZ), ..."
+std::string orders_of(const Motion& motion) {
+  constexpr std::size_t kNamed = 4;
+  std::map<std::string, std::vector<std::string>> joints;
+  for (const BvhJoint& joint : motion.joints) {
+    std::string order;
+    for (BvhChannel channel : joint.channels)
+      if (channel >= BvhChannel::Xrotation)
+        order += static_cast<char>('X' + static_cast<int>(channel) - static_cast<int>(BvhChannel::Xrotation));
+    if (!order.empty()) joints[order].push_back(joint.name);
+  }
+  if (joints.empty()) return "No joint turns.";
+  const auto most = std::max_element(joints.begin(), joints.end(),
+                                     [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  std::string others;
+  std::size_t count = 0;
+  for (const auto& [order, names] : joints) {
+    if (order == most->first) continue;
+    for (const std::string& name : names)
+      if (count++ < kNamed) others += (others.empty() ? "" : ", ") + name + " " + order;
+  }
+  if (count == 0) return most->first + " in every joint, as the file says.";
+  return most->first + "; differs in " + std::to_string(count) + (count == 1 ? " joint: " : " joints: ") + others +
+         (count > kNamed ? ", ..." : ".");
+}
+
+std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr<const Armature>& armature) {
+  if (!armature) return "There is no rig yet: joints and bones are matched when there is one.";
+  const ClipOnRig on_rig(std::make_shared<const Clip>(clip_of(std::move(motion), "")), armature);
+  if (!on_rig.retarget()) return "It moves no bone of this rig by its names: match them by hand in the map.";
+  const Matching matching = matching_of(on_rig);
+  char text[160];
+  std::snprintf(text, sizeof text, "%d joints move %d of %d bones, %d of them without doubt.", matching.joints,
+                matching.bones, static_cast<int>(armature->bones.size()), matching.sure);
+  return text;
+}
+
+void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormField>& fields) {
+  std::shared_ptr<const Motion> motion = incoming.motion;
+  const bool z_up = fields[1].chosen == 1;
+  if (z_up) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
+  Document next = editor.document();
+  Clip clip = clip_for(next, motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
+  clip.rate = fields[3].value;
+  clip.retarget.scale = kUnits[fields[0].chosen];
+  add_clip(next, std::move(clip));
+  commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
+  if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "Its z axis points up.");
+}
+
+void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
+  const double rate = clip_of(incoming->motion, "").rate;
+  const auto outcome = [incoming](const Editor&, const std::vector<FormField>& fields) {
+    std::string words = incoming->facts + " " + incoming->match;
+    const bool as_guessed = fields[1].chosen == static_cast<int>(incoming->up.axis);
+    if (const std::string reason = reason_of(incoming->up);
+        !reason.empty() && (!as_guessed || incoming->up.axis == UpAxis::Z))
+      words += (as_guessed ? " Z is up: " : " Mind the axis: ") + reason + ".";
+    if (std::abs(fields[3].value - clip_of(incoming->motion, "").rate) > 1e-3) {
+      char text[64];
+      std::snprintf(text, sizeof text, " Plays in %.2f s.", incoming->motion->frame_count / fields[3].value);
+      words += text;
+    }
+    for (const std::string& warning : incoming->motion->warnings) words += "\n" + warning;
+    return words;
+  };
+  auto picture = std::make_shared<MotionPicture>(incoming->motion);
+  const auto draw_picture = [picture](Editor& e, const Rect& rect, const std::vector<FormField>& fields) {
+    picture->draw(e, rect, fields[1].chosen == 1, fields[3].value);
+  };
+  editor.open_dialog(make_form(
+      {"Import " + incoming->name + ".bvh",
+       "A new clip of this motion, carried over to the rig.",
+       "Import",
+       {choice_of("Scale", "How far the body travels: as far as its legs carry it, or in the file's own unit.",
+                  {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
+        choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
+        number_of("First frame", "Where it begins in the timeline.", 0, -100'000, 100'000, "%.0f"),
+        number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000,
+                  "%.6g", "fps"),
+        fact_of("Rotations", orders_of(*incoming->motion))},
+       outcome,
+       [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); },
+       draw_picture}));
+}
+
+}  // namespace
+
+Matching matching_of(const ClipOnRig& clip) {
+  Matching matching;
+  const Retarget* retarget = clip.retarget();
+  if (!retarget) return matching;
+  std::set<int> joints;
+  for (int bone = 0; bone < std::ssize(clip.armature()->bones); ++bone)
+    if (const int joint = retarget->joint_of(bone); joint >= 0) joints.insert(joint);
+  matching.bones = moved_bones(clip);
+  matching.joints = static_cast<int>(joints.size());
+  for (MatchKind kind : match_kinds(*clip.clip()->motion, *clip.armature(), map_in_use(clip)))
+    matching.sure += kind >= MatchKind::SamePart;
+  return matching;
+}
+
+int moved_bones(const ClipOnRig& clip) {
+  int moved = 0;
+  for (int bone = 0; clip.retarget() && bone < std::ssize(clip.armature()->bones); ++bone)
+    moved += clip.retarget()->joint_of(bone) >= 0;
+  return moved;
+}
+
+RetargetMap map_in_use(const ClipOnRig& clip) {
+  RetargetMap map{.stances = clip.clip()->map.stances};
+  if (!clip.retarget()) return map;
+  for (int bone = 0; bone < std::ssize(clip.armature()->bones); ++bone)
+    if (const int joint = clip.retarget()->joint_of(bone); joint >= 0) {
+      const std::string& name = clip.armature()->bones[bone].name;
+      const auto given = clip.clip()->map.sources.find(name);
+      map.sources[name] = given != clip.clip()->map.sources.end()
+                              ? given->second
+                              : RetargetMap::Source{clip.clip()->motion->joints[joint].name, {}};
+    }
+  return map;
+}
+
+Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start) {
+  const auto same = document.armature ? same_skeleton(*motion, *document.armature) : std::nullopt;
+  Clip clip = clip_of(std::move(motion), name, start);
+  if (same && same->in_place) clip.retarget.travel = Travel::Free;
+  return clip;
+}
+
+void choose_clip(Editor& editor, int clip) {
+  if (clip == editor.document().clip) return;
+  stop_playing(editor);
+  Document next = editor.document();
+  next.clip = clip;
+  next.frame = std::clamp(next.frame, next.shown_clip()->range_start,
+                          std::max(next.shown_clip()->range_start, next.shown_clip()->range_end));
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  const std::string label = "Show clip " + next.shown_clip()->name;
+  commit(editor, label, std::move(next));
+}
+
+void import_motion(Editor& editor, const Path& path) {
+  start_task(editor, "Read " + path.filename().string(),
+             [path, armature = editor.document().armature](Progress&) -> Finish {
+               auto incoming = std::make_shared<Incoming>();
+               incoming->motion = std::make_shared<const Motion>(read_bvh(path));
+               incoming->name = path.stem().string();
+               if (incoming->motion->frame_count == 0)
+                 throw Error("this motion has no frames", path.string(), "import it as a rig, or choose another file");
+               incoming->up = up_axis_of(*incoming->motion);
+               incoming->facts = facts_of(*incoming->motion);
+               incoming->match = match_of(incoming->motion, armature);
+               return [incoming](Editor& e) { ask(e, incoming); };
+             });
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How the shown clip moves the rig: which clip, how well it matches, how the body travels.
+#include <cstdio>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+// One of several operators, of which one holds.
+//   words  of the operators, where they need not say again what the row's name says; empty: their labels
+void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std::initializer_list<const char*> ids,
+                         std::initializer_list<const char*> words = {}) {
+  std::vector<std::string> labels;
+  int chosen = 0;
+  for (const char* id : ids) {
+    const Operator* op = find_operator(editor, id);
+    if (op->checked(editor)) chosen = static_cast<int>(labels.size());
+    labels.push_back(words.size() > 0 ? words.begin()[labels.size()] : op->label);
+  }
+  const PathScope path(editor, name);
+  if (choice_field(editor, rect, labels, chosen)) run(editor, ids.begin()[chosen]);
+}
+
+constexpr std::initializer_list<const char*> kRests = {"As it lies", "T-pose", "A-pose", "Supine"};
+
+void draw_clip_row(Editor& editor, Column& column) {
+  std::vector<std::string> names;
+  for (const auto& clip : editor.document().clips) names.push_back(clip->name);
+  int chosen = editor.document().clip;
+  const PathScope path(editor, "Clip");
+  if (choice_field(editor, column.property("Clip"), names, chosen)) choose_clip(editor, chosen);
+}
+
+void draw_match(Editor& editor, Column& column, const ClipOnRig& clip) {
+  const Look& look = editor.look;
+  const Rect rect = column.property("Retarget");
+  const int moved = moved_bones(clip);
+  const bool good = moved > 0;
+  const Colour colour = good ? look.theme.ok : look.theme.warn;
+  put_icon(look.fonts.regular, colour, Rect{rect.low, {rect.low.x + look.px(18), rect.high.y}},
+           good ? icon::kOk : icon::kWarning);
+  char text[64];
+  std::snprintf(text, sizeof text, "%d / %d", moved, static_cast<int>(clip.armature()->bones.size()));
+  const float button = look.px(64);
+  put_text(editor, look.fonts.regular, colour,
+           Rect{{rect.low.x + look.px(22), rect.low.y}, {rect.high.x - button - look.px(6), rect.high.y}}, text);
+  operator_button(editor, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");
+}
+
+// What the file lays otherwise than is said.
+void draw_turned(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const ClipOnRig* clip = clip_on_rig(editor);
+  if (!clip || !clip->retarget() || clip->retarget()->turned_joints().empty()) return;
+  const std::vector<int>& turned = clip->retarget()->turned_joints();
+  const std::string first = clip->clip()->motion->joints[turned.front()].name;
+  const std::string words = "The file lays " + first +
+                            (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") +
+                            " otherwise: turned into it.";
+  const Rect row = column.row(34);
+  put_wrapped(editor, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y},
+              row.width() - look.px(20), words, 2);
+}
+
+}  // namespace
+
+void draw_motion(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const Clip* clip = shown_clip(editor);
+  if (column.begin_section("Motion", clip ? clip->name : "")) {
+    column.space(4);
+    if (!clip) {
+      const Rect row = column.row(30);
+      operator_button(editor, "file.import_motion",
+                      {{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(26)}},
+                      "Import BVH...");
+    } else {
+      draw_clip_row(editor, column);
+      clip = shown_clip(editor);  // perhaps another one was chosen
+      const ClipOnRig* on_rig = clip_on_rig(editor);
+      if (clip && clip->motion && on_rig) {
+        // What is chosen below replaces the clip and how it lies on the rig.
+        bool mirrored = clip->retarget.mirror;
+        const std::string problem = on_rig->problem();
+        draw_match(editor, column, *on_rig);
+        choice_of_operators(editor, column.property("Travel"), "Travel",
+                            {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
+        choice_of_operators(editor, column.property("Stands as"), "Stands as",
+                            {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
+        choice_of_operators(editor, column.property("Clip at rest"), "Clip at rest",
+                            {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"}, kRests);
+        choice_of_operators(
+            editor, column.property("Rig at rest"), "Rig at rest",
+            {"motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical"}, kRests);
+        draw_turned(editor, column);
+        const Rect mirror = column.property("Options");
+        if (checkbox(editor, "motion.mirror", mirror, "Mirror", mirrored)) run(editor, "motion.mirror");
+        if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "motion.mirror"), mirror);
+        if (!problem.empty()) {
+          const Rect row = column.row(40);
+          put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y},
+                      row.width() - look.px(20), problem, 2);
+        }
+      }
+    }
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/onion_skin_overlay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "editor/context/background_task.h"
+#include "editor/context/view_projection.h"
+#include "editor/motion/timeline.h"
+#include "editor/shown/preview_blend.h"
+#include "editor/ui/draw.h"
+#include "editor/viewport/silhouette.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;  // 4B8EF5, 5AD19A
+constexpr double kWidest = 0.12, kHalfWidth = 0.0425;       // of a bone's length, as bones are drawn
+
+void draw_ghost(Editor& editor, const SeenFrom& view, const Armature& armature, const Pose& pose, Colour colour) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const auto posed = posed_from_rest(armature, pose);
+  for (std::size_t b = 0; b < armature.bones.size(); ++b) {
+    const auto head = view.pixel_of(posed[b] * armature.bones[b].head),
+               tail = view.pixel_of(posed[b] * armature.bones[b].tail);
+    if (!head || !tail) continue;
+    const glm::dvec2 along = *tail - *head, across = kHalfWidth * glm::dvec2(-along.y, along.x),
+                     middle = *head + kWidest * along;
+    const ImVec2 outline[] = {im(glm::vec2(*head)), im(glm::vec2(middle + across)), im(glm::vec2(*tail)),
+                              im(glm::vec2(middle - across))};
+    canvas.AddPolyline(outline, 4, colour, ImDrawFlags_Closed, 1.4f * editor.look.scale);
+  }
+}
+
+// ---- outlines
+
+constexpr std::int64_t kMostVertices = 20'000;  // of the surface
+constexpr float kCell = 2;                      // pixels at scale 1
+constexpr std::chrono::milliseconds kTime{8};   // a picture spends on outlines that are not there yet, after the first
+constexpr std::size_t kMostKept = 1000;
+
+void take_surface(Editor& editor, OnionOutlines& outlines) {
+  const Document& document = editor.document();
+  if (outlines.volume == document.volume && outlines.weights == document.weights) return;
+  outlines = {.volume = document.volume, .weights = document.weights};
+  if (!document.volume || !document.weights) return;
+  start_task(editor, "", [volume = document.volume, weights = document.weights](Progress&) -> Finish {
+    const LabelSet all(65536, 1);
+    auto surface = std::make_shared<const SkinnedSurface>(
+        skinned_surface(*volume, TissueVoxels(*volume), *weights, all, kMostVertices));
+    return [volume, weights, surface](Editor& e) {
+      OnionOutlines& now = *e.timeline->onion.outlines;
+      if (now.volume == volume && now.weights == weights) now.surface = surface;
+      e.touch();
+    };
+  });
+}
+
+// Where some fixed points are seen: equal for equal views.
+std::vector<double> view_of(const SeenFrom& view) {
+  std::vector<double> numbers{view.place.rect.low.x, view.place.rect.low.y, view.place.rect.high.x,
+                              view.place.rect.high.y};
+  for (const glm::dvec3& point : {glm::dvec3(0), glm::dvec3(100, 0, 0), glm::dvec3(0, 100, 0), glm::dvec3(0, 0, 100)}) {
+    const auto pixel = view.pixel_of(point);
+    const glm::dvec3 towards = view.direction_to_eye(point);
+    numbers.insert(numbers.end(), {pixel ? pixel->x : 0, pixel ? pixel->y : 0, towards.x, towards.y, towards.z});
+  }
+  return numbers;
+}
+
+std::vector<std::vector<glm::vec2>> outline_of(const SeenFrom& view, const OnionOutlines& outlines,
+                                               const Armature& armature, const Pose& pose, float cell) {
+  const auto posed = posed_from_rest(armature, pose);
+  std::vector<RigidTransform> motions;
+  for (const std::string& name : outlines.weights->bones()) {
+    const auto bone = armature.find(name);
+    if (!bone) return {};
+    motions.push_back(posed[*bone]);
+  }
+  std::vector<glm::vec2> pixels;
+  for (const glm::vec3& point : posed_surface(outlines.surface, motions, outlines.seen.blend).V) {
+    const auto pixel = view.pixel_of(glm::dvec3(point));
+    pixels.push_back(pixel ? glm::vec2(*pixel) : glm::vec2(std::numeric_limits<float>::quiet_NaN()));
+  }
+  return silhouette(pixels, outlines.surface->F, view.place.rect, cell);
+}
+
+void draw_lines(const std::vector<std::vector<glm::vec2>>& lines, Colour colour, float thickness) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  std::vector<ImVec2> points;
+  for (const auto& line : lines) {
+    points.clear();
+    for (const glm::vec2& p : line) points.push_back(im(p));
+    canvas.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_Closed, thickness);
+  }
+}
+
+}  // namespace
+
+void draw_onion_skin(Editor& editor) {
+  auto& onion = editor.timeline->onion;
+  const std::optional<SeenFrom> view = body_seen(editor);
+  const ClipOnRig* clip = onion.on && editor.workspace == Workspace::Pose && view ? clip_on_rig(editor) : nullptr;
+  if (!clip) return;
+  if (!onion.outlines) onion.outlines = std::make_shared<OnionOutlines>();
+  OnionOutlines& outlines = *onion.outlines;
+  take_surface(editor, outlines);
+  const OnionOutlines::Seen seen{view_of(*view), clip->clip(), clip->armature(), outlines.surface,
+                                 preview_blend(editor)};
+  if (outlines.seen != seen || outlines.lines.size() > kMostKept) {
+    outlines.seen = seen;
+    outlines.lines.clear();
+  }
+
+  const FrameRange range = playing_range(editor);
+  const auto began = std::chrono::steady_clock::now();
+  bool made_one = false, waits = false;
+  // The furthest first: near ones lie on top.
+  for (int step = onion.count; step >= 1; --step)
+    for (const int side : {-1, 1}) {
+      const int frame = shown_frame(editor) + side * step * onion.step;
+      if (frame < range.low || frame > range.high) continue;
+      const Colour colour =
+          with_alpha(side < 0 ? kPast : kComing, std::min(1.0f, 1.8f / static_cast<float>(1 << step)));
+      auto found = outlines.lines.find(frame);
+      if (found == outlines.lines.end() && outlines.surface) {
+        waits = made_one && std::chrono::steady_clock::now() - began > kTime;
+        if (!waits)
+          found = outlines.lines
+                      .emplace(frame, outline_of(*view, outlines, *clip->armature(), clip->at(frame),
+                                                 kCell * editor.look.scale))
+                      .first,
+          made_one = true;
+      }
+      if (found != outlines.lines.end() && !found->second.empty())
+        draw_lines(found->second, colour, 1.6f * editor.look.scale);
+      else if (editor.views->bones) draw_ghost(editor, *view, *clip->armature(), clip->at(frame), colour);
+    }
+  if (waits) editor.touch();
+}
+
+}  // namespace limber::editor

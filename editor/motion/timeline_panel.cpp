@@ -1,0 +1,572 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the views: the transport, and under it time itself: ruler, markers, the clip with the chosen bone's angle,
+// keys.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/motion/timeline.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/shown/shown_pose.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56, kThinRow = 16,
+                kEnds = 12;
+constexpr float kLeastTicks = 60;      // pixels from one number to the next
+constexpr Colour kAngle = 0xFF5CB6FF;  // FFB65C
+
+std::string number_text(int value) {
+  // Groups of three, as in the facts of a clip.
+  std::string digits = std::to_string(std::abs(value));
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), " ");
+  return (value < 0 ? "-" : "") + digits;
+}
+
+std::string seconds_text(double frames, double rate) {
+  char text[24];
+  std::snprintf(text, sizeof text, "%.2f s", frames / rate);
+  return text;
+}
+
+// ---- transport
+
+class Transport {
+ public:
+  Transport(Editor& editor, const Rect& bar)
+      : editor_(editor),
+        look_(editor.look),
+        bar_(bar),
+        x_(bar.low.x + look_.px(8)),
+        right_(bar.high.x - look_.px(8)) {}
+
+  void draw() {
+    fill(bar_, look_.theme.head);
+    fill({{bar_.low.x, bar_.high.y - look_.line()}, bar_.high}, look_.theme.void_);
+    draw_right();
+    const bool playing = editor_.timeline->play.on;
+    tool("motion.first");
+    tool("motion.frame_back");
+    {
+      const Operator* op = find_operator(editor_, "motion.play");
+      const Rect place = next(28);
+      const std::string why = why_not(editor_, *op);
+      if (button(editor_, "motion.play", place,
+                 {playing ? icon::kPause : icon::kPlay, "", playing ? ButtonStyle::Soft : ButtonStyle::Plain,
+                  why.empty()}))
+        run(editor_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+    }
+    tool("motion.frame_forward");
+    tool("motion.last");
+    x_ += look_.px(4);
+    tool("motion.loop");
+    tool("motion.ping_pong");
+    draw_speed();
+    line();
+    draw_frame();
+    if (fits(190)) draw_range();
+    line();
+    draw_keying();
+  }
+
+ private:
+  Rect next(float width) {
+    const float height = look_.px(26), y = std::round(bar_.centre().y - height / 2);
+    const Rect place{{x_, y}, {x_ + look_.px(width), y + height}};
+    x_ = place.high.x + look_.px(4);
+    return place;
+  }
+  bool fits(float width) const { return x_ + look_.px(width) < right_; }
+  void tool(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    const bool on = op->checked && op->checked(editor_);
+    operator_button(editor_, id, next(28), "", on ? ButtonStyle::Soft : ButtonStyle::Plain);
+  }
+  void line() {
+    x_ += look_.px(4);
+    fill({{x_, bar_.low.y + look_.px(9)}, {x_ + look_.line(), bar_.high.y - look_.px(9)}}, look_.theme.line2);
+    x_ += look_.line() + look_.px(8);
+  }
+  void words(const std::string& text) {
+    const float width = text_size(look_.fonts.regular, text).x;
+    put_text(editor_, look_.fonts.regular, look_.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}},
+             text);
+    x_ += width + look_.px(8);
+  }
+
+  void draw_right() {
+    const bool wide = bar_.width() > look_.px(900);
+    for (const char* id : {"motion.retarget", "file.import_motion"}) {
+      const Operator* op = find_operator(editor_, id);
+      if (!op) continue;
+      const std::string label = !wide ? "" : std::string_view(id) == "file.import_motion" ? "Import BVH..." : op->label;
+      const char* sign = std::string_view(id) == "file.import_motion" ? icon::kMotion : op->icon;
+      const ButtonLook face{sign, label, ButtonStyle::Plain, why_not(editor_, *op).empty()};
+      const float width = label.empty() ? look_.px(30) : width_of_button(editor_, face), height = look_.px(26),
+                  y = std::round(bar_.centre().y - height / 2);
+      const Rect place{{right_ - width, y}, {right_, y + height}};
+      if (button(editor_, id, place, face)) run(editor_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+      right_ = place.low.x - look_.px(6);
+    }
+  }
+
+  void draw_speed() {
+    const auto& playing = editor_.timeline->play;
+    char text[24];
+    const bool slow = playing.on && playing.pictures_per_second > 0;
+    if (slow) std::snprintf(text, sizeof text, "%.0f fps", playing.pictures_per_second);
+    else
+      std::snprintf(text, sizeof text,
+                    playing.speed < 1 && playing.speed != 0.5 && playing.speed != 0.1 ? "%.2f\u00d7" : "%.1f\u00d7",
+                    playing.speed);
+    const Rect place = next(74);
+    const Pressed pressed = press_area(editor_, "speed", place);
+    fill(place, pressed.hovered ? look_.theme.hover : look_.theme.raised, look_.px(4));
+    put_text(editor_, look_.fonts.mono, slow ? look_.theme.warn : look_.theme.text,
+             Rect{{place.low.x + look_.px(8), place.low.y}, {place.high.x - look_.px(20), place.high.y}}, text);
+    put_icon(look_.fonts.regular, look_.theme.text2, Rect{{place.high.x - look_.px(20), place.low.y}, place.high},
+             icon::kOpened);
+    if (pressed.hovered)
+      tooltip(editor_, place, "Speed",
+              slow ? "Pictures in a second: some frames are left out so that time goes on."
+                   : "Against the clip's own rate.");
+    if (pressed.clicked) ImGui::OpenPopup("speeds");
+    if (!ImGui::BeginPopup("speeds", ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    for (const char* id : {"motion.faster", "motion.slower", "motion.play_at_file_rate", "motion.loop",
+                           "motion.ping_pong", "motion.show_seconds"})
+      operator_menu_item(editor_, id);
+    editor_.place.region = Region::Bottom;
+    ImGui::EndPopup();
+  }
+
+  // A whole number that is committed when its drag or typing ends.
+  void number(const std::string& name, int value, const std::function<void(int)>& moved,
+              const std::function<void(int)>& ended) {
+    const float height = look_.px(22), y = std::round(bar_.centre().y - height / 2), width = look_.px(62);
+    const Rect place{{x_, y}, {x_ + width, y + height}};
+    x_ += width + look_.px(4);
+    auto& edited = editor_.edited_number;
+    double number = edited.name == name ? edited.value : value;
+    bool committed = false;
+    if (number_field(editor_, name, place, number, -1e6, 1e6, "%.0f", "", false, committed)) {
+      edited = {name, number};
+      if (moved) moved(static_cast<int>(std::round(number)));
+    }
+    if (!committed || edited.name != name) return;
+    const int wanted = static_cast<int>(std::round(edited.value));
+    edited = {};
+    ended(wanted);
+  }
+
+  void draw_frame() {
+    words("Frame");
+    number("Frame", shown_frame(editor_), {}, [this](int frame) {
+      stop_playing(editor_);
+      // Keys may stand anywhere; a motion has an end.
+      const Clip* clip = shown_clip(editor_);
+      const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
+      go_to_frame(editor_, std::clamp(frame, all.low, all.high));
+      if (frame < all.low || frame > all.high)
+        editor_.messages.info(
+            "Frame " + std::to_string(frame) + " is outside the clip",
+            clip->name + " has frames " + std::to_string(all.low) + " to " + std::to_string(all.high));
+    });
+    x_ += look_.px(4);
+  }
+
+  void draw_range() {
+    words("Range");
+    const FrameRange range = playing_range(editor_);
+    number("Range start", range.low, {}, [&](int frame) {
+      set(std::min(frame, range.high), range.high);
+      if (frame > range.high)
+        editor_.messages.info("The range begins at frame " + std::to_string(range.high),
+                              "It cannot begin behind its end");
+    });
+    number("Range end", range.high, {}, [&](int frame) {
+      set(range.low, std::max(range.low, frame));
+      if (frame < range.low)
+        editor_.messages.info("The range ends at frame " + std::to_string(range.low),
+                              "It cannot end before its beginning");
+    });
+  }
+  // In sight, though it may go beyond the clip.
+  void set(int low, int high) {
+    edit_clip(editor_, "Set range", PoseThen::Stays, [&](Clip& clip) {
+      clip.range_start = low;
+      clip.range_end = high;
+    });
+    const auto& window = editor_.timeline->window;
+    if (low < window.low || high > window.low + window.count) fit_window(editor_);
+  }
+
+  void draw_keying() {
+    const Operator* op = find_operator(editor_, "motion.insert_key");
+    const bool enabled = why_not(editor_, *op).empty(), long_form = fits(170);
+    const Rect place = next(long_form ? 124 : 30);
+    const Pressed pressed = press_area(editor_, "motion.insert_key", place, enabled);
+    fill(place,
+         pressed.hovered && enabled ? look_.theme.hover
+         : enabled                  ? look_.theme.raised
+                                    : look_.theme.head,
+         look_.px(4));
+    put_icon(look_.fonts.regular, enabled ? look_.theme.select : look_.theme.text3,
+             Rect{{place.low.x + look_.px(7), place.low.y}, {place.low.x + look_.px(23), place.high.y}}, icon::kKey);
+    if (long_form) {
+      put_text(editor_, look_.fonts.regular, enabled ? look_.theme.text : look_.theme.text3,
+               Rect{{place.low.x + look_.px(29), place.low.y}, place.high}, "Insert key");
+      put_key_caps(editor_, place.high.x - look_.px(7) - width_of_key_caps(editor_, {"I"}), place.centre().y, {"I"});
+    }
+    if (pressed.hovered) operator_tooltip(editor_, *op, place);
+    if (pressed.clicked) run(editor_, *op);
+    if (!fits(30)) return;
+    const Operator* automatic = find_operator(editor_, "motion.auto_key");
+    const Rect dot = next(28);
+    const Pressed on = press_area(editor_, "motion.auto_key", dot);
+    fill(dot,
+         on.hovered                   ? look_.theme.hover
+         : editor_.timeline->auto_key ? look_.theme.accent_soft
+                                      : look_.theme.raised,
+         look_.px(4));
+    put_icon(look_.fonts.regular, editor_.timeline->auto_key ? look_.theme.error : look_.theme.text3, dot, icon::kDot);
+    if (on.hovered) operator_tooltip(editor_, *automatic, dot);
+    if (on.clicked) run(editor_, *automatic);
+  }
+
+  Editor& editor_;
+  const Look& look_;
+  Rect bar_;
+  float x_, right_;
+};
+
+// ---- time
+
+// 1, 2 or 5 times a power of ten, at least `least`.
+double round_step(double least) {
+  const double power = std::pow(10, std::floor(std::log10(std::max(least, 1e-6))));
+  for (double step : {1.0, 2.0, 5.0})
+    if (step * power >= least * (1 - 1e-9)) return step * power;
+  return 10 * power;
+}
+
+// ---- the play head
+
+std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
+
+// Its tab with what the ruler counts; at the ruler's end while the head itself is out of sight.
+struct Head {
+  float x;
+  int beyond;  // -1 or 1: it is out of sight at the left or right
+  std::string text, other;
+  Rect tab;
+};
+
+Head head_of(const Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const int frame = shown_frame(editor);
+  const std::string seconds = seconds_text(frame, frame_rate(editor));
+  Head head{std::round(x_of(timeline, frame)),
+            0,
+            timeline.seconds ? seconds : std::to_string(frame),
+            timeline.seconds ? frame_text(frame) : seconds,
+            {}};
+  head.beyond = head.x < timeline.ruler.low.x - 1 ? -1 : head.x > timeline.ruler.high.x + 1 ? 1 : 0;
+  const float half = std::round(
+      std::max(look.px(48), text_size(look.fonts.small_mono, head.text).x + look.px(head.beyond ? 28 : 12)) / 2);
+  const float x = head.beyond ? std::clamp(head.x, timeline.ruler.low.x + half, timeline.ruler.high.x - half) : head.x;
+  head.tab = {{x - half, timeline.ruler.low.y + look.px(2)}, {x + half, timeline.ruler.low.y + look.px(20)}};
+  return head;
+}
+
+// ---- the ruler
+
+void draw_ruler(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Rect& ruler = timeline.ruler;
+  const FrameRange range = playing_range(editor);
+  fill(ruler, look.theme.field);
+  const Rect inside =
+      intersection(ruler, {{x_of(timeline, range.low), ruler.low.y}, {x_of(timeline, range.high), ruler.high.y}});
+  if (!inside.empty()) fill(inside, look.theme.accent_soft);
+  for (int end : {range.low, range.high}) {
+    const float x = std::round(x_of(timeline, end));
+    if (x >= ruler.low.x && x < ruler.high.x)
+      fill({{x, ruler.low.y}, {x + look.line(), timeline.area.high.y}}, look.theme.line2);
+  }
+  const double unit = timeline.seconds ? frame_rate(editor) : 1,
+               per_pixel = timeline.window.count / std::max(1.0f, ruler.width());
+  double step = round_step(look.px(kLeastTicks) * per_pixel / unit);
+  if (!timeline.seconds) step = std::max(1.0, step);
+  const double minor = step / 5, end = (timeline.window.low + timeline.window.count) / unit;
+  const Rect tab = head_of(editor).tab;
+  for (auto i = static_cast<std::int64_t>(std::ceil(timeline.window.low / unit / minor));
+       static_cast<double>(i) * minor <= end; ++i) {
+    const double at = static_cast<double>(i) * minor;
+    const bool major = i % 5 == 0;
+    const float x = std::round(x_of(timeline, at * unit));
+    fill({{x, ruler.high.y - look.px(major ? 14 : 5)}, {x + look.line(), ruler.high.y}}, look.theme.line2);
+    if (!major) continue;
+    char text[24];
+    std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at);
+    const glm::vec2 corner(x + look.px(4), ruler.low.y + look.px(2));
+    const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
+    // Whole or not at all.
+    if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kEnds))
+      put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
+  }
+}
+
+// Names have the room up to the next marker; the last one stands at its marker's left where there is more. Returns what
+// is covered.
+std::vector<Rect> draw_markers(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  std::vector<Rect> covered;
+  if (!clip || timeline.marks.empty()) return covered;
+  const Rect& row = timeline.marks;
+  const float half = look.px(5), gap = look.px(9), y = std::round(row.centre().y) - look.px(4),
+              end = row.high.x + look.px(kEnds - 2);
+  float begin = row.low.x;  // of what is free
+  for (std::size_t i = 0; i < clip->markers.size(); ++i) {
+    const Marker& marker = clip->markers[i];
+    const float x = x_of(timeline, marker.frame);
+    if (x < row.low.x - half || x > row.high.x + half) continue;
+    const float next =
+        i + 1 < clip->markers.size() ? std::min(end, x_of(timeline, clip->markers[i + 1].frame) - gap) : end;
+    const float width = text_size(look.fonts.small, marker.name).x + 1, right = next - x - gap, left = x - gap - begin;
+    ImGui::GetWindowDrawList()->AddTriangleFilled({x - half, y}, {x + half, y}, {x, y + look.px(9)}, look.theme.ok);
+    const bool at_left = right < width && next == end && left > right;
+    const Rect name = at_left
+                          ? Rect{{x - gap - std::min(width, left), row.low.y}, {x - gap, row.high.y}}
+                          : Rect{{x + gap, row.low.y}, {x + gap + std::min(width, std::max(0.0f, right)), row.high.y}};
+    put_text(editor, look.fonts.small, look.theme.ok, name, marker.name);
+    covered.push_back({{std::min(x - half, name.low.x), row.low.y}, {std::max(x + half, name.high.x), row.high.y}});
+    begin = covered.back().high.x + gap;
+  }
+  return covered;
+}
+
+// ---- the chosen bone's angle
+
+constexpr double kPerSample = 3;     // pixels at least
+constexpr std::size_t kAtOnce = 24;  // samples in one picture, so that none is late
+
+float degrees_from_rest(const Pose& pose, int bone) {
+  const glm::dquat& q = pose.rotation[bone];
+  return static_cast<float>(glm::degrees(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), std::abs(q.w))));
+}
+
+// A few samples more, until the curve is whole.
+void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
+  Timeline& timeline = *editor.timeline;
+  auto& curve = timeline.curve;
+  // At whole frames: between them a motion holds.
+  const double per_pixel = timeline.window.count / std::max(1.0f, lane.width());
+  const int step = static_cast<int>(std::clamp(std::ceil(kPerSample * editor.look.scale * per_pixel), 1.0, 1e7));
+  const int first = static_cast<int>(std::clamp(std::floor(timeline.window.low / step) * step, -1e8, 1e8));
+  if (curve.clip != clip.clip().get() || curve.bone != bone || curve.first != first || curve.step != step)
+    curve = {clip.clip().get(), bone, first, step, {}};
+  const auto wanted = static_cast<std::size_t>(timeline.window.count / step) + 2;
+  const int parent = clip.armature()->bones[bone].parent;
+  for (std::size_t i = 0; i < kAtOnce && curve.angles.size() < wanted; ++i) {
+    const Pose pose = clip.at(first + step * static_cast<int>(curve.angles.size()));
+    curve.angles.emplace_back(degrees_from_rest(pose, bone), parent >= 0 ? degrees_from_rest(pose, parent) : 0.0f);
+  }
+  if (curve.angles.size() < wanted) editor.touch();
+}
+
+void draw_curve(Editor& editor, const Rect& bar) {
+  const Timeline& timeline = *editor.timeline;
+  const ClipOnRig* clip = clip_on_rig(editor);
+  const int bone = editor.selection.bone.value_or(-1);
+  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < editor.look.px(40)) return;
+  sample_curve(editor, *clip, bone, timeline.lane);
+  const auto& angles = timeline.curve.angles;
+  float most = 1;
+  for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
+  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(32);  // below the name
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  ImGui::PushClipRect(im(bar.low), im(bar.high), true);
+  const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
+  for (int line = clip->armature()->bones[bone].parent >= 0 ? 1 : 0; line >= 0; --line) {
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      list.PathLineTo({x_of(timeline, timeline.curve.first + static_cast<double>(i) * timeline.curve.step),
+                       low - height * angles[i][line] / most});
+    list.PathStroke(colours[line], 0, (line == 0 ? 1.5f : 1.0f) * editor.look.scale);
+  }
+  ImGui::PopClipRect();
+}
+
+void draw_lane(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip || !clip->motion) return;
+  const Rect& lane = timeline.lane;
+  const Rect bar = intersection(lane, {{std::round(x_of(timeline, clip->start)), lane.low.y},
+                                       {std::round(x_of(timeline, clip->end() + 1.0)), lane.high.y}});
+  if (bar.empty()) return;
+  fill(bar, look.theme.accent_soft, look.px(3));
+  outline(bar, look.theme.accent, look.px(3), look.line());
+  draw_curve(editor, bar);
+  const float y = bar.low.y + look.px(3), right = bar.high.x - look.px(6);
+  float x = bar.low.x + look.px(10);
+  const float name = std::min(text_size(look.fonts.semibold, clip->name).x + 1, right - x);
+  if (name < look.px(20)) return;
+  put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{x, y}, {x + name, y + look.px(18)}}, clip->name);
+  x += name + look.px(14);
+  char facts[128];
+  const std::string frames = number_text(clip->last - clip->first + 1);
+  const Document& document = editor.document();
+  const int bone = editor.selection.bone.value_or(-1);
+  const bool chosen = document.armature && bone >= 0 && bone < std::ssize(document.armature->bones);
+  std::snprintf(facts, sizeof facts, "%.5g fps \u00b7 %s frames%s%.40s%s", clip->rate, frames.c_str(),
+                chosen ? " \u00b7 " : "", chosen ? document.armature->bones[bone].name.c_str() : "",
+                chosen ? " angle" : "");
+  if (right - x > look.px(40))
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, y}, {right, y + look.px(18)}}, facts);
+}
+
+void draw_keys(Editor& editor) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip) return;
+  const float y = std::round(timeline.keys.centre().y), half = look.px(6);
+  for (int frame : frames_of(clip->keys)) {
+    const auto moving = timeline.moving.find(frame);
+    const float x = std::round(x_of(timeline, moving == timeline.moving.end() ? frame : moving->second));
+    if (x < timeline.keys.low.x - half || x > timeline.keys.high.x + half) continue;
+    const bool chosen = timeline.chosen.contains(frame) || frame == shown_frame(editor);
+    ImGui::GetWindowDrawList()->AddQuadFilled({x, y - half}, {x + half, y}, {x, y + half}, {x - half, y},
+                                              chosen ? look.theme.select : look.theme.text);
+  }
+  if (!timeline.box) return;
+  const Rect box = intersection(*timeline.box, timeline.area);
+  fill(box, with_alpha(look.theme.select, 0.15f));
+  outline(box, look.theme.select, 0, look.line());
+}
+
+// What the ruler does not count stands beside it, where `covered` leaves room.
+void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
+  const Look& look = editor.look;
+  const Timeline& timeline = *editor.timeline;
+  const Head head = head_of(editor);
+  fill(head.tab, look.theme.select, look.px(4));
+  if (head.beyond) {
+    const float side = static_cast<float>(head.beyond),
+                tip = (side > 0 ? head.tab.high.x : head.tab.low.x) - side * look.px(5), y = head.tab.centre().y;
+    ImGui::GetWindowDrawList()->AddTriangleFilled({tip, y}, {tip - side * look.px(6), y - look.px(5)},
+                                                  {tip - side * look.px(6), y + look.px(5)}, look.theme.on_select);
+    const Rect rest = side > 0 ? Rect{head.tab.low, {tip - look.px(6), head.tab.high.y}}
+                               : Rect{{tip + look.px(6), head.tab.low.y}, head.tab.high};
+    return put_text(editor, look.fonts.small_mono, look.theme.on_select, rest, head.text, Align::Centre);
+  }
+  const float half = std::max(1.0f, std::round(look.scale));
+  fill({{head.x - half, timeline.ruler.low.y}, {head.x + half, timeline.area.high.y}}, look.theme.select);
+  put_text(editor, look.fonts.small_mono, look.theme.on_select, head.tab, head.text, Align::Centre);
+  if (timeline.marks.empty()) return;
+  const Rect& row = timeline.marks;
+  const float width = text_size(look.fonts.small_mono, head.other).x + 1;
+  for (const float left : {head.x + look.px(8), head.x - look.px(8) - width}) {
+    const Rect place{{left, row.low.y}, {left + width, row.high.y}};
+    const bool free = std::none_of(covered.begin(), covered.end(),
+                                   [&](const Rect& other) { return !intersection(place, other).empty(); });
+    if (free && place.low.x >= row.low.x && place.high.x <= row.high.x + look.px(kEnds))
+      return put_text(editor, look.fonts.small_mono, look.theme.select, place, head.other);
+  }
+}
+
+// What is seen of time goes along when the play head leaves it, except under a hand that drags.
+void follow_head(Editor& editor) {
+  auto& window = editor.timeline->window;
+  const int frame = shown_frame(editor);
+  if (window.followed == frame || editor.drag) return;
+  const bool first = !window.followed;
+  window.followed = frame;
+  if (first) return;
+  if (frame < window.low) window.low = frame - 0.9 * window.count;
+  else if (frame > window.low + window.count) window.low = frame - 0.1 * window.count;
+}
+
+void place_rows(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(kEnds);
+  float y = rect.low.y;
+  const auto row = [&](float height) {
+    const Rect place{{left, y}, {right, std::min(y + height, rect.high.y)}};
+    y = place.high.y;
+    return place;
+  };
+  editor.timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
+  timeline.ruler = row(look.px(kRuler));
+  // Low areas have thinner rows, and the lowest do without markers.
+  const float rest = rect.high.y - y;
+  timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks))
+                   : rest >= look.px(3 * kThinRow)  ? row(look.px(kThinRow))
+                                                    : Rect{};
+  const float keys = std::clamp((rect.high.y - y) * 0.35f, look.px(kThinRow), look.px(kKeys));
+  timeline.lane = row(std::clamp(rect.high.y - y - keys, look.px(kThinRow), look.px(kLane)));
+  timeline.keys = row(keys);
+}
+
+}  // namespace
+
+void draw_timeline(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  const PathScope path(editor, "timeline");
+  const Rect bar{rect.low, {rect.high.x, rect.low.y + look.px(kTransport)}};
+  Transport(editor, bar).draw();
+  const Rect rows{{rect.low.x, bar.high.y}, rect.high};
+  const Clip* clip = shown_clip(editor);
+  if (!clip) {
+    editor.timeline_area = timeline.area = timeline.ruler = timeline.marks = timeline.lane = timeline.keys = {};
+    if (empty_state(editor, rows, "No clip", "Import BVH...")) run(editor, "file.import_motion");
+    return;
+  }
+  place_rows(editor, rows);
+  const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
+  if (timeline.window.clip != fitted) {
+    timeline.window.clip = fitted;
+    timeline.window.followed.reset();
+    timeline.chosen.clear();
+    fit_window(editor);
+  }
+  follow_head(editor);
+  for (const auto& [name, place] :
+       {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
+    if (!place.empty())
+      put_text(editor, look.fonts.small, look.theme.text3,
+               Rect{{rect.low.x + look.px(12), place.low.y}, {place.low.x - look.px(4), place.high.y}}, name);
+  for (const auto& [name, place] : {std::pair<const char*, Rect>{"ruler", timeline.ruler},
+                                    {"marks", timeline.marks},
+                                    {"lane", timeline.lane},
+                                    {"keys", timeline.keys}})
+    register_widget(editor, name, place);
+  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)),
+                      im(timeline.area.high + glm::vec2(look.px(kEnds), 0)), true);
+  draw_ruler(editor);
+  draw_lane(editor);
+  const std::vector<Rect> covered = draw_markers(editor);
+  draw_keys(editor);
+  draw_play_head(editor, covered);
+  ImGui::PopClipRect();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/timeline_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "editor/viewport/numeric_input.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFurthest = 1e7;  // frames; no clip is longer
+
+void show_under_pointer(Editor& editor) {
+  const double frame =
+      std::clamp(std::round(frame_at(*editor.timeline, editor.input.pointer.x)), -kFurthest, kFurthest);
+  show_frame(editor, static_cast<int>(frame));
+}
+
+constexpr float kReach = 7;  // pixels at scale 1, from a key's middle
+
+std::optional<int> key_under_pointer(const Editor& editor) {
+  const Timeline& timeline = *editor.timeline;
+  const Clip* clip = shown_clip(editor);
+  if (!clip || !timeline.keys.contains(editor.input.pointer)) return std::nullopt;
+  std::optional<int> nearest;
+  float least = editor.look.px(kReach);
+  for (int frame : frames_of(clip->keys))
+    if (const float far = std::abs(x_of(timeline, frame) - editor.input.pointer.x); far <= least) {
+      least = far;
+      nearest = frame;
+    }
+  return nearest;
+}
+
+void commit_change(Editor& editor, KeyChange change) {
+  const std::map<int, int> frame_of = std::exchange(editor.timeline->moving, {});
+  const bool any =
+      std::any_of(frame_of.begin(), frame_of.end(), [](const auto& key) { return key.first != key.second; });
+  if (!any) return;
+  constexpr const char* kLabels[] = {"Move keys", "Scale keys", "Duplicate keys"};
+  editor.timeline->chosen.clear();
+  for (const auto& [from, to] : frame_of) editor.timeline->chosen.insert(to);
+  edit_clip(editor, kLabels[static_cast<int>(change)], PoseThen::FromClip, [&](Clip& clip) {
+    change == KeyChange::Duplicate ? copy_keys(clip.keys, frame_of) : move_keys(clip.keys, frame_of);
+  });
+}
+
+class ChangingKeys final : public Modal {
+ public:
+  ChangingKeys(Editor& editor, KeyChange change)
+      : change_(change),
+        chosen_(editor.timeline->chosen),
+        pivot_(shown_frame(editor)),
+        began_(editor.input.pointer.x) {}
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    way_ += pixels.x * (editor.input.down(Key::Shift) ? 0.1f : 1.0f);
+    return show(editor);
+  }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (!event.down || event.button == MouseButton::Middle) return true;
+    return event.button == MouseButton::Left ? confirm(editor) : drop(editor);
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    if (event.key == Key::Escape) return drop(editor);
+    if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
+    if (number_.key(event.key)) show(editor);
+    return true;
+  }
+  void cancel(Editor& editor) override { editor.timeline->moving.clear(); }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    char text[48];
+    std::snprintf(text, sizeof text, change_ == KeyChange::Scale ? "Scale %.2f" : "Move %+.0f frames", value_);
+    return {
+        {{}, number_.typed() ? std::string(change_ == KeyChange::Scale ? "Scale " : "Move ") + number_.text() : text},
+        {{"0-9"}, "Type a number"},
+        {{"Enter"}, "Confirm"},
+        {{"Esc"}, "Cancel"}};
+  }
+
+ private:
+  bool show(Editor& editor) {
+    const Timeline& timeline = *editor.timeline;
+    const double frames = way_ / std::max(1.0f, timeline.ruler.width()) * timeline.window.count;
+    if (change_ == KeyChange::Scale) {
+      const double reach = began_ - x_of(timeline, pivot_);
+      value_ = number_.typed() ? number_.value() : std::abs(reach) < 1 ? 1 : (reach + way_) / reach;
+    } else {
+      value_ = number_.typed() ? std::round(number_.value()) : std::round(frames);
+    }
+    value_ = std::clamp(value_, -kFurthest, kFurthest);
+    auto& moving = editor.timeline->moving;
+    moving.clear();
+    for (int frame : chosen_) {
+      const double to = change_ == KeyChange::Scale ? pivot_ + std::round((frame - pivot_) * value_) : frame + value_;
+      moving[frame] = static_cast<int>(std::clamp(to, -kFurthest, kFurthest));
+    }
+    editor.touch();
+    return true;
+  }
+  bool confirm(Editor& editor) {
+    commit_change(editor, change_);
+    return false;
+  }
+  bool drop(Editor& editor) {
+    cancel(editor);
+    return false;
+  }
+
+  KeyChange change_;
+  std::set<int> chosen_;
+  int pivot_;
+  float began_, way_ = 0;
+  double value_ = 0;
+  TypedNumber number_;
+};
+
+// Chosen keys with the button held.
+void drag_keys(Editor& editor, int frame) {
+  Timeline& timeline = *editor.timeline;
+  const bool extend = editor.input.modifiers().shift;
+  if (extend && timeline.chosen.contains(frame)) {
+    timeline.chosen.erase(frame);
+    return;
+  }
+  if (!extend && !timeline.chosen.contains(frame)) timeline.chosen.clear();
+  timeline.chosen.insert(frame);
+  const auto moved = [began = editor.input.pointer.x](Editor& e, const glm::vec2&) {
+    Timeline& t = *e.timeline;
+    const int by =
+        static_cast<int>(std::round((e.input.pointer.x - began) / std::max(1.0f, t.ruler.width()) * t.window.count));
+    t.moving.clear();
+    for (int key : t.chosen) t.moving[key] = key + by;
+  };
+  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_change(e, KeyChange::Move); },
+                     [](Editor& e) { e.timeline->moving.clear(); }};
+}
+
+}  // namespace
+
+double frame_at(const Timeline& timeline, float x) {
+  const Rect& ruler = timeline.ruler;
+  return timeline.window.low + (x - ruler.low.x) / std::max(1.0f, ruler.width()) * timeline.window.count;
+}
+
+float x_of(const Timeline& timeline, double frame) {
+  const Rect& ruler = timeline.ruler;
+  return ruler.low.x + static_cast<float>((frame - timeline.window.low) / timeline.window.count) * ruler.width();
+}
+
+void fit_window_to_keys(Editor& editor) {
+  const std::set<int>& chosen = editor.timeline->chosen;
+  const double low = *chosen.begin(), count = *chosen.rbegin() - low + 1;
+  auto& window = editor.timeline->window;
+  window.count = std::max(kFewestFrames, 1.2 * count);
+  window.low = low + count / 2 - window.count / 2;
+}
+
+void fit_window(Editor& editor) {
+  const FrameRange range = playing_range(editor);
+  double low = range.low, high = range.high;
+  if (const Clip* clip = shown_clip(editor); clip && clip->motion) {
+    low = std::min<double>(low, clip->start);
+    high = std::max<double>(high, clip->end());
+  }
+  const double room = std::max(2.0, 0.03 * (high - low));
+  editor.timeline->window.low = low - room;
+  editor.timeline->window.count = high - low + 2 * room;
+}
+
+void press_timeline(Editor& editor) {
+  if (const auto key = key_under_pointer(editor)) {
+    stop_playing(editor);
+    return drag_keys(editor, *key);
+  }
+  editor.timeline->play.on = false;
+  editor.timeline->chosen.clear();
+  show_under_pointer(editor);
+  editor.drag =
+      Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { show_under_pointer(e); }, settle_frame, drop_frame};
+}
+
+void box_keys(Editor& editor) {
+  const glm::vec2 from = editor.input.pointer;
+  const auto moved = [from](Editor& e, const glm::vec2&) {
+    e.timeline->box = Rect{glm::min(from, e.input.pointer), glm::max(from, e.input.pointer)};
+  };
+  const auto ended = [](Editor& e) {
+    Timeline& timeline = *e.timeline;
+    if (!timeline.box) return;
+    const Rect box = *std::exchange(timeline.box, std::nullopt);
+    if (!e.input.modifiers().shift) timeline.chosen.clear();
+    for (int frame : frames_of(shown_clip(e)->keys))
+      if (const float x = x_of(timeline, frame); x >= box.low.x && x <= box.high.x) timeline.chosen.insert(frame);
+  };
+  editor.drag = Drag{MouseButton::Left, moved, ended, [](Editor& e) { e.timeline->box.reset(); }};
+}
+
+void begin_changing_keys(Editor& editor, KeyChange change) {
+  stop_playing(editor);
+  editor.modal = std::make_unique<ChangingKeys>(editor, change);
+  editor.modal_wrap = {};
+}
+
+void pan_timeline(Editor& editor) {
+  editor.drag = Drag{MouseButton::Middle, [](Editor& e, const glm::vec2& by) {
+                       Timeline& timeline = *e.timeline;
+                       timeline.window.low -= by.x / std::max(1.0f, timeline.ruler.width()) * timeline.window.count;
+                     }};
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Joints dragged, limbs following.
+#include <algorithm>
+#include <cmath>
+
+#include "core/pose/inverse_kinematics.h"
+#include "core/rig/mirror.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1;
+constexpr double kPinWeight = 10;  // against what is dragged
+
+class Dragging final : public TransformTool {
+ public:
+  Dragging(Editor& editor, const Grip& grip)
+      : TransformTool(editor, grip),
+        armature_(editor.document().armature),
+        before_(pose_of(editor.document())),
+        bone_(editor.selection.bone.value_or(0)) {
+    const Bone& bone = armature_->bones[bone_];
+    is_root_ = bone.parent < 0;
+    const auto posed = posed_from_rest(*armature_, before_);
+    from_ = target_ = posed[bone_] * (is_root_ ? bone.head : bone.tail);
+    chain_ = editor.handling->auto_ik ? limb_of(*armature_, bone_) : 1;
+    const Anchors& anchors = anchors_of(editor.document());
+    for (const std::string& name : anchors.pins)
+      if (const auto pin = armature_->find(name); pin && *pin != bone_)
+        pins_.push_back({.bone = *pin,
+                         .target = posed[*pin] * armature_->bones[*pin].tail,
+                         .chain = limb_of(*armature_, *pin),
+                         .weight = kPinWeight});
+    if (const auto pole = anchors.poles.find(bone.name); pole != anchors.poles.end()) pole_ = pole->second;
+  }
+
+  bool wheel(Editor& editor, float steps) override {
+    chain_ = std::clamp(chain_ + (steps > 0 ? 1 : -1), 1, depth_of(bone_));
+    show(editor);
+    return true;
+  }
+
+  std::string title() const override {
+    std::string text = is_root_ ? "Move body" : "Reach, " + std::to_string(chain_) + (chain_ == 1 ? " bone" : " bones");
+    text += lock_text("along") + ", " +
+            (number_.typed() ? number_.text() : text_of_number("%.1f", glm::distance(target_, from_))) + " mm";
+    if (!reached_) text += text_of_number(", out of reach by %.1f mm", short_of_);
+    return text;
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    auto hints = shared_hints();
+    if (!is_root_) hints.insert(hints.begin(), {{"Wheel"}, "Length of the chain"});
+    return hints;
+  }
+
+  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const GizmoPainter painter(editor, view_);
+    const Theme& theme = editor.look.theme;
+    const auto posed = posed_from_rest(*armature_, seen_pose(editor));
+    int bone = bone_;
+    for (int i = 0; !is_root_ && i < chain_ && bone >= 0; ++i, bone = armature_->bones[bone].parent)
+      painter.line(posed[bone] * armature_->bones[bone].head, posed[bone] * armature_->bones[bone].tail, kViewAccent,
+                   2);
+    if (lock_.axis >= 0 && !lock_.plane) {
+      const double far = view_.millimetres_per_pixel(from_) * 2000;
+      painter.line(from_ - far * lock_axis(), from_ + far * lock_axis(), with_alpha(theme.axis[lock_.axis], 0.6f), 1);
+    }
+    painter.line(from_, target_, theme.view_text2, 1, true);
+    painter.diamond(target_, reached_ ? theme.select : kViewError, 12);
+    const std::string number =
+        (number_.typed() ? number_.text() : text_of_number("%.1f", glm::distance(target_, from_))) + " mm";
+    const std::string words =
+        is_root_ ? "The body" : std::to_string(chain_) + (chain_ == 1 ? " bone follows" : " bones follow");
+    painter.read_out(target_, number, lock_.axis < 0 ? "" : lock_text("along").substr(1),
+                     reached_ ? words : text_of_number("Out of reach by %.1f mm", short_of_),
+                     reached_ ? theme.view_text2 : kViewError);
+  }
+
+ private:
+  glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, bone_, view_); }
+
+  int depth_of(int bone) const {
+    int depth = 1;
+    while ((bone = armature_->bones[bone].parent) >= 0) ++depth;
+    return depth;
+  }
+
+  Pose pose(Editor& editor) {
+    target_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
+    ReachSettings settings;
+    settings.keep_limits = editor.posing.keep_limits;
+    // From where the drag has come, so that the limb does not leap.
+    Pose start = shown_pose(editor);
+    std::vector<ReachGoal> goals = pins_;
+    if (is_root_) {
+      start.root_translation = before_.root_translation + target_ - from_;
+      if (goals.empty()) return start;
+    } else {
+      goals.insert(goals.begin(), {.bone = bone_, .target = target_, .chain = chain_});
+      settings.pole = pole_;
+    }
+    const Reach found = reach(*armature_, start, goals, settings);
+    reached_ = found.reached;
+    short_of_ = found.distance;
+    return mirrored_too(editor, before_, found.pose);
+  }
+
+  std::vector<FormField> parameters() const override {
+    std::vector<FormField> fields = fields_of_way(target_ - from_);
+    if (!is_root_) fields.push_back(number_of("Bones", "How many bones follow.", chain_, 1, depth_of(bone_), "%.0f"));
+    return fields;
+  }
+  void set(const std::vector<FormField>& fields) override {
+    set_way(fields);
+    if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
+  }
+
+  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void keep(Editor& editor) override {
+    commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, pose(editor));
+  }
+
+  std::shared_ptr<const Armature> armature_;
+  const Pose before_;
+  int bone_, chain_ = 1;
+  bool is_root_ = false, reached_ = true;
+  glm::dvec3 from_{0}, target_{0};
+  std::vector<ReachGoal> pins_;
+  std::optional<glm::dvec3> pole_;
+  double short_of_ = 0;
+};
+
+// The limb turns towards its pole while its end stays; with X-mirror on the other side's does so too, where it has a
+// pole.
+class DraggingPole final : public TransformTool {
+ public:
+  DraggingPole(Editor& editor, const Grip& grip)
+      : TransformTool(editor, grip),
+        armature_(editor.document().armature),
+        before_(pose_of(editor.document())),
+        bone_(*editor.selection.bone),
+        from_(anchors_of(editor.document()).poles.at(armature_->bones[bone_].name)) {
+    const int other = mirror_pairs(*armature_)[bone_];
+    if (editor.handling->x_mirror && other != bone_ &&
+        anchors_of(editor.document()).poles.contains(armature_->bones[other].name))
+      other_ = other;
+  }
+
+  std::string title() const override { return "Turn to pole" + lock_text("along"); }
+  std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
+  void cancel(Editor& editor) override {
+    editor.handling->shown_pole = {};
+    drop_shown_pose(editor);
+  }
+
+ private:
+  glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, bone_, view_); }
+
+  Pose pose(Editor& editor) {
+    to_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
+    const Pose one = turned(editor, before_, bone_, to_);
+    return other_ ? turned(editor, one, *other_, mirrored()) : one;
+  }
+
+  Pose turned(const Editor& editor, const Pose& pose, int bone, const glm::dvec3& pole) const {
+    const glm::dvec3 end = posed_from_rest(*armature_, before_)[bone] * armature_->bones[bone].tail;
+    return reach(*armature_, pose, {{.bone = bone, .target = end, .chain = limb_of(*armature_, bone)}},
+                 {.keep_limits = editor.posing.keep_limits, .pole = pole})
+        .pose;
+  }
+
+  // As seen from the body, wherever it went.
+  glm::dvec3 mirrored() const {
+    int root = bone_;
+    while (armature_->bones[root].parent >= 0) root = armature_->bones[root].parent;
+    const RigidTransform posed = posed_from_rest(*armature_, before_)[root];
+    return posed * mirror_plane(*armature_).place(inverse(posed) * to_);
+  }
+
+  std::vector<FormField> parameters() const override { return fields_of_way(to_ - from_); }
+  void set(const std::vector<FormField>& fields) override { set_way(fields); }
+
+  void show(Editor& editor) override {
+    show_pose(editor, pose(editor));
+    editor.handling->shown_pole = {armature_->bones[bone_].name, to_};
+  }
+  void keep(Editor& editor) override {
+    Pose turned = pose(editor);
+    Document next = editor.document();
+    Anchors anchors = anchors_of(next);
+    anchors.poles[armature_->bones[bone_].name] = to_;
+    if (other_) anchors.poles[armature_->bones[*other_].name] = mirrored();
+    if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
+    editor.handling->shown_pole = {};
+    commit_pose(editor, "Turn to pole", std::move(turned), std::move(next));
+  }
+
+  std::shared_ptr<const Armature> armature_;
+  const Pose before_;
+  int bone_;
+  std::optional<int> other_;
+  glm::dvec3 from_, to_ = from_;
+};
+
+}  // namespace
+
+std::unique_ptr<TransformTool> begin_dragging_pole(Editor& editor, const Grip& grip) {
+  return std::make_unique<DraggingPole>(editor, grip);
+}
+
+std::unique_ptr<TransformTool> begin_dragging(Editor& editor, const Grip& grip) {
+  return std::make_unique<Dragging>(editor, grip);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/live_metrics.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/report/metrics.h"
+#include "editor/context/editor.h"
+#include "editor/pose/live_preview.h"
+#include "editor/volume/body_seams.h"
+#include "editor/volume/tissue_edits.h"
+
+namespace limber::editor {
+
+std::optional<double> PoseMetrics::Row::change_percent() const {
+  return mm3_before > 0 ? std::optional(100 * (mm3_after / mm3_before - 1)) : std::nullopt;
+}
+
+PoseMetrics measure(const DenseWish& wish, Progress& progress) {
+  const Method method = wish.blend == Blend::Linear  ? Method(LinearBlend{})
+                        : wish.blend == Blend::Mixed ? Method(MixedBlend{})
+                                                     : Method(DualQuaternion{});
+  const auto seams = body_seams().of({wish.volume, wish.tissues, wish.armature, wish.seams, wish.bone_map}, progress);
+  const Posed posed = resample(*wish.volume, *wish.tissues, *wish.armature, *wish.weights, wish.pose, method,
+                               {.seams = seams}, progress);
+  progress.update("measure", 0);
+  const VolumeMetrics changes = compare(*wish.volume, posed.volume, *wish.tissues);
+  PoseMetrics metrics;
+  metrics.overlap_voxels = posed.report.overlap_voxels;
+  metrics.total = {"Total", {}, changes.mm3_before, changes.mm3_after};
+  std::optional<std::size_t> bone;
+  for (const TissueChange& change : changes.tissues) {
+    const Tissue* tissue = wish.tissues->find(change.label);
+    if (!tissue) continue;
+    if (is_bone(tissue->kind) && bone) {
+      metrics.tissues[*bone].mm3_before += change.mm3_before;
+      metrics.tissues[*bone].mm3_after += change.mm3_after;
+      continue;
+    }
+    if (is_bone(tissue->kind)) bone = metrics.tissues.size();
+    metrics.tissues.push_back(
+        {is_bone(tissue->kind) ? "Bone" : shown_name(*tissue), tissue->colour, change.mm3_before, change.mm3_after});
+  }
+  std::stable_sort(metrics.tissues.begin(), metrics.tissues.end(),
+                   [](const auto& a, const auto& b) { return a.mm3_before > b.mm3_before; });
+  return metrics;
+}
+
+void LiveMetrics::stop(Editor& editor) {
+  if (job_) editor.jobs.cancel(job_);
+  job_ = 0;
+}
+
+void LiveMetrics::follow(Editor& editor, const std::optional<DenseWish>& wish, bool settled) {
+  const bool wanted = std::exchange(wanted_, false);
+  if (!wish || !(*wish == of_)) {
+    stop(editor);
+    is_known_ = false;
+    trouble_.clear();
+    of_ = wish.value_or(DenseWish{});
+  }
+  if (!wanted) return stop(editor);
+  if (!wish || is_known_ || job_ || !settled || !trouble_.empty()) return;
+  job_ = start_task(
+      editor, "",
+      [wish = *wish](Progress& progress) -> Finish {
+        auto metrics = std::make_shared<PoseMetrics>(measure(wish, progress));
+        return [wish, metrics](Editor& e) {
+          LiveMetrics& mine = e.live->metrics();
+          if (!(mine.of_ == wish)) return;
+          mine.metrics_ = std::move(*metrics);
+          mine.metrics_of_ = wish.volume;
+          mine.is_known_ = true;
+          mine.job_ = 0;
+        };
+      },
+      [wish = *wish](Editor& e, const std::string& error) {
+        LiveMetrics& mine = e.live->metrics();
+        if (!(mine.of_ == wish)) return;
+        mine.trouble_ = error;
+        mine.job_ = 0;
+      });
+}
+
+}  // namespace limber::editor

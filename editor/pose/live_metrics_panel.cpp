@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the pose does to the volume: change of every tissue, overlap, joint limits.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/pose/limit_check.h"
+#include "editor/context/panels.h"
+#include "editor/pose/live_preview.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/volume_change.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kMostTissues = 6;  // that are shown at first
+constexpr char kAll[] = "Volume, live: all tissues";
+constexpr double kBeyond = 1e-6;  // radians
+
+Rect padded(const Editor& editor, const Rect& row) {
+  const float inset = editor.look.px(10);
+  return {{row.low.x + inset, row.low.y}, {row.high.x - inset, row.high.y}};
+}
+
+struct Cells {
+  std::string name, volume, change;
+};
+void put_cells(Editor& editor, const Rect& row, const Cells& cells, const std::array<Colour, 3>& colours, ImFont* words,
+               ImFont* digits, float indent) {
+  const Rect inner = padded(editor, row);
+  const float change = inner.high.x - editor.look.px(76), volume = change - editor.look.px(68);
+  put_text(editor, words, colours[0], Rect{{inner.low.x + editor.look.px(indent), row.low.y}, {volume, row.high.y}},
+           cells.name);
+  put_text(editor, digits, colours[1], Rect{{volume, row.low.y}, {change, row.high.y}}, cells.volume, Align::Right);
+  put_text(editor, digits, colours[2], Rect{{change, row.low.y}, inner.high}, cells.change, Align::Right);
+}
+
+// `known`: of the pose on show; else of the last one, in grey.
+void put_change(Editor& editor, const Rect& row, const PoseMetrics::Row& tissue, ImFont* font, bool known,
+                float indent) {
+  const Look& look = editor.look;
+  char volume[24];
+  std::snprintf(volume, sizeof volume, "%.1f", tissue.mm3_after / 1000);
+  const Colour grey = look.theme.text3;
+  put_cells(editor, row, {tissue.name, volume, percent(tissue.change_percent())},
+            {look.theme.text, known ? look.theme.text2 : grey,
+             known ? colour_of_change(look.theme, tissue.change_percent()) : grey},
+            font, look.fonts.mono, indent);
+}
+
+// A word at the left, figures at the right.
+void put_line(Editor& editor, Column& column, const std::string& words, const std::string& figures, Colour colour) {
+  const Look& look = editor.look;
+  const Rect row = padded(editor, column.row(24));
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + look.px(110), row.high.y}}, words);
+  put_text(editor, look.fonts.regular, colour, Rect{{row.low.x + look.px(110), row.low.y}, row.high}, figures,
+           Align::Right);
+}
+
+void put_metrics(Editor& editor, Column& column, const PoseMetrics& metrics, bool known) {
+  const Look& look = editor.look;
+  const Colour second = look.theme.text2;
+  put_cells(editor, column.row(24), {"Tissue", "cm\u00b3", "change"}, {second, second, second}, look.fonts.small,
+            look.fonts.small, 0);
+  // The worst first.
+  std::vector<PoseMetrics::Row> tissues = metrics.tissues;
+  std::stable_sort(tissues.begin(), tissues.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.change_percent().value_or(0)) > std::abs(b.change_percent().value_or(0));
+  });
+  bool& all = editor.open_sections[kAll];
+  for (std::size_t i = 0; i < (all ? tissues.size() : std::min(tissues.size(), kMostTissues)); ++i) {
+    const PoseMetrics::Row& tissue = tissues[i];
+    Rect row;
+    if (!column.list_row(row, static_cast<int>(i), false)) continue;
+    const float side = look.px(14), x = row.low.x + look.px(10), y = std::round(row.centre().y - side / 2);
+    fill({{x, y}, {x + side, y + side}}, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+    put_change(editor, row, tissue, look.fonts.regular, known, 22);
+  }
+  if (tissues.size() > kMostTissues) {
+    const Rect row = padded(editor, column.row(24));
+    const Pressed pressed = press_area(editor, "All tissues", row);
+    const std::string words = all ? "Only the " + std::to_string(kMostTissues) + " that change most"
+                                  : "All " + std::to_string(tissues.size()) + " tissues";
+    put_text(editor, look.fonts.regular, pressed.hovered ? look.theme.text : look.theme.accent_text,
+             Rect{{row.low.x + look.px(22), row.low.y}, row.high}, words);
+    if (pressed.clicked) all = !all, editor.touch();
+  }
+  put_change(editor, column.row(26), metrics.total, look.fonts.semibold, known, 0);
+  put_line(editor, column, "Overlap", grouped(metrics.overlap_voxels) + " voxels",
+           !known                   ? look.theme.text3
+           : metrics.overlap_voxels ? look.theme.warn
+                                    : look.theme.ok);
+}
+
+void put_limits(Editor& editor, Column& column) {
+  const Armature& armature = *editor.document().armature;
+  const LimitCheck check = check_limits(armature, shown_pose(editor), kBeyond);
+  const Theme& theme = editor.look.theme;
+  put_line(editor, column, "Joint limits", words_of(check, armature),
+           check.limited == 0 ? theme.text3
+           : check.beyond     ? theme.warn
+                              : theme.ok);
+}
+
+}  // namespace
+
+void draw_live_volume(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const Document& document = editor.document();
+  if (!document.volume || !document.armature) return;
+  LivePose& live = *editor.live;
+  const PoseMetrics* known = live.metrics().known();
+  const PoseMetrics* metrics = known ? known : live.metrics().last();
+  const std::string trouble = live.trouble().empty() ? live.metrics().trouble() : live.trouble();
+  const bool posed = live.posed();
+  if (column.begin_section("Volume, live", !trouble.empty() || !posed ? "" : known ? "dense" : "coarse")) {
+    if (!document.weights) {
+      const Operator* op = find_operator(editor, "skin.heat");
+      if (empty_state(editor, column.row(84), trouble, op->label)) run(editor, *op);
+    } else if (!trouble.empty()) {
+      const Rect row = padded(editor, column.row(28));
+      put_text(editor, look.fonts.regular, look.theme.warn, row, trouble);
+      if (ImGui::IsMouseHoveringRect(im(row.low), im(row.high)))
+        tooltip(editor, row, "The volume stays behind", trouble);
+    } else {
+      live.metrics().want();
+      if (metrics) put_metrics(editor, column, *metrics, known != nullptr);
+      else
+        put_text(editor, look.fonts.regular, look.theme.text2, padded(editor, column.row(28)),
+                 posed ? "Measured once the pose rests" : "At rest");
+      put_limits(editor, column);
+    }
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

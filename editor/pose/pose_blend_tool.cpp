@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A pose drawn towards another one, or away from it.
+#include <algorithm>
+#include <cmath>
+
+#include "core/rig/joint_limits.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kPixels = 200;                  // of the pointer's way for the whole amount, at scale 1
+constexpr double kSnap = 0.1, kSnapFine = 0.01;  // with Ctrl, with Ctrl and Shift
+
+// On the shortest way from one rotation to another, and beyond them.
+glm::dquat along(const glm::dquat& from, const glm::dquat& to, double share) {
+  glm::dquat by = glm::conjugate(from) * to;
+  if (by.w < 0) by = -by;
+  const glm::dvec3 v(by.x, by.y, by.z);
+  const double sine = glm::length(v);
+  if (sine == 0) return from;
+  return glm::normalize(from * exponential(v * (2 * std::atan2(sine, by.w) / sine * share)));
+}
+
+class Blending final : public TransformTool {
+ public:
+  Blending(Editor& editor, Blend blend)
+      : TransformTool(editor, {}),
+        blend_(std::move(blend)),
+        armature_(editor.document().armature),
+        before_(pose_of(editor.document())),
+        bones_(chosen_bones(editor)),
+        amount_(blend_.begin),
+        scale_(editor.look.scale) {
+    show(editor);
+  }
+
+  std::string title() const override {
+    return blend_.label + " " + (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
+  }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"0-9"}, "Per cent"}, {{"Ctrl"}, "Snap"}, {{"Shift"}, "Slowly"}, {{"Enter"}, "Keep"}, {{"Esc"}, "Back"}};
+  }
+  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const int bone = bones_.front();
+    const glm::dvec3 pivot = posed_from_rest(*armature_, seen_pose(editor))[bone] * armature_->bones[bone].head;
+    const std::string number = (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
+    GizmoPainter(editor, view_).read_out(pivot, number, blend_.label, blend_.words, editor.look.theme.view_text2);
+  }
+
+ private:
+  glm::dmat3 axes(Space) const override { return glm::dmat3(1); }
+
+  Pose pose(Editor& editor) {
+    const double dragged = blend_.begin + (pointer_.x - start_.x) / (kPixels * scale_);
+    amount_ = number_.typed() ? number_.value() / 100
+                              : std::clamp(snapped(editor, dragged, kSnap, kSnapFine), blend_.back ? -blend_.most : 0.0,
+                                           blend_.most);
+    const bool back = blend_.back && amount_ < 0;
+    const double share = back ? -amount_ : blend_.base + blend_.slope * amount_;
+    const Pose& to = back ? *blend_.back : blend_.to;
+    Pose next = before_;
+    for (const int bone : bones_) {
+      next.rotation[bone] = along(blend_.from.rotation[bone], to.rotation[bone], share);
+      if (armature_->bones[bone].parent < 0)
+        next.root_translation = glm::mix(blend_.from.root_translation, to.root_translation, share);
+    }
+    return limited(editor, std::move(next), bones_);
+  }
+
+  std::vector<FormField> parameters() const override {
+    return {number_of("Amount", "How far the chosen bones go.", 100 * amount_, blend_.back ? -100 * blend_.most : 0,
+                      100 * blend_.most, "%.1f", "%")};
+  }
+  void set(const std::vector<FormField>& fields) override { number_.set(fields[0].value); }
+
+  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void keep(Editor& editor) override { commit_pose(editor, blend_.label, pose(editor)); }
+
+  Blend blend_;
+  std::shared_ptr<const Armature> armature_;
+  const Pose before_;
+  std::vector<int> bones_;
+  double amount_;
+  float scale_;
+};
+
+}  // namespace
+
+std::unique_ptr<TransformTool> begin_blending(Editor& editor, const Blend& blend) {
+  return std::make_unique<Blending>(editor, blend);
+}
+
+}  // namespace limber::editor

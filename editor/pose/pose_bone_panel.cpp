@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/pose_bone_panel.h"
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "core/rig/anatomical_position.h"
+#include "core/rig/joint_angle.h"
+#include "editor/context/operator_button.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFar = 1e5;  // mm: as far as a body can be put
+
+// A number of the pose; the body follows while it changes, and the edit is one.
+void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown,
+                 double farthest, const char* format, const char* unit, const std::function<void(Pose&, double)>& set) {
+  auto& edited = editor.edited_number;
+  double value = edited.name == name ? edited.value : shown;
+  bool committed = false;
+  const auto changed = [&](double number) {
+    const Pose before = pose_of(editor.document());
+    Pose pose = before;
+    set(pose, number);
+    return limited(editor, mirrored_too(editor, before, std::move(pose)), {*editor.selection.bone});
+  };
+  if (number_field(editor, name, rect, value, -farthest, farthest, format, unit, false, committed)) {
+    stop_playing(editor);
+    settle_frame(editor);
+    edited = {name, value};
+    show_pose(editor, changed(value));
+  }
+  if (!committed || edited.name != name) return;
+  const double number = edited.value;
+  edited = {};
+  commit_pose(editor, label, changed(number));
+}
+
+// Three numbers want more than a property's place.
+void draw_three(Editor& editor, Column& column, const std::string& title, const std::string& label,
+                const glm::dvec3& shown, double farthest, const std::function<void(Pose&, int axis, double)>& set) {
+  const Look& look = editor.look;
+  Rect rect = column.property(title);
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
+  const float width = (rect.width() - 2 * look.px(4)) / 3;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float x = std::round(rect.low.x + static_cast<float>(axis) * (width + look.px(4)));
+    const Rect field{{x, rect.low.y}, {std::round(x + width), rect.high.y}};
+    draw_number(editor, {{field.low.x + look.px(3), field.low.y}, field.high}, title + " " + "XYZ"[axis], label,
+                shown[axis], farthest, "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
+    fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
+  }
+}
+
+// The other three parts make up what is left of 1; nothing where they are all zero.
+glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
+  glm::dvec4 q(rotation.w, rotation.x, rotation.y, rotation.z);
+  q[part] = 0;
+  const double others = glm::length(q);
+  if (others < 1e-9) return rotation;
+  q *= std::sqrt(std::max(0.0, 1 - value * value)) / others;
+  q[part] = value;
+  return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
+}
+
+// w, x, y, z.
+void draw_quaternion(Editor& editor, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
+  const Look& look = editor.look;
+  Rect rect = column.property("W X Y Z");
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
+  const glm::dquat shown = rotation.w < 0 ? -rotation : rotation;
+  const double parts[] = {shown.w, shown.x, shown.y, shown.z};
+  const float width = (rect.width() - 3 * look.px(2)) / 4;
+  for (int part = 0; part < 4; ++part) {
+    const float x = std::round(rect.low.x + static_cast<float>(part) * (width + look.px(2)));
+    draw_number(editor, {{x, rect.low.y}, {std::round(x + width), rect.high.y}},
+                std::string("Quaternion ") + "WXYZ"[part], label, parts[part], 1, "%.2f", "",
+                [&](Pose& next, double value) {
+                  next.rotation[bone] =
+                      with_part(next.rotation[bone].w < 0 ? -next.rotation[bone] : next.rotation[bone], part, value);
+                });
+  }
+}
+
+void draw_ik(Editor& editor, Column& column) {
+  const Rect rect = column.property("IK");
+  const float middle = std::round(rect.low.x + 0.58f * rect.width());
+  operator_box(editor, "pose.pin", {rect.low, {middle - editor.look.px(4), rect.high.y}}, "Pin joint");
+  operator_box(editor, "pose.pole", {{middle, rect.low.y}, rect.high}, "Pole");
+}
+
+std::string text_of(const char* format, double radians) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, glm::degrees(radians));
+  return text;
+}
+
+// Angles of a hinge from the anatomical position.
+std::string words_of(const JointLimits& limits, double at_rest) {
+  switch (limits.type) {
+    case JointLimits::Type::Free: return "none";
+    case JointLimits::Type::Fixed: return "fixed";
+    case JointLimits::Type::Hinge:
+      return std::to_string(std::lround(glm::degrees(limits.minimum + at_rest))) +
+             text_of(" to %.0f\u00b0", limits.maximum + at_rest);
+    case JointLimits::Type::Ball:
+      return text_of("cone %.0f\u00b0, twist ", limits.cone) + text_of("%.0f", limits.twist_minimum) +
+             text_of(" to %.0f\u00b0", limits.twist_maximum);
+  }
+  return "";
+}
+
+}  // namespace
+
+void draw_posed_bone(Editor& editor, Column& column) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const auto chosen = editor.selection.bone;
+  if (!rig || !chosen || *chosen >= std::ssize(rig->bones)) return;
+  const int index = *chosen;
+  const Bone& bone = rig->bones[index];
+  const Look& look = editor.look;
+  if (column.begin_section("Bone", bone.name)) {
+    column.space(6);
+    const Pose pose = shown_pose(editor);
+    const std::string label = "Rotate " + bone.name;
+    const glm::dvec3 at_rest = turn_at_rest(*rig, index);
+    const double zero = glm::dot(at_rest, bone.limits.axis);  // of a hinge
+    if (bone.limits.type == JointLimits::Type::Hinge) {
+      const glm::dvec3 axis = bone.limits.axis;
+      draw_number(editor, column.property("Angle"), "Angle", label,
+                  glm::degrees(swing_twist(pose.rotation[index], axis).twist + zero), 360, "%.1f", "\u00b0",
+                  [&](Pose& next, double degrees) {
+                    next.rotation[index] = glm::angleAxis(glm::radians(degrees) - zero, axis);
+                  });
+    } else {
+      draw_three(editor, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
+                 [&](Pose& next, int axis, double degrees) {
+                   // The others as they were before: beyond 90 degrees about y the three are no longer read as they
+                   // were given.
+                   glm::dvec3 angles = own_angles(bone, next.rotation[index]);
+                   angles[axis] = degrees;
+                   next.rotation[index] = turned_by_own_angles(bone, angles);
+                 });
+    }
+    draw_quaternion(editor, column, label, index, pose.rotation[index]);
+    if (bone.parent < 0)
+      draw_three(editor, column, "Place, mm", "Move body", pose.root_translation, kFar,
+                 [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
+    draw_ik(editor, column);
+    const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);
+    Rect limits = column.property("Limits");
+    limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(200)));
+    put_text(editor, look.fonts.regular, beyond.empty() ? look.theme.text2 : look.theme.warn, limits,
+             beyond.empty() ? words_of(bone.limits, zero) : beyond, Align::Right);
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/pose_edits.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/rig/joint_limits.h"
+#include "core/rig/mirror.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/transform_settings.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/live_preview.h"
+#include "editor/shown/shown_result.h"
+#include "editor/shown/test_pose.h"
+
+namespace limber::editor {
+
+Pose seen_pose(const Editor& editor) {
+  const Pose& seen = editor.live->pose();
+  const bool is_of_rig = seen.rotation.size() == editor.document().armature->bones.size();
+  return is_of_rig && !shown_result(editor) ? seen : shown_pose(editor);
+}
+
+int limb_of(const Armature& armature, int bone) {
+  int length = 1;
+  for (int b = bone; armature.bones[b].parent >= 0; ++length) {
+    const int parent = armature.bones[b].parent;
+    const auto children = std::count_if(armature.bones.begin(), armature.bones.end(),
+                                        [&](const Bone& other) { return other.parent == parent; });
+    if (children > 1) break;
+    b = parent;
+  }
+  return length;
+}
+
+Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
+  if (!editor.handling->x_mirror) return next;
+  const Armature& armature = *editor.document().armature;
+  const std::vector<int> pairs = mirror_pairs(armature);
+  const MirrorPlane plane = mirror_plane(armature);
+  const Pose turned = next;
+  for (int bone = 0; bone < std::ssize(pairs); ++bone) {
+    const int other = pairs[bone];
+    // Where both sides were turned, each keeps its own.
+    if (other == bone || turned.rotation[bone] == before.rotation[bone] ||
+        turned.rotation[other] != before.rotation[other])
+      continue;
+    next.rotation[other] = plane.rotation(turned.rotation[bone]);
+    if (editor.posing.keep_limits) next.rotation[other] = within_limits(armature.bones[other], next.rotation[other]);
+  }
+  return next;
+}
+
+Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {
+  if (!editor.posing.keep_limits) return pose;
+  const Armature& armature = *editor.document().armature;
+  for (int bone : bones) pose.rotation[bone] = within_limits(armature.bones[bone], pose.rotation[bone]);
+  return pose;
+}
+
+void commit_pose(Editor& editor, const std::string& label, Pose pose) {
+  commit_pose(editor, label, std::move(pose), editor.document());
+}
+
+void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next) {
+  drop_shown_pose(editor);
+  // What was posed stays in sight.
+  if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
+  if (const Pose before = pose_of(next); pose != before) {
+    if (editor.timeline->auto_key) key_changes(next, before, pose);
+    next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
+  }
+  if (next != editor.document()) commit(editor, label, std::move(next));
+}
+
+const Anchors& anchors_of(const Document& document) {
+  static const Anchors kNone;
+  return document.anchors ? *document.anchors : kNone;
+}
+
+glm::dvec3 own_angles(const Bone& bone, const glm::dquat& rotation) {
+  const glm::dquat axes = glm::quat_cast(rest_axes(bone));
+  return glm::degrees(glm::eulerAngles(glm::conjugate(axes) * rotation * axes));
+}
+
+glm::dquat turned_by_own_angles(const Bone& bone, const glm::dvec3& degrees) {
+  const glm::dquat axes = glm::quat_cast(rest_axes(bone));
+  return glm::normalize(axes * glm::dquat(glm::radians(degrees)) * glm::conjugate(axes));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/pose_inbetween_ops.h"
+
+#include <algorithm>
+
+#include "core/pose/apply_pose_as_rest.h"
+#include "editor/context/document_edits.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+// The frames where the chosen bones, or all, have keys.
+std::set<int> key_frames(const Editor& editor) {
+  std::set<int> frames;
+  const Clip* clip = shown_clip(editor);
+  if (!clip || !editor.document().armature) return frames;
+  const auto add = [&](const auto& keys) {
+    for (const auto& [frame, value] : keys) frames.insert(frame);
+  };
+  for (const int bone : chosen_bones(editor)) {
+    const Bone& b = editor.document().armature->bones[bone];
+    if (const auto keys = clip->keys.bones.find(b.name); keys != clip->keys.bones.end()) add(keys->second);
+    if (b.parent < 0) add(clip->keys.root);
+  }
+  return frames;
+}
+
+std::string needs_other_key(const Editor& editor) {
+  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  std::set<int> frames = key_frames(editor);
+  frames.erase(shown_frame(editor));
+  return frames.empty() ? "The chosen bones have no key at another frame" : "";
+}
+
+std::string needs_next_key(const Editor& editor) {
+  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  const std::set<int> frames = key_frames(editor);
+  return frames.upper_bound(shown_frame(editor)) == frames.end() ? "The chosen bones have no later key" : "";
+}
+
+void blend_to_neighbours(Editor& editor) {
+  settle_frame(editor);
+  const int now = editor.document().frame;
+  const std::set<int> frames = key_frames(editor);
+  const ClipOnRig* clip = clip_on_rig(editor);
+  const auto next = frames.upper_bound(now), here = frames.lower_bound(now);
+  const Pose pose = pose_of(editor.document());
+  Blend blend{.label = "Blend to neighbour",
+              .words = "to the key before or after",
+              .from = pose,
+              .to = next == frames.end() ? pose : clip->at(*next),
+              .back = here == frames.begin() ? pose : clip->at(*std::prev(here))};
+  begin_tool(editor, begin_blending(editor, blend));
+}
+
+// Each bone's own next key.
+void propagate(Editor& editor) {
+  settle_frame(editor);
+  const int now = editor.document().frame;
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  const Pose pose = pose_of(editor.document());
+  const std::vector<int> bones = chosen_bones(editor);
+  edit_clip(editor, "Propagate pose", PoseThen::Stays, [&](Clip& clip) {
+    for (const int bone : bones) {
+      const Bone& b = armature->bones[bone];
+      if (const auto keys = clip.keys.bones.find(b.name); keys != clip.keys.bones.end())
+        if (const auto next = keys->second.upper_bound(now); next != keys->second.end())
+          next->second = pose.rotation[bone];
+      if (const auto next = clip.keys.root.upper_bound(now); b.parent < 0 && next != clip.keys.root.end())
+        next->second = pose.root_translation;
+    }
+  });
+}
+
+std::string needs_change(const Editor& editor) {
+  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  return editor.document().armature && editor.document().pose ? "" : "The rig is at rest";
+}
+
+// The volume stays where it is: so a rig is laid into a body by posing it.
+void apply_as_rest(Editor& editor) {
+  settle_frame(editor);
+  drop_shown_pose(editor);
+  Document next = editor.document();
+  next.armature = std::make_shared<const Armature>(with_pose_as_rest(*next.armature, pose_of(next)));
+  next.pose = nullptr;
+  const bool weights = next.weights != nullptr;
+  const bool poses = !next.poses.empty() || std::any_of(next.clips.begin(), next.clips.end(),
+                                                        [](const auto& clip) { return !clip->keys.bones.empty(); });
+  commit(editor, "Apply pose as rest", std::move(next));
+  if (weights)
+    editor.messages.info("Apply pose as rest", "The weights are those of the rig before: compute them again");
+  if (poses)
+    editor.messages.warn("Apply pose as rest",
+                         "Keys and poses of the library turn the bones from the new rest now: look at them again");
+}
+
+}  // namespace
+
+std::optional<Blend> between_keys(Editor& editor) {
+  settle_frame(editor);
+  const int now = editor.document().frame;
+  const std::set<int> frames = key_frames(editor);
+  const auto next = frames.upper_bound(now), here = frames.lower_bound(now);
+  if (next == frames.end() || here == frames.begin()) return std::nullopt;
+  const int before = *std::prev(here);
+  const ClipOnRig* clip = clip_on_rig(editor);
+  return Blend{.label = "Breakdown",
+               .words = "from frame " + std::to_string(before) + " to " + std::to_string(*next),
+               .from = clip->at(before),
+               .to = clip->at(*next),
+               .begin = 0.5};
+}
+
+std::vector<Operator> pose_neighbour_operators() {
+  return {
+      {"pose.blend_neighbour", "Blend to neighbour", "", "Pose",
+       "The chosen bones go a part of the way to the next key, or to the one before: with the pointer, or by per cent.",
+       blend_to_neighbours, needs_other_key},
+      {"pose.propagate", "Propagate pose", "", "Pose",
+       "The next key of the chosen bones takes the pose that they have now.", propagate, needs_next_key},
+      {"pose.apply_as_rest", "Apply pose as rest", icon::kRig, "Pose",
+       "The rig is at rest as it is posed now; the volume stays.", apply_as_rest, needs_change},
+  };
+}
+
+}  // namespace limber::editor

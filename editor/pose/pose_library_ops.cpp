@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/pose_library.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/transform_settings.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/file_browser/thumbnails.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/body_pose_cards.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/ui/icons.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_rig(const Editor& editor) { return editor.document().armature ? "" : "Import a rig first"; }
+std::string needs_chosen(const Editor& editor) {
+  if (const std::string why = needs_rig(editor); !why.empty()) return why;
+  return chosen_pose(editor)               ? ""
+         : editor.document().poses.empty() ? "Add a pose to the library first"
+                                           : "Choose a pose of the library first";
+}
+// What is renamed or deleted is the user's own.
+std::string needs_own(const Editor& editor) {
+  if (const std::string why = needs_chosen(editor); !why.empty()) return why;
+  return is_body_pose(editor.handling->library_pose) ? "This pose comes with the program" : "";
+}
+
+std::size_t place_of(const PoseLibrary& library, const std::string& name) {
+  return static_cast<std::size_t>(
+      std::find_if(library.begin(), library.end(), [&](const auto& pose) { return pose->name == name; }) -
+      library.begin());
+}
+
+// The body as the 3D view shows it in this pose; bones where it has not followed. "" without a body.
+std::string picture_of_pose(Editor& editor) {
+  Views& views = *editor.views;
+  if (!editor.document().volume) return "";
+  render::Scene scene = views.scene;
+  scene.grid = false;
+  scene.dark_background = true;
+  scene.outlined.reset();
+  scene.bones.clear();
+  if (scene.pose || !editor.document().pose) scene.armature.reset();
+  render::View3D picture(views.renderer);
+  for (double now = 0; now == 0 || !picture.complete(); now += 1)
+    picture.draw(scene, views.body.camera, kThumbnailSize, now, 1);
+  return render::png_of(picture.read());
+}
+
+void add_pose(Editor& editor) {
+  settle_frame(editor);
+  Document next = editor.document();
+  const Clip* clip = next.shown_clip();
+  NamedPose named =
+      named_pose(next.poses, clip && clip->motion ? clip->name + " " + std::to_string(next.frame) : "Pose",
+                 *next.armature, pose_of(next), chosen_bones(editor));
+  named.picture = picture_of_pose(editor);
+  editor.handling->library_pose = named.name;
+  editor.open_sections["Pose library"] = true;
+  const std::string label = "Add pose " + named.name;
+  next.poses.push_back(std::make_shared<const NamedPose>(std::move(named)));
+  commit(editor, label, std::move(next));
+}
+
+void blend_to_chosen(Editor& editor) {
+  const NamedPose named = *chosen_pose(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Blend to " + named.name,
+                                             .words = "of the way to " + named.name,
+                                             .from = pose_of(editor.document()),
+                                             .to = on_the_way_to(editor, named, 1)}));
+}
+
+void ask_pose_name(Editor& editor) {
+  const std::string before = editor.handling->library_pose;
+  editor.open_dialog(make_form({"Rename pose",
+                                "Another name for the chosen pose of the library.",
+                                "Rename",
+                                {text_of("Name", "The pose's name.", before)},
+                                [](const Editor&, const std::vector<FormField>& fields) -> std::string {
+                                  if (fields[0].text.empty()) throw Error("a pose needs a name", "rename", "type one");
+                                  return "";
+                                },
+                                [before](Editor& e, const std::vector<FormField>& fields) {
+                                  Document next = e.document();
+                                  const std::size_t place = place_of(next.poses, before);
+                                  if (place == next.poses.size() || fields[0].text == before) return;
+                                  NamedPose named = *next.poses[place];
+                                  named.name = unique_pose_name(next.poses, fields[0].text);
+                                  e.handling->library_pose = named.name;
+                                  next.poses[place] = std::make_shared<const NamedPose>(std::move(named));
+                                  commit(e, "Rename pose", std::move(next));
+                                }}));
+}
+
+void delete_pose(Editor& editor) {
+  Document next = editor.document();
+  const std::string name = editor.handling->library_pose;
+  next.poses.erase(next.poses.begin() + static_cast<std::ptrdiff_t>(place_of(next.poses, name)));
+  commit(editor, "Delete pose " + name, std::move(next));
+}
+
+}  // namespace
+
+const NamedPose* chosen_pose(const Editor& editor) {
+  if (is_body_pose(editor.handling->library_pose)) {
+    const PoseLibrary& cards = body_pose_cards(editor);
+    const auto found = std::find_if(cards.begin(), cards.end(), [&](const auto& pose) {
+      return library_name(*pose) == editor.handling->library_pose;
+    });
+    return found == cards.end() ? nullptr : found->get();
+  }
+  const PoseLibrary& library = editor.document().poses;
+  const std::size_t place = place_of(library, editor.handling->library_pose);
+  return place < library.size() ? library[place].get() : nullptr;
+}
+
+Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share) {
+  const std::vector<int> bones = chosen_bones(editor);
+  const Armature& armature = *editor.document().armature;
+  const Pose from = pose_of(editor.document()), to = taken_from(named, armature, from, bones);
+  if (share <= 0 || share >= 1) return limited(editor, share <= 0 ? from : to, bones);
+  Pose pose = from;
+  for (const int bone : bones)
+    pose.rotation[bone] = glm::normalize(glm::slerp(from.rotation[bone], to.rotation[bone], share));
+  pose.root_translation = glm::mix(from.root_translation, to.root_translation, share);
+  return limited(editor, std::move(pose), bones);
+}
+
+void apply_pose(Editor& editor, const NamedPose& named, double share) {
+  settle_frame(editor);
+  commit_pose(editor, (share < 1 ? "Blend to " : "Apply ") + named.name, on_the_way_to(editor, named, share));
+}
+
+std::vector<Operator> pose_library_operators() {
+  return {
+      {"pose.library_add", "Add to library", icon::kAdd, "Pose",
+       "Keeps the pose of the chosen bones, or of all, in the library.", add_pose, needs_rig},
+      {"pose.library_apply", "Apply pose of library", "", "Pose",
+       "The chosen bones, or all, take the chosen pose of the library.",
+       [](Editor& e) {
+         const NamedPose named = *chosen_pose(e);
+         apply_pose(e, named, 1);
+       },
+       needs_chosen},
+      {"pose.library_blend", "Blend to pose of library", "", "Pose",
+       "The chosen bones go a part of the way: with the pointer, or by per cent.", blend_to_chosen, needs_chosen},
+      {"pose.library_rename", "Rename pose...", icon::kRename, "Pose",
+       "Gives the chosen pose of the library another name.", ask_pose_name, needs_own},
+      {"pose.library_delete", "Delete pose", icon::kTrash, "Pose", "Takes the chosen pose out of the library.",
+       delete_pose, needs_own},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/pose_library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "core/pose/body_poses.h"
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/context/transform_settings.h"
+#include "editor/pose/body_pose_cards.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/section.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kAcross = 3;
+constexpr float kPicture = 63, kWords = 22;        // heights
+constexpr double kFirstPixels = 4, kPixels = 200;  // before a drag begins; for the whole way
+
+void draw_picture(Editor& editor, const NamedPose& pose, const Rect& rect) {
+  const Look& look = editor.look;
+  fill(rect, look.theme.view_bottom, look.px(4));
+  unsigned texture = 0;
+  if (!pose.picture.empty()) {
+    const std::string key = "pose " + std::to_string(std::hash<std::string>{}(pose.picture));
+    texture = editor.pictures.texture(key, [&] { return render::parse_png(pose.picture, pose.name); });
+  }
+  if (!texture) return put_icon(look.fonts.regular, look.theme.view_text2, rect, icon::kPose);
+  // What the picture has beyond the card's shape is cut at its sides.
+  const float cut = (1 - rect.width() / rect.height() / 1.5f) / 2;
+  ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
+                                              im(rect.low), im(rect.high), {cut, 0}, {1 - cut, 1}, 0xFFFFFFFF,
+                                              look.px(4));
+}
+
+// A press in place applies the pose when it ends; a press that goes sideways blends towards it, and Escape leaves it.
+//   name  of Handling::library_pose
+void take_press(Editor& editor, const NamedPose& pose, const std::string& name, const Pressed& pressed) {
+  auto& drag = editor.handling->library_drag;
+  if (pressed.activated) {
+    editor.handling->library_pose = name;
+    drag = {name, editor.input.pointer.x, false};
+  }
+  if (drag.pose != name) return;
+  const double way = editor.input.pointer.x - drag.begin, scale = editor.look.scale,
+               share = std::clamp(way / (kPixels * scale), 0.0, 1.0);
+  if (editor.input.down(Key::Escape)) {
+    drag = {};
+    drop_shown_pose(editor);
+    return;
+  }
+  if (pressed.held) {
+    drag.moved = drag.moved || std::abs(way) >= kFirstPixels * scale;
+    if (drag.moved) show_pose(editor, on_the_way_to(editor, pose, share));
+    return;
+  }
+  const bool moved = drag.moved;
+  drag = {};
+  const NamedPose named = pose;  // the document changes
+  if (moved) apply_pose(editor, named, share);
+  else if (pressed.clicked) apply_pose(editor, named, 1);
+}
+
+//   description  of a pose that comes with the program
+void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::string_view description = "") {
+  const Look& look = editor.look;
+  const Rect picture{rect.low, {rect.high.x, rect.low.y + look.px(kPicture)}};
+  const std::string name = description.empty() ? pose.name : library_name(pose);
+  const bool chosen = editor.handling->library_pose == name;
+  const Pressed pressed = press_area(editor, description.empty() ? pose.name : "Body pose " + pose.name, rect);
+  draw_picture(editor, pose, picture);
+  const float width = chosen ? 2 * look.line() : look.line();
+  ImGui::GetWindowDrawList()->AddRect(im(picture.low), im(picture.high),
+                                      chosen            ? look.theme.select
+                                      : pressed.hovered ? look.theme.text2
+                                                        : look.theme.line2,
+                                      look.px(4), 0, width);
+  const auto& drag = editor.handling->library_drag;
+  if (drag.pose == name && drag.moved) {
+    const float share =
+        std::clamp((editor.input.pointer.x - drag.begin) / static_cast<float>(kPixels * look.scale), 0.0f, 1.0f);
+    fill({{picture.low.x, picture.high.y - look.px(4)}, {picture.low.x + share * picture.width(), picture.high.y}},
+         look.theme.select, look.px(2));
+  }
+  put_text(editor, look.fonts.small, chosen ? look.theme.text : look.theme.text2,
+           Rect{{rect.low.x, picture.high.y}, rect.high}, pose.name, Align::Centre);
+  const std::string use = "Click: the chosen bones take it, or all. Drag sideways: a part of the way.";
+  if (pressed.hovered && !pressed.held)
+    tooltip(editor, rect, pose.name, description.empty() ? use : std::string(description) + " " + use);
+  if (pressed.right_clicked) {
+    editor.handling->library_pose = name;
+    editor.open_popup = "Pose library";
+  }
+  take_press(editor, pose, name, pressed);
+}
+
+// Cards in rows; `describe` gives the description of the card of that number.
+template <class Describe>
+void draw_cards(Editor& editor, Column& column, const PoseLibrary& library, const Describe& describe) {
+  const Look& look = editor.look;
+  for (std::size_t first = 0; first < library.size(); first += kAcross) {
+    const Rect row = column.row(kPicture + kWords + 4);
+    const float gap = look.px(8), left = row.low.x + look.px(10),
+                width = (row.width() - look.px(20) - (kAcross - 1) * gap) / kAcross;
+    for (std::size_t i = first; i < std::min(first + kAcross, library.size()); ++i) {
+      const float x = std::round(left + static_cast<float>(i - first) * (width + gap));
+      draw_card(editor, *library[i], {{x, row.low.y}, {std::round(x + width), row.low.y + look.px(kPicture + kWords)}},
+                describe(i));
+    }
+  }
+}
+
+void draw_body_poses(Editor& editor, Column& column) {
+  const PoseLibrary cards = pictured_body_pose_cards(editor);
+  if (cards.empty()) return;
+  const Rect words = column.row(kWords);
+  put_text(editor, editor.look.fonts.small, editor.look.theme.text2,
+           {{words.low.x + editor.look.px(10), words.low.y}, words.high}, "For any body");
+  draw_cards(editor, column, cards, [&](std::size_t i) { return require_body_pose(cards[i]->name, "").description; });
+}
+
+}  // namespace
+
+void draw_pose_library(Editor& editor, Column& column) {
+  if (!editor.document().armature) return;
+  const Look& look = editor.look;
+  const bool open = column.begin_section("Pose library", "", false);
+  const Rect head = column.head();
+  operator_button(
+      editor, "pose.library_add",
+      {{head.high.x - look.px(34), head.low.y + look.px(2)}, {head.high.x - look.px(6), head.high.y - look.px(2)}}, "");
+  if (open) {
+    const PoseLibrary library = editor.document().poses;
+    column.space(8);
+    if (library.empty()) {
+      const Operator* op = find_operator(editor, "pose.library_add");
+      if (empty_state(editor, column.row(72), "No poses yet", op->label)) run(editor, *op);
+    }
+    draw_cards(editor, column, library, [](std::size_t) { return std::string_view(); });
+    draw_body_poses(editor, column);
+    column.space(4);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

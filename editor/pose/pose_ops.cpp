@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/rig/mirror.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_polls.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_inbetween_ops.h"
+#include "editor/pose/pose_library.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/rig/rig_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_rig(const Editor& editor) { return editor.document().armature ? "" : "Import a rig first"; }
+
+std::string needs_pose(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.armature) return "Import a rig first";
+  return document.pose && *document.pose != rest_pose(*document.armature) ? "" : "The rig is at rest";
+}
+
+void clear_pose(Editor& editor) {
+  Document next = editor.document();
+  next.pose.reset();
+  editor.history.commit("Clear pose", std::move(next));
+}
+
+void ask_flex(Editor& editor) {
+  std::vector<std::string> names;
+  for (const Bone& bone : editor.document().armature->bones) names.push_back(bone.name);
+  int chosen = editor.selection.bone.value_or(-1);
+  // A bone that bends by itself, such as a forearm, where none is chosen.
+  if (chosen < 0 || chosen >= std::ssize(names)) {
+    // A hinge, else the first bone that has something to bend against.
+    const auto& bones = editor.document().armature->bones;
+    const auto child = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.parent >= 0; });
+    chosen = child == bones.end() ? 0 : static_cast<int>(child - bones.begin());
+    for (int b = 0; b < std::ssize(names); ++b)
+      if (editor.document().armature->bones[b].limits.type == JointLimits::Type::Hinge) {
+        chosen = b;
+        break;
+      }
+  }
+  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
+    if (!e.document().armature || fields[0].chosen >= std::ssize(e.document().armature->bones))
+      throw Error("the rig was changed", "flex", "open this again");
+    flex_axis(*e.document().armature, fields[0].chosen);
+    const JointLimits& limits = e.document().armature->bones[fields[0].chosen].limits;
+    if (limits.type != JointLimits::Type::Hinge)
+      return std::string("Turned about the axis across its parent, on top of the pose it has.");
+    char text[96];
+    std::snprintf(text, sizeof text, "A hinge, from %.0f\u00b0 to %.0f\u00b0. Turned on top of the pose it has.",
+                  glm::degrees(limits.minimum), glm::degrees(limits.maximum));
+    return std::string(text);
+  };
+  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+    Document next = e.document();
+    Pose pose = pose_of(next);
+    flex(pose, *next.armature, fields[0].chosen, fields[1].value);
+    next.pose = std::make_shared<const Pose>(std::move(pose));
+    const std::string name = next.armature->bones[fields[0].chosen].name;
+    e.history.commit("Flex " + name, std::move(next));
+    e.touch();
+  };
+  editor.open_dialog(
+      make_form({"Flex a joint",
+                 "Turns a bone about its hinge. Positive bends further.",
+                 "Flex",
+                 {choice_of("Bone", "The bone that is turned about its head.", names, chosen),
+                  number_of("Angle", "By how much, on top of the pose it has.", 60, -180, 180, "%+.1f", "\u00b0")},
+                 outcome,
+                 act}));
+}
+
+std::string needs_copy(const Editor& editor) {
+  if (const std::string why = needs_rig(editor); !why.empty()) return why;
+  return editor.posing.copied.empty() ? "Copy a pose first" : "";
+}
+
+void clear_rotation(Editor& editor) {
+  Pose pose = pose_of(editor.document());
+  for (int bone : chosen_bones(editor)) pose.rotation[bone] = {1, 0, 0, 0};
+  commit_pose(editor, "Clear rotation", std::move(pose));
+}
+
+void clear_translation(Editor& editor) {
+  Pose pose = pose_of(editor.document());
+  pose.root_translation = glm::dvec3(0);
+  commit_pose(editor, "Clear translation", std::move(pose));
+}
+
+void copy_pose(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const Pose pose = pose_of(editor.document());
+  editor.posing.copied.clear();
+  for (int bone : chosen_bones(editor)) editor.posing.copied[armature.bones[bone].name] = pose.rotation[bone];
+}
+
+// Bones of the same names take the copied rotations; flipped, those of the other side.
+void paste_pose(Editor& editor, bool flip) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  Pose copied = rest_pose(*armature);
+  std::vector<bool> known(armature->bones.size(), false);
+  for (std::size_t b = 0; b < known.size(); ++b)
+    if (const auto found = editor.posing.copied.find(armature->bones[b].name); found != editor.posing.copied.end()) {
+      copied.rotation[b] = found->second;
+      known[b] = true;
+    }
+  const std::vector<int> pairs = mirror_pairs(*armature);
+  if (flip) copied = flipped(copied, *armature);
+  Pose pose = pose_of(editor.document());
+  std::vector<int> changed;
+  for (std::size_t b = 0; b < known.size(); ++b)
+    if (known[flip ? pairs[b] : b]) {
+      pose.rotation[b] = copied.rotation[b];
+      changed.push_back(static_cast<int>(b));
+    }
+  commit_pose(editor, flip ? "Paste flipped pose" : "Paste pose", limited(editor, std::move(pose), changed));
+}
+
+void flip_pose(Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  const std::vector<int> all = topmost(*armature, chosen_bones(editor));
+  Pose pose = flipped(pose_of(editor.document()), *armature);
+  commit_pose(editor, "Flip pose", limited(editor, std::move(pose), all));
+}
+
+// The pose, and the same with the chosen bones at rest.
+struct Ends {
+  Pose pose, rest;
+};
+
+Ends ends_of(const Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  Ends ends{pose_of(editor.document()), pose_of(editor.document())};
+  for (const int bone : chosen_bones(editor)) {
+    ends.rest.rotation[bone] = {1, 0, 0, 0};
+    if (armature.bones[bone].parent < 0) ends.rest.root_translation = glm::dvec3(0);
+  }
+  return ends;
+}
+
+void push(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(
+      editor,
+      begin_blending(
+          editor,
+          {.label = "Push pose", .words = "away from rest", .from = ends.rest, .to = ends.pose, .base = 1, .most = 2}));
+}
+
+void relax(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(editor, begin_blending(editor, {.label = "Relax pose",
+                                             .words = "towards rest",
+                                             .from = ends.rest,
+                                             .to = ends.pose,
+                                             .base = 1,
+                                             .slope = -1}));
+}
+
+void break_down(Editor& editor) {
+  if (const auto blend = between_keys(editor)) return begin_tool(editor, begin_blending(editor, *blend));
+  const Ends ends = ends_of(editor);
+  begin_tool(
+      editor,
+      begin_blending(
+          editor,
+          {.label = "Breakdown", .words = "from rest to the pose", .from = ends.rest, .to = ends.pose, .begin = 0.5}));
+}
+
+void blend_to_rest(Editor& editor) {
+  const Ends ends = ends_of(editor);
+  begin_tool(
+      editor,
+      begin_blending(editor,
+                     {.label = "Blend to rest", .words = "of the way to rest", .from = ends.pose, .to = ends.rest}));
+}
+
+void blend_to_copied(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const Pose pose = pose_of(editor.document());
+  Pose copied = pose;
+  for (const int bone : chosen_bones(editor))
+    if (const auto found = editor.posing.copied.find(armature.bones[bone].name); found != editor.posing.copied.end())
+      copied.rotation[bone] = found->second;
+  begin_tool(editor, begin_blending(editor, {.label = "Blend to copied pose",
+                                             .words = "of the way to the copied pose",
+                                             .from = pose,
+                                             .to = copied}));
+}
+
+// One edit of pins and poles.
+void commit_anchors(Editor& editor, const std::string& label, Anchors anchors) {
+  Document next = editor.document();
+  next.anchors = std::make_shared<const Anchors>(std::move(anchors));
+  commit(editor, label, std::move(next));
+}
+
+void toggle_pins(Editor& editor) {
+  Anchors anchors = anchors_of(editor.document());
+  const Armature& armature = *editor.document().armature;
+  const std::vector<int> bones = chosen_bones(editor);
+  const bool all = std::all_of(bones.begin(), bones.end(),
+                               [&](int bone) { return anchors.pins.contains(armature.bones[bone].name); });
+  for (const int bone : with_other_sides(editor, bones)) {
+    if (all) anchors.pins.erase(armature.bones[bone].name);
+    else anchors.pins.insert(armature.bones[bone].name);
+  }
+  const std::string what = bones.size() == 1 ? armature.bones[bones[0]].name : std::to_string(bones.size()) + " joints";
+  commit_anchors(editor, (all ? "Unpin " : "Pin ") + what, std::move(anchors));
+}
+
+// Where the limb bends to now, so that nothing moves: beyond the joint in its middle.
+glm::dvec3 pole_of(const Editor& editor, int bone) {
+  const Armature& armature = *editor.document().armature;
+  const auto posed = posed_from_rest(armature, pose_of(editor.document()));
+  int root = bone;
+  for (int i = 1; i < limb_of(armature, bone); ++i) root = armature.bones[root].parent;
+  const glm::dvec3 begin = posed[root] * armature.bones[root].head, end = posed[bone] * armature.bones[bone].tail,
+                   middle = posed[bone] * armature.bones[bone].head;
+  const glm::dvec3 along = end - begin;
+  const double squared = glm::dot(along, along);
+  glm::dvec3 out = squared > 0 ? middle - begin - along * (glm::dot(middle - begin, along) / squared) : glm::dvec3(0);
+  // A straight limb may bend to any side: forward.
+  if (glm::length(out) < 1e-3) out = {0, -1, 0};
+  return middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
+}
+
+// The bone, and with X-mirror on that of the other side, where it ends a limb too.
+std::vector<int> limbs_of(const Editor& editor, int bone) {
+  std::vector<int> bones = with_other_sides(editor, {bone});
+  std::erase_if(bones, [&](int other) { return other != bone && limb_of(*editor.document().armature, other) < 2; });
+  return bones;
+}
+
+void toggle_pole(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const std::string& name = armature.bones[*editor.selection.bone].name;
+  Anchors anchors = anchors_of(editor.document());
+  const bool had = anchors.poles.contains(name);
+  for (const int bone : limbs_of(editor, *editor.selection.bone)) {
+    if (had) anchors.poles.erase(armature.bones[bone].name);
+    else anchors.poles.insert({armature.bones[bone].name, pole_of(editor, bone)});
+  }
+  commit_anchors(editor, (had ? "Remove pole of " : "Add pole to ") + name, std::move(anchors));
+}
+
+// A pin at the limb's end and a pole for its middle.
+void add_ik(Editor& editor) {
+  const Armature& armature = *editor.document().armature;
+  const int bone = *editor.selection.bone;
+  Anchors anchors = anchors_of(editor.document());
+  for (const int end : limbs_of(editor, bone)) {
+    anchors.pins.insert(armature.bones[end].name);
+    anchors.poles.insert({armature.bones[end].name, pole_of(editor, end)});
+  }
+  if (anchors != anchors_of(editor.document()))
+    commit_anchors(editor, "Hold " + armature.bones[bone].name + " by IK", std::move(anchors));
+}
+
+// Of the chosen bones, of all where none is chosen.
+void clear_ik(Editor& editor) {
+  Anchors anchors = anchors_of(editor.document());
+  if (editor.selection.bones.empty()) anchors = {};
+  for (const int bone : with_other_sides(editor, chosen_bones(editor))) {
+    anchors.pins.erase(editor.document().armature->bones[bone].name);
+    anchors.poles.erase(editor.document().armature->bones[bone].name);
+  }
+  if (anchors != anchors_of(editor.document())) commit_anchors(editor, "Clear IK", std::move(anchors));
+}
+
+std::string needs_anchor(const Editor& editor) {
+  if (const std::string why = needs_rig(editor); !why.empty()) return why;
+  return anchors_of(editor.document()) == Anchors{} ? "No joint is pinned, no limb has a pole" : "";
+}
+
+std::string needs_limb(const Editor& editor) {
+  if (const std::string why = needs_bone(editor); !why.empty()) return why;
+  return limb_of(*editor.document().armature, *editor.selection.bone) > 1 ? ""
+                                                                          : "A pole needs a limb of two bones or more";
+}
+
+Operator space_operator(const char* id, const char* label, const char* sentence, Space space) {
+  return {id,           label,
+          icon::kSpace, "Pose",
+          sentence,     [space](Editor& e) { e.handling->space = space; },
+          nullptr,      [space](const Editor& e) { return e.handling->space == space; }};
+}
+
+}  // namespace
+
+std::vector<Operator> pose_operators() {
+  std::vector<Operator> operators = {
+      {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turns the chosen bones with the pointer.",
+       [](Editor& e) { begin_tool(e, begin_turning(e)); }, needs_bone},
+      {"pose.move", "Reach", icon::kMove, "Pose",
+       "The end of the chosen bone goes with the pointer and its limb follows; the root takes the body along.",
+       [](Editor& e) { begin_tool(e, begin_dragging(e)); }, needs_bone},
+      {"pose.clear_rotation", "Clear rotation", "", "Pose",
+       "The chosen bones go back to rest; all bones where none is chosen.", clear_rotation, needs_pose},
+      {"pose.clear_translation", "Clear translation", "", "Pose", "The body goes back to its place.", clear_translation,
+       needs_pose},
+      {"pose.copy", "Copy pose", icon::kCopy, "Pose",
+       "Keeps the rotations of the chosen bones, or of all, for pasting.", copy_pose, needs_rig},
+      {"pose.paste", "Paste pose", "", "Pose", "Bones of the same names take the copied rotations.",
+       [](Editor& e) { paste_pose(e, false); }, needs_copy},
+      {"pose.paste_flipped", "Paste flipped pose", "", "Pose",
+       "The other side's bones take the copied rotations, as in a mirror.", [](Editor& e) { paste_pose(e, true); },
+       needs_copy},
+      {"pose.flip", "Flip pose", icon::kMirror, "Pose",
+       "The left side does what the right side did, and the right what the left did.", flip_pose, needs_pose},
+      {"pose.push", "Push pose", "", "Pose",
+       "The chosen bones go further away from rest: with the pointer, or by per cent.", push, needs_pose},
+      {"pose.relax", "Relax pose", "", "Pose",
+       "The chosen bones come nearer to rest: with the pointer, or by per cent.", relax, needs_pose},
+      {"pose.breakdown", "Breakdown", icon::kBreakdown, "Pose",
+       "A pose between the keys before and after, or without them between rest and the one there is: with the pointer, "
+       "or by per cent.",
+       break_down, needs_rig},
+      {"pose.blend_rest", "Blend to rest", "", "Pose", "The chosen bones go a part of the way to rest.", blend_to_rest,
+       needs_pose},
+      {"pose.blend_copied", "Blend to copied pose", "", "Pose",
+       "The chosen bones go a part of the way to the copied pose.", blend_to_copied, needs_copy},
+      {"pose.pin", "Pin joint", "", "Pose",
+       "The ends of the chosen bones stay where they are while other joints are dragged; again frees them.",
+       toggle_pins, needs_bone,
+       [](const Editor& e) {
+         return needs_bone(e).empty() &&
+                anchors_of(e.document()).pins.contains(e.document().armature->bones[*e.selection.bone].name);
+       }},
+      {"pose.pole", "Pole", "", "Pose", "The limb bends towards a point that can be dragged; again takes it away.",
+       toggle_pole, needs_limb,
+       [](const Editor& e) {
+         return needs_bone(e).empty() &&
+                anchors_of(e.document()).poles.contains(e.document().armature->bones[*e.selection.bone].name);
+       }},
+      {"pose.add_ik", "Hold by IK", icon::kReach, "Pose",
+       "The limb's end is pinned and its middle bends towards a pole, whatever else is dragged.", add_ik, needs_limb},
+      {"pose.clear_ik", "Clear IK", "", "Pose", "Takes pins and poles of the chosen bones away, or of all.", clear_ik,
+       needs_anchor},
+      {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose",
+       "A dragged joint takes its whole limb along, not its bone alone.",
+       [](Editor& e) { e.handling->auto_ik = !e.handling->auto_ik; }, nullptr,
+       [](const Editor& e) { return e.handling->auto_ik; }},
+      {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit",
+       "What is done to a bone is done to the one on the other side, in the mirror.",
+       [](Editor& e) { e.handling->x_mirror = !e.handling->x_mirror; }, nullptr,
+       [](const Editor& e) { return e.handling->x_mirror; }},
+      space_operator("space.global", "Global axes", "Gizmos and locks go by the axes of the world.", Space::Global),
+      space_operator("space.local", "Local axes", "Gizmos and locks go by the bone's own axes.", Space::Local),
+      space_operator("space.parent", "Parent axes", "Gizmos and locks go by the axes of the bone above.",
+                     Space::Parent),
+      space_operator("space.view", "View axes", "Gizmos and locks go by the picture: right, up, towards you.",
+                     Space::View),
+      {"pose.limits", "Keep to joint limits", "", "Pose", "Joints stop where their limits end.",
+       [](Editor& e) { e.posing.keep_limits = !e.posing.keep_limits; }, nullptr,
+       [](const Editor& e) { return e.posing.keep_limits; }},
+      {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turns a bone about its hinge by an angle.", ask_flex,
+       needs_rig},
+      {"pose.clear", "Clear pose", icon::kUndo, "Pose", "Every bone goes back to rest.", clear_pose, needs_pose},
+  };
+  for (auto list : {pose_neighbour_operators, pose_library_operators})
+    for (Operator& op : list()) operators.push_back(std::move(op));
+  return operators;
+}
+
+}  // namespace limber::editor

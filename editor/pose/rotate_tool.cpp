@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bones turned about their heads.
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtx/quaternion.hpp>
+
+#include "core/rig/anatomical_position.h"
+#include "core/rig/joint_angle.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/viewport/angle_drag.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// The posed axis of a hinge that keeps its limits; nothing of another joint.
+std::optional<glm::dvec3> hinge_of(const Editor& editor, const Armature& armature, const Pose& pose, int bone) {
+  const Bone& b = armature.bones[bone];
+  if (!editor.posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;
+  return b.parent < 0 ? b.limits.axis : posed_from_rest(armature, pose)[b.parent].rotation * b.limits.axis;
+}
+
+// The axis of the three that runs most nearly along a direction.
+int nearest_axis(const glm::dmat3& axes, const glm::dvec3& direction) {
+  int nearest = 0;
+  for (int axis = 1; axis < 3; ++axis)
+    if (std::abs(glm::dot(axes[axis], direction)) > std::abs(glm::dot(axes[nearest], direction))) nearest = axis;
+  return nearest;
+}
+constexpr double kSnapDegrees = 5, kSnapFine = 1;  // with Ctrl, with Ctrl and Shift
+constexpr double kTrackballPerPixel = 0.01;        // radians, at scale 1
+constexpr double kNearLimit = 5;                   // degrees, from where an end of a joint's range is warned of
+constexpr double kHeld = 0.1;                      // degrees that a limit takes from a turn before it is said
+constexpr double kLimitArc = 96;                   // pixels at scale 1
+
+class Turning final : public TransformTool {
+ public:
+  Turning(Editor& editor, const Grip& grip)
+      : TransformTool(editor, grip),
+        armature_(editor.document().armature),
+        before_(pose_of(editor.document())),
+        bones_(topmost(*armature_, chosen_bones(editor))),
+        active_(editor.selection.bone.value_or(bones_.front())),
+        trackball_(grip.trackball),
+        by_ring_(grip.held && !grip.trackball && grip.lock.axis >= 0),
+        scale_(editor.look.scale),
+        drag_(view_, scale_, pivot_of_active(), grip.held && !grip.trackball),
+        at_rest_(turn_at_rest(*armature_, active_)) {
+    if (by_ring_) ring_axes_ = axes_of_rings(editor, lock_.space, *armature_, before_, active_, view_);
+    on_hinge_ = by_ring_ && hinge_of(editor, *armature_, before_, active_) &&
+                nearest_axis(ring_axes_, *hinge_of(editor, *armature_, before_, active_)) == lock_.axis;
+    if (const int parent = armature_->bones[active_].parent; parent >= 0)
+      above_ = posed_from_rest(*armature_, before_)[parent].rotation;
+    drag_.about(axis(), start_, pointer_);
+  }
+
+  std::string title() const override {
+    if (trackball_ && !number_.typed()) return "Trackball";
+    return "Rotate " + (number_.typed() ? number_.text() : text_of_number("%.1f", shown_)) + "\u00b0" + about();
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    auto hints = shared_hints();
+    hints.insert(hints.begin() + 1, {{"R"}, "Trackball"});
+    if (held_) hints.insert(hints.begin(), {{}, held_text()});
+    return hints;
+  }
+
+  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const GizmoPainter painter(editor, view_);
+    if (trackball_ && !number_.typed())
+      return painter.read_out(pivot(), text_of_number("%.1f\u00b0", turned_), "trackball", limit_text(editor),
+                              editor.look.theme.view_text2);
+    const Theme& theme = editor.look.theme;
+    draw_limit(editor, painter);
+    if (drag_.on_ring() && lock_.axis >= 0)
+      for (const int other : {(lock_.axis + 1) % 3, (lock_.axis + 2) % 3})
+        painter.ring(ring_of(view_, scale_, pivot(), axes(lock_.space)[other], AngleDrag::kRing),
+                     with_alpha(theme.axis[other], 0.3f), 2.5f, GizmoPainter::Part::Front);
+    drag_.draw(painter, theme, shown_);
+    const std::string number = (number_.typed() ? number_.text() : text_of_number("%+.1f", shown_)) + "\u00b0";
+    painter.read_out(pivot(), number,
+                     lock_.axis < 0          ? "view"
+                     : on_hinge_ && by_ring_ ? "hinge"
+                                             : lock_text("").substr(1),
+                     limit_text(editor), limit_colour(editor));
+  }
+
+ private:
+  glm::dmat3 axes(Space space) const override {
+    return by_ring_ ? ring_axes_ : axes_of(space, *armature_, before_, active_, view_);
+  }
+  std::string about() const { return on_hinge_ && by_ring_ ? " about the hinge" : lock_text("about"); }
+
+  glm::dvec3 axis() const {
+    const glm::dvec3 locked = lock_axis();
+    return locked == glm::dvec3(0) ? view_.towards_eye : locked;
+  }
+  const glm::dvec3& pivot() const { return drag_.ring().centre; }
+  glm::dvec3 pivot_of_active() const {
+    return posed_from_rest(*armature_, before_)[active_] * armature_->bones[active_].head;
+  }
+
+  void follow(Editor& editor, const glm::dvec2& from, const glm::dvec2& to) override {
+    drag_.follow(from, to);
+    rolled_ += glm::dvec2(to - from) * (kTrackballPerPixel / editor.look.scale);
+  }
+
+  bool own_key(Editor&, Key key) override {
+    if (key != Key::R) return false;
+    trackball_ = !trackball_;
+    if (trackball_) lock_ = {};
+    return true;
+  }
+
+  void locked(Editor&) override {
+    trackball_ = by_ring_ = false;
+    drag_.leave_ring();
+    drag_.about(axis(), start_, pointer_);
+  }
+
+  glm::dquat turn(Editor& editor) {
+    if (trackball_ && !number_.typed()) {
+      const glm::dquat turn = glm::angleAxis(rolled_.x, view_.up) * glm::angleAxis(rolled_.y, view_.right);
+      turned_ = glm::degrees(glm::angle(turn.w < 0 ? -turn : turn));
+      return turn;
+    }
+    shown_ = number_.typed() ? number_.value() : snapped(editor, drag_.degrees(), kSnapDegrees, kSnapFine);
+    return glm::angleAxis(glm::radians(shown_), axis());
+  }
+
+  Pose pose(Editor& editor) {
+    const glm::dquat world = turn(editor);
+    const auto posed = posed_from_rest(*armature_, before_);
+    Pose next = before_;
+    for (int bone : bones_) {
+      const int parent = armature_->bones[bone].parent;
+      const glm::dquat above = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed[parent].rotation;
+      next.rotation[bone] = glm::normalize(glm::conjugate(above) * world * above * before_.rotation[bone]);
+    }
+    const Pose asked = next;
+    next = limited(editor, mirrored_too(editor, before_, std::move(next)), bones_);
+    held_.reset();
+    for (int bone : bones_) {
+      if (held_ != active_ && is_held(bone, asked, next)) held_ = bone;
+    }
+    return next;
+  }
+
+  // What a hinge leaves of a turn about another axis is no news, unless it leaves nothing.
+  bool is_held(int index, const Pose& asked, const Pose& kept) const {
+    const auto apart = [&](const glm::dquat& a, const glm::dquat& b) {
+      return glm::degrees(2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))))) > kHeld;
+    };
+    if (!apart(asked.rotation[index], kept.rotation[index])) return false;
+    const JointLimits& limits = armature_->bones[index].limits;
+    if (limits.type != JointLimits::Type::Hinge || !apart(kept.rotation[index], before_.rotation[index])) return true;
+    const double angle = swing_twist(kept.rotation[index], limits.axis).twist;
+    return std::min(std::abs(angle - limits.minimum), std::abs(angle - limits.maximum)) < 1e-6;
+  }
+
+  // Which limit keeps a bone from turning as it is asked to.
+  std::string held_text() const {
+    const Bone& bone = armature_->bones[*held_];
+    const auto reading = *held_ == active_ ? this->reading(before_) : std::nullopt;
+    if (*held_ == active_ && !reading && bone.limits.type == JointLimits::Type::Hinge)
+      return bone.name + " turns about its hinge only";
+    return "Held by the limit of " + bone.name +
+           (reading && reading->kind != JointReading::Kind::Fixed ? " (" + range_text(*reading) + ")" : "");
+  }
+
+  std::vector<FormField> parameters() const override {
+    if (trackball_ && !number_.typed())
+      return {
+          number_of("About up", "About the picture's vertical.", glm::degrees(rolled_.x), -360, 360, "%.2f", "\u00b0"),
+          number_of("About right", "About the picture's horizontal.", glm::degrees(rolled_.y), -360, 360, "%.2f",
+                    "\u00b0")};
+    std::vector<FormField> fields = fields_of_axis();
+    fields.insert(fields.begin(), number_of("Angle", "How far the bones turn.", shown_, -360, 360, "%.2f", "\u00b0"));
+    return fields;
+  }
+  void set(const std::vector<FormField>& fields) override {
+    if (fields.size() == 2) {
+      rolled_ = glm::radians(glm::dvec2(fields[0].value, fields[1].value));
+      return;
+    }
+    number_.set(fields[0].value);
+    const AxisLock before = lock_;
+    set_axis(fields, 1);
+    if (lock_.axis != before.axis || lock_.space != before.space) by_ring_ = false;
+  }
+
+  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void keep(Editor& editor) override {
+    const std::string what =
+        bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";
+    Pose next = pose(editor);
+    if (held_ && number_.typed()) editor.messages.info(held_text());
+    commit_pose(editor, "Rotate " + what, std::move(next));
+  }
+
+  // Of the active joint, before the turn and as it is shown.
+  std::optional<JointReading> reading(const Pose& pose) const {
+    return read_joint(armature_->bones[active_], pose.rotation[active_], glm::conjugate(above_) * axis(), at_rest_);
+  }
+
+  // What the turn asks for, in the joint's own angle.
+  double asked(const JointReading& start) const { return start.angle + start.sense * glm::radians(shown_); }
+
+  Colour limit_colour(const Editor& editor) const {
+    const auto start = reading(before_);
+    if (!start) return editor.look.theme.view_text2;
+    const double angle = asked(*start), near = glm::radians(kNearLimit);
+    if (angle < start->minimum - 1e-6 || angle > start->maximum + 1e-6) return kViewError;
+    return angle < start->minimum + near || angle > start->maximum - near ? kViewWarn : kViewOk;
+  }
+
+  std::string limit_text(const Editor& editor) const {
+    const auto now = reading(shown_pose(editor));
+    if (!now)
+      return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Across the hinge";
+    return text_of(*now);
+  }
+
+  void draw_limit(Editor& editor, const GizmoPainter& painter) const {
+    const auto start = reading(before_);
+    if (!start || start->maximum - start->minimum <= 0 || start->maximum - start->minimum >= 2 * kPi) return;
+    Ring arc = drag_.ring();
+    arc.radius *= kLimitArc / AngleDrag::kRing;
+    painter.arc(arc, drag_.start() + start->sense * (start->minimum - start->angle),
+                drag_.start() + start->sense * (start->maximum - start->angle), limit_colour(editor), 3);
+  }
+
+  std::shared_ptr<const Armature> armature_;
+  const Pose before_;
+  std::vector<int> bones_;
+  int active_ = 0;
+  bool trackball_;
+  bool by_ring_, on_hinge_ = false;  // held by a ring; by the one that turns about the hinge
+  glm::dmat3 ring_axes_{1};
+  float scale_;
+  AngleDrag drag_;
+  const glm::dvec3 at_rest_;       // of the active joint, from the anatomical position
+  std::optional<int> held_;        // the bone that a limit holds; the active one before others
+  glm::dquat above_{1, 0, 0, 0};   // the active bone's parent
+  glm::dvec2 rolled_{0};           // radians
+  double shown_ = 0, turned_ = 0;  // degrees
+};
+
+}  // namespace
+
+glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
+                         const SeenFrom& view) {
+  glm::dmat3 axes = axes_of(space, armature, pose, bone, view);
+  const auto hinge = hinge_of(editor, armature, pose, bone);
+  if (!hinge) return axes;
+  const int nearest = nearest_axis(axes, *hinge);
+  const glm::dvec3 along = glm::normalize(*hinge) * (glm::dot(axes[nearest], *hinge) < 0 ? -1.0 : 1.0);
+  const glm::dquat turn = glm::rotation(glm::normalize(axes[nearest]), along);
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = turn * axes[axis];
+  return axes;
+}
+
+std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip) {
+  return std::make_unique<Turning>(editor, grip);
+}
+
+}  // namespace limber::editor

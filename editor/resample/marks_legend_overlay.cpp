@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Over a view that marks voxels, how many of either side have which mark: where two volumes differ (nothing, or another
+// tissue, on the other side; in all, and of the tissue under the pointer), or where the body claims a voxel twice.
+#include <algorithm>
+#include <array>
+
+#include "editor/context/panels.h"
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/overlap_overlay.h"
+#include "editor/resample/results.h"
+#include "editor/volume/tissue_edits.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 340, kRow = 22, kPad = 10, kMargin = 8, kNumber = 92;
+
+struct Row {
+  std::string letter, name;
+  std::optional<std::array<std::int64_t, 2>> counts;  // none: being found
+  std::optional<std::array<glm::vec3, 2>> marks;      // sRGB
+};
+struct Legend {
+  std::string title;
+  std::array<const char*, 2> columns;
+  std::vector<Row> rows;
+  std::string note;  // below them; may be empty
+};
+
+void draw_row(Editor& editor, const Rect& row, const Row& words) {
+  const Look& look = editor.look;
+  const float left = row.high.x - look.px(2 * kNumber);
+  put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{row.low, {row.low.x + look.px(18), row.high.y}},
+           words.letter);
+  put_text(editor, look.fonts.regular, look.theme.view_text,
+           Rect{{row.low.x + look.px(words.letter.empty() ? 0 : 18), row.low.y}, {left, row.high.y}}, words.name);
+  for (std::size_t column = 0; words.counts && column < 2; ++column) {
+    const float right = left + look.px(kNumber) * static_cast<float>(column + 1);
+    const std::string digits = grouped((*words.counts)[column]);
+    put_text(editor, look.fonts.mono, look.theme.view_text,
+             Rect{{right - look.px(kNumber), row.low.y}, {right, row.high.y}}, digits, Align::Right);
+    if (!words.marks) continue;
+    const glm::vec3& mark = (*words.marks)[column];
+    put_swatch(look, {right - text_size(look.fonts.mono, digits).x - look.px(22), row.centre().y - look.px(7)},
+               rgb(mark.r, mark.g, mark.b));
+  }
+}
+
+bool draw_legend(Editor& editor, const Rect& view, const Legend& legend) {
+  const Look& look = editor.look;
+  if (view.width() < look.px(300) || view.height() < look.px(180)) return false;
+  const float lines = static_cast<float>(1 + legend.rows.size() + !legend.note.empty());
+  const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + lines * kRow + 8)};
+  const Rect box{
+      low, low + glm::vec2(std::min(look.px(kWidth), view.width() - look.px(2 * kMargin)), look.px(lines * kRow + 8))};
+  fill(box, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
+  register_widget(editor, "legend", box);
+  float y = box.low.y + look.px(4);
+  const auto next = [&] {
+    const Rect row{{box.low.x + look.px(kPad), y}, {box.high.x - look.px(kPad), y + look.px(kRow)}};
+    y = row.high.y;
+    return row;
+  };
+  const Rect head = next();
+  put_text(editor, look.fonts.regular, look.theme.view_text,
+           Rect{head.low, {head.high.x - look.px(2 * kNumber), head.high.y}}, legend.title);
+  for (std::size_t column = 0; column < 2; ++column) {
+    const float right = head.high.x - look.px(kNumber) * static_cast<float>(1 - column);
+    put_text(editor, look.fonts.small, look.theme.view_text2,
+             Rect{{right - look.px(kNumber), head.low.y}, {right, head.high.y}}, legend.columns[column], Align::Right);
+  }
+  for (const Row& row : legend.rows) draw_row(editor, next(), row);
+  if (!legend.note.empty()) put_text(editor, look.fonts.small, look.theme.view_text2, next(), legend.note);
+  return true;
+}
+
+// Four lines always.
+bool draw_difference(Editor& editor, const Rect& view) {
+  const ComparedVolumes* made = compared_volumes(editor);
+  const Comparison& comparison = editor.comparison;
+  Legend legend{made ? "Voxels that differ" : "Comparing...", {"only here", "other tissue"}, {}, ""};
+  for (const bool a : {true, false}) {
+    Row row{a ? "A" : "B", name_of_side(editor, a ? comparison.a : comparison.b), std::nullopt,
+            std::array{marks_of(a).air, marks_of(a).tissue}};
+    if (made) row.counts = {made->side(a).differing.total.air, made->side(a).differing.total.other_tissue};
+    legend.rows.push_back(row);
+  }
+  const Hover& hover = editor.views->hover;
+  const Tissue* tissue = made && hover.inside ? made->tissues->find(hover.label) : nullptr;
+  if (!tissue) legend.note = "Point at a tissue for its own voxels";
+  if (tissue) {
+    std::array<std::int64_t, 2> both{};
+    for (const bool a : {true, false})
+      if (const auto found = made->side(a).differing.counts.find(hover.label);
+          found != made->side(a).differing.counts.end()) {
+        both[0] += found->second.air;
+        both[1] += found->second.other_tissue;
+      }
+    legend.rows.push_back({"", shown_name(*tissue) + ", A and B", both, std::nullopt});
+  }
+  return draw_legend(editor, view, legend);
+}
+
+bool draw_overlap(Editor& editor, const Rect& view) {
+  Legend legend{"Claimed twice", {"by tissue", "by two bones"}, {}, ""};
+  const auto add = [&](const char* letter, const std::shared_ptr<const Result>& result, const std::string& name) {
+    if (result && result->overlap)
+      legend.rows.push_back({letter, name,
+                             std::array{std::ssize(result->overlap->tissue) + std::int64_t{0},
+                                        std::ssize(result->overlap->bones) + std::int64_t{0}},
+                             std::array{mark_of_overlap(false), mark_of_overlap(true)}});
+    else legend.rows.push_back({letter, result ? name + ": not kept" : name + ": none", std::nullopt, std::nullopt});
+  };
+  const auto shown = shown_result(editor);
+  if (comparing(editor))
+    add("A", result_named(editor.document(), editor.comparison.a), name_of_side(editor, editor.comparison.a));
+  add(comparing(editor) ? "B" : "", shown, shown ? shown->name : "At rest");
+  return draw_legend(editor, view, legend);
+}
+
+}  // namespace
+
+float draw_marks_legend(Editor& editor, const Rect& view) {
+  if (shows_difference(editor)) return draw_difference(editor, view) ? 104 : 0;
+  if (shows_overlap(editor)) return draw_overlap(editor, view) ? (comparing(editor) ? 82 : 60) : 0;
+  return 0;
+}
+
+}  // namespace limber::editor

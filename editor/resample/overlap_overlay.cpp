@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/resample/overlap_overlay.h"
+
+#include <algorithm>
+
+#include "editor/context/background_task.h"
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/fem_overlay.h"
+#include "editor/resample/results.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/shown/mark_colours.h"
+#include "render/scene/weight_colormap.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kRemembered = 4;  // both sides of a comparison, and those before it
+
+std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::shared_ptr<const TissueTable>& tissues) {
+  auto made = std::make_shared<MarkedOverlap>(MarkedOverlap{
+      result.overlap, result.volume, tissues, std::make_shared<const TissueVoxels>(*result.volume), nullptr});
+  const std::vector<glm::u8vec3> dull = dull_colours(*tissues);
+  std::vector<glm::u8vec3> field(static_cast<std::size_t>(made->tissue->size()));
+  made->tissue->for_each([&](std::int64_t place, const glm::ivec3& voxel) {
+    field[static_cast<std::size_t>(place)] = dull[result.volume->at(voxel)];
+  });
+  const glm::ivec3 size = result.volume->grid.size;
+  for (const bool of_bones : {false, true})
+    for (const std::int64_t voxel : of_bones ? result.overlap->bones : result.overlap->tissue) {
+      const glm::ivec3 at(voxel % size.x, voxel / size.x % size.y, voxel / (std::int64_t{size.x} * size.y));
+      if (const std::int64_t place = made->tissue->index_of(at); place >= 0)
+        field[static_cast<std::size_t>(place)] = bytes_of(mark_of_overlap(of_bones));
+    }
+  made->field = std::make_shared<const std::vector<glm::u8vec3>>(std::move(field));
+  return made;
+}
+
+void put_into(Editor& editor, render::Scene& scene, const std::shared_ptr<const Result>& result) {
+  if (!result || !result->overlap || scene.volume != result->volume) return;
+  OverlapView& view = *editor.overlap;
+  const auto& tissues = editor.document().tissues;
+  const auto found = std::find_if(view.made.begin(), view.made.end(), [&](const auto& one) {
+    return one->overlap == result->overlap && one->volume == result->volume && one->tissues == tissues;
+  });
+  if (found != view.made.end()) {
+    scene.outlined.reset();
+    scene.weights = render::ShownWeights{.weights = nullptr,
+                                         .tissue = (*found)->tissue,
+                                         .display = render::WeightDisplay::Field,
+                                         .swatches = nullptr,
+                                         .region = nullptr,
+                                         .field = (*found)->field,
+                                         .contours = false};
+    return;
+  }
+  if (view.task && editor.tasks.contains(*view.task)) return;
+  view.task = start_task(editor, "", [result, tissues](Progress&) -> Finish {
+    return [made = marked(*result, tissues)](Editor& e) {
+      auto& all = e.overlap->made;
+      all.push_back(made);
+      if (all.size() > kRemembered) all.erase(all.begin());
+      e.touch();
+    };
+  });
+}
+
+}  // namespace
+
+glm::vec3 mark_of_overlap(bool of_bones) { return render::srgb(of_bones ? 0xF3CF45 : 0xFF3EA5); }
+
+std::string why_no_overlap(const Editor& editor) {
+  if (editor.document().results.empty()) return "Nothing was resampled yet";
+  const auto kept = [&](const std::shared_ptr<const Result>& result) { return result && result->overlap; };
+  if (kept(chosen_result(editor)) || (comparing(editor) && kept(result_named(editor.document(), editor.comparison.a))))
+    return "";
+  return "The result was made before its overlap was kept: resample it again";
+}
+
+bool shows_overlap(const Editor& editor) {
+  return editor.overlap->shown && editor.workspace == Workspace::Resample && !watched_solve(editor) &&
+         why_no_overlap(editor).empty();
+}
+
+void show_overlap_overlay(Editor& editor, bool on) {
+  editor.overlap->shown = on;
+  if (!on) return;
+  editor.fem_overlay->measure.reset();
+  editor.difference->shown = false;
+}
+
+void show_overlap(Editor& editor) {
+  if (!editor.overlap->shown) editor.overlap->made.clear();
+  if (!shows_overlap(editor)) return;
+  Views& views = *editor.views;
+  put_into(editor, views.scene, shown_result(editor));
+  if (views.other_scene) put_into(editor, *views.other_scene, result_named(editor.document(), editor.comparison.a));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Of the result that is shown: whether it passes what a posed volume must, and where it comes from.
+#include <algorithm>
+#include <cstdio>
+
+#include "editor/context/panels.h"
+#include "editor/resample/results.h"
+#include "editor/selection/transform_gizmo.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/tissue_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+// To where the figure is of: the tissue or the bone is chosen.
+void go_to_worst(Editor& editor, const QualityGate& gate) {
+  const Document& document = editor.document();
+  if (document.tissues)
+    for (const Tissue& tissue : document.tissues->tissues)
+      if (tissue.name == gate.worst) return select_tissue(editor, tissue.label, false);
+  if (!document.armature) return;
+  if (const auto bone = document.armature->find(gate.worst)) choose_bone(editor, static_cast<int>(*bone));
+}
+
+void draw_gate(Editor& editor, Column& column, const QualityGate& gate) {
+  const Look& look = editor.look;
+  const Theme& theme = look.theme;
+  const Rect row = column.row(24);
+  const Pressed pressed = press_area(editor, gate.name, row);
+  if (pressed.hovered) fill(row, theme.hover);
+  const bool failed = gate.state == GateState::Failed, measured = gate.state != GateState::NotMeasured;
+  const Colour colour = failed ? theme.error : measured ? theme.ok : theme.text2;
+  put_icon(look.fonts.regular, colour, Rect{{row.low.x + look.px(8), row.low.y}, {row.low.x + look.px(26), row.high.y}},
+           failed     ? icon::kFail
+           : measured ? icon::kOk
+                      : icon::kRemove);
+  const std::string figure = measured ? gate.figure : "not checked";
+  ImFont* font = measured ? look.fonts.mono : look.fonts.small;
+  const float right = row.high.x - look.px(10), left = right - text_size(font, figure).x - 1;
+  put_text(editor, look.fonts.regular, theme.text,
+           Rect{{row.low.x + look.px(32), row.low.y}, {left - look.px(8), row.high.y}}, gate.name);
+  put_text(editor, font, failed ? theme.error : theme.text2, Rect{{left, row.low.y}, {right, row.high.y}}, figure,
+           Align::Right);
+  if (pressed.hovered)
+    tooltip(
+        editor, row,
+        gate.name + (failed     ? ": failed"
+                     : measured ? ": passed"
+                                : ": not checked"),
+        gate.sentence + "\n" + gate.meaning + (gate.worst.empty() ? "" : "\n" + gate.worst + ". A click chooses it."));
+  if (pressed.clicked && !gate.worst.empty()) go_to_worst(editor, gate);
+}
+
+// ", 3 failed"
+std::string failures(Editor& editor, const std::shared_ptr<const Result>& result) {
+  const auto& gates = facts_of(editor, result)->gates;
+  const auto failed = std::count_if(gates.begin(), gates.end(),
+                                    [](const QualityGate& gate) { return gate.state == GateState::Failed; });
+  return failed ? ", " + std::to_string(failed) + " failed" : "";
+}
+
+void draw_line(Editor& editor, Column& column, const std::string& name, const std::string& value, bool mono,
+               const std::string& whole = "") {
+  const Look& look = editor.look;
+  const Rect row = column.row(22);
+  const float middle = row.low.x + look.px(120), right = row.high.x - look.px(10);
+  put_text(editor, look.fonts.regular, look.theme.text2,
+           Rect{{row.low.x + look.px(10), row.low.y}, {middle - look.px(6), row.high.y}}, name);
+  put_text(editor, mono ? look.fonts.mono : look.fonts.regular, look.theme.text,
+           Rect{{middle, row.low.y}, {right, row.high.y}}, value, Align::Right);
+  if (whole.empty() || whole == value) return;
+  const Pressed pressed = press_area(editor, name, row);
+  if (pressed.hovered) tooltip(editor, row, name, whole + "\nA click copies it.");
+  if (pressed.clicked) editor.host.set_clipboard(whole);
+}
+
+void draw_title(Editor& editor, Column& column, const std::string& words) {
+  const Rect row = column.row(24);
+  put_text(editor, editor.look.fonts.small, editor.look.theme.text2,
+           Rect{{row.low.x + editor.look.px(10), row.low.y + editor.look.px(4)}, row.high}, words);
+}
+
+}  // namespace
+
+void draw_gates(Editor& editor, Column& column) {
+  const auto result = chosen_result(editor);
+  if (column.begin_section("Quality gates", result ? method_name(result->method) + failures(editor, result) : "")) {
+    const Look& look = editor.look;
+    column.space(4);
+    if (!result) {
+      const Rect row = column.row(26);
+      put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
+               "No result to judge");
+    } else {
+      // What failed comes first.
+      for (const GateState state : {GateState::Failed, GateState::Passed, GateState::NotMeasured})
+        for (const QualityGate& gate : facts_of(editor, result)->gates)
+          if (gate.state == state) draw_gate(editor, column, gate);
+    }
+    column.space(4);
+  }
+  column.end_section();
+}
+
+void draw_provenance(Editor& editor, Column& column) {
+  const auto result = chosen_result(editor);
+  if (column.begin_section("Provenance", "", false) && result) {
+    const auto facts = facts_of(editor, result);
+    column.space(4);
+    draw_line(editor, column, "Result", result->name, false);
+    draw_line(editor, column, "Method", method_name(result->method), false);
+    if (!facts->version.empty()) draw_line(editor, column, "Limber", facts->version, true);
+    for (const auto& line : facts->settings) draw_line(editor, column, line.name, line.value, false);
+    if (!facts->inputs.empty()) draw_title(editor, column, "Inputs, SHA-256");
+    for (const auto& line : facts->inputs) draw_line(editor, column, line.name, line.value, true, line.whole);
+    if (!facts->stages.empty()) draw_title(editor, column, "Time");
+    for (const auto& line : facts->stages) draw_line(editor, column, line.name, line.value, true);
+    if (facts->peak_memory_mb) {
+      char text[32];
+      std::snprintf(text, sizeof text, "%.0f MB", *facts->peak_memory_mb);
+      draw_line(editor, column, "Memory", text, true);
+    }
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

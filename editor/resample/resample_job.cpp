@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/resample/resample_job.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/bones/bone_map.h"
+#include "core/pose/pose_io.h"
+#include "core/project/worker.h"
+#include "core/resample/fem_steps.h"
+#include "core/resample/pose_path.h"
+#include "core/rig_io/rig_io.h"
+#include "core/seams/seams_io.h"
+#include "core/skin/weights_io.h"
+#include "core/volume_io/volume_io.h"
+#include "editor/file_browser/temp_folder.h"
+#include "editor/resample/results.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/volume/body_seams.h"
+
+namespace limber::editor {
+
+namespace {
+
+struct Request {
+  Document from;  // with a pose
+  std::string method;
+  double spacing = 0;  // mm; 0: as the volume
+  bool bones_apart = false, mass_exact = false, contact = false;
+  std::string quality;  // of finite elements
+  std::string scratch;
+  WorkerSettings worker;
+  std::shared_ptr<SolveFeed> feed;  // of finite elements; else null
+};
+
+constexpr char kSteps[] = "solve";  // of the files that the solver leaves
+
+void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
+  const Document& from = request.from;
+  progress.update("hand over", 0);
+  FileType type = from.volume_type ? *from.volume_type : FileType{};
+  type.format = "NRRD";
+  type.compressed = false;
+  write_volume(*from.volume, folder / "volume.nrrd", *from.tissues, type);
+  progress.update("hand over", 0.5);
+  write_tissue_table(*from.tissues, folder / "tissues.json");
+  write_armature(*from.armature, folder / "rig.json");
+  write_pose(*from.pose, *from.armature, folder / "pose.json");
+  write_weights(*from.weights, *from.volume, TissueVoxels(*from.volume), folder / "weights.nrrd");
+  if (from.seams) write_seams(*from.seams, from.volume->grid, folder / "seams.nrrd");
+  const BoneMap bone_map = usable_bone_map(seam_source(from));
+  if (!bone_map.empty()) write_bone_map(bone_map, folder / "bones.json");
+  nlohmann::ordered_json job{{"command", "resample"},     {"volume", "volume.nrrd"},   {"rig", "rig.json"},
+                             {"tissues", "tissues.json"}, {"weights", "weights.nrrd"}, {"pose", "pose.json"},
+                             {"method", request.method},  {"output", "posed.nrrd"},    {"report", "report.json"},
+                             {"overlap", "overlap.nrrd"}};
+  if (from.seams) job["seams"] = "seams.nrrd";
+  if (!bone_map.empty()) job["bone-map"] = "bones.json";
+  if (request.spacing > 0) job["spacing"] = request.spacing;
+  if (request.bones_apart) job["glide"] = "joint";
+  if (request.mass_exact) job["mass-exact"] = true;
+  if (request.method == "fem") {
+    job["quality"] = request.quality;
+    job["steps"] = kSteps;
+    if (request.contact) job["contact"] = true;
+  }
+  write_file_atomically(folder / "job.json", job.dump(1) + "\n");
+}
+
+// With the document's labels: files tell tissues apart by their own values.
+std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTable& tissues, Progress& progress) {
+  VolumeFile file = read_volume(path, progress);
+  const FileValueIndex ours(tissues);
+  std::vector<Label> label_of(65536, 0);
+  for (const Tissue& tissue : file.tissues.tissues) {
+    const Tissue* known = ours.find(tissue.file_value);
+    if (!known)
+      throw Error("the posed volume has a label that the volume lacks", std::to_string(tissue.file_value),
+                  "please report it");
+    label_of[tissue.label] = known->label;
+  }
+  for (Label& label : file.volume.voxels) label = label_of[label];
+  return std::make_shared<const LabelVolume>(std::move(file.volume));
+}
+
+std::shared_ptr<const Overlap> read_overlap(const Path& path, Progress& progress) {
+  const VolumeFile file = read_volume(path, progress);
+  auto overlap = std::make_shared<Overlap>();
+  for (const Tissue& value : file.tissues.tissues) {
+    auto& voxels = value.file_value == 1 ? overlap->tissue : overlap->bones;
+    for (std::size_t i = 0; i < file.volume.voxels.size(); ++i)
+      if (file.volume.voxels[i] == value.label) voxels.push_back(static_cast<std::int64_t>(i));
+  }
+  return overlap;
+}
+
+// Hands on what the worker has left of its solve, as it goes.
+class StepReader {
+ public:
+  StepReader(Path name, std::shared_ptr<SolveFeed> feed) : name_(std::move(name)), feed_(std::move(feed)) {}
+  void operator()(const WorkerProgress& progress) {
+    feed_->tell(progress);
+    if (!progress.iteration) return;
+    if (!rest_) read_rest();
+    auto step = read_fem_step(name_);
+    if (rest_ && step && step->V.rows() == rest_->tets.V.rows()) feed_->show(rest_, std::move(*step));
+  }
+
+ private:
+  void read_rest() {
+    if (auto mesh = read_fem_mesh(name_)) rest_ = std::make_shared<const FemMesh>(std::move(*mesh));
+  }
+  Path name_;
+  std::shared_ptr<SolveFeed> feed_;
+  std::shared_ptr<const FemMesh> rest_;
+};
+
+// Null where nothing bends.
+std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
+  auto mesh = read_fem_mesh(name);
+  auto step = read_fem_step(name);
+  if (!mesh || !step || mesh->tets.V.rows() != step->V.rows()) return nullptr;
+  return std::make_shared<const SolvedMesh>(SolvedMesh{std::move(*mesh), std::move(step->V)});
+}
+
+Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Progress& progress) {
+  const ScratchFolder folder(request.scratch);
+  write_inputs(request, folder, progress);
+  if (request.feed) request.worker.on_progress = StepReader(folder / kSteps, request.feed);
+  run_worker(folder / "job.json", progress, request.worker);
+  auto result = std::make_shared<Result>();
+  result->method = request.method + (request.method == "fem" && request.contact ? "-contact" : "");
+  result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
+  result->overlap = read_overlap(folder / "overlap.nrrd", progress);
+  result->report = read_file(folder / "report.json");
+  result->from_volume = request.from.volume;
+  result->from_tissues = request.from.tissues;
+  result->from_armature = request.from.armature;
+  result->from_weights = request.from.weights;
+  result->from_pose = request.from.pose;
+  result->from_seams = request.from.seams;
+  result->from_bone_map = request.from.bone_map;
+  if (request.feed) result->solved = read_solved(folder / kSteps);
+  const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " +
+                             method_name(result->method) + (request.mass_exact ? ", mass-exact" : "");
+  return [result, wanted, name](const Document& now) {
+    Document next = now;
+    result->name = *name = unique_name(now.results, wanted);
+    next.results.push_back(result);
+    return next;
+  };
+}
+
+void tell(Editor& editor, const std::string& name) {
+  for (const auto& result : editor.document().results) {
+    if (result->name != name) continue;
+    const auto facts = facts_of(editor, result);
+    char line[64], detail[96];
+    std::snprintf(line, sizeof line, "resampled in %.1f s", facts->seconds);
+    if (facts->change_percent)
+      std::snprintf(detail, sizeof detail, "volume %+.2f %%, %lld overlap voxels", *facts->change_percent,
+                    static_cast<long long>(facts->overlap_voxels));
+    else std::snprintf(detail, sizeof detail, "%lld overlap voxels", static_cast<long long>(facts->overlap_voxels));
+    editor.messages.ok(name + " " + line, detail, "result.show_last");
+    for (const std::string& warning : facts->warnings) editor.messages.warn(name, warning);
+  }
+}
+
+}  // namespace
+
+std::string why_no_resampling(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.volume || !document.tissues) return "Open a volume first";
+  if (!document.armature) return "Import a rig first";
+  if (!document.weights) return "Compute the weights first";
+  if (document.weights->bones().size() != document.armature->bones.size())
+    return "The weights belong to another rig: compute them again";
+  return "";
+}
+
+void start_resampling(Editor& editor) {
+  Request request{editor.document(),
+                  editor.resampling.method,
+                  editor.resampling.spacing,
+                  editor.resampling.bones_apart,
+                  editor.resampling.mass_exact,
+                  editor.resampling.contact,
+                  editor.resampling.quality,
+                  editor.preferences.scratch_folder,
+                  {},
+                  {}};
+  if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
+  if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();
+  request.worker.program = editor.worker_program;
+  request.worker.yields = editor.workers_yield;
+  request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;
+  request.worker.time_limit = editor.preferences.worker_minutes * 60.0;
+  auto name = std::make_shared<std::string>();
+  const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
+  const int id = editor.jobs.start(
+      label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); },
+      request.feed ? Lane::Long : Lane::Common);
+  editor.step_of_job[id] = StepOfWork::Resample;
+  if (request.feed) {
+    editor.fem->solves[id] = {request.from, largest_angle_degrees(*request.from.pose), request.feed};
+    watch(editor);
+  }
+  editor.after_job[id] = [name](Editor& e, const JobStatus& job) {
+    const bool was_watched = e.fem->watched == job.id;
+    e.fem->solves.erase(job.id);
+    if (was_watched) stop_watching(e);
+    if (job.state != JobState::Done) return;
+    tell(e, *name);
+    if (was_watched && e.workspace == Workspace::Resample) show_result(e, *name);
+  };
+  editor.touch();
+}
+
+}  // namespace limber::editor

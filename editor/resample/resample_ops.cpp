@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <utility>
+
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_polls.h"
+#include "editor/context/pointer_context.h"
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/fem_overlay.h"
+#include "editor/resample/overlap_overlay.h"
+#include "editor/resample/resample_job.h"
+#include "editor/resample/results.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/keyboard.h"
+
+namespace limber::editor {
+
+namespace {
+
+Operator method_operator(const char* id, const char* label, const char* sentence, const char* method) {
+  return {id,       label,
+          "",       "Result",
+          sentence, [method](Editor& e) { e.resampling.method = method; },
+          nullptr,  [method](const Editor& e) { return e.resampling.method == method; }};
+}
+
+std::string needs_result(const Editor& editor) {
+  return editor.document().results.empty() ? "Nothing was resampled yet" : "";
+}
+
+std::string needs_solve(const Editor& editor) {
+  return editor.fem->solves.empty() ? "No finite elements are being solved" : "";
+}
+
+void toggle_watching(Editor& editor) {
+  if (editor.fem->watched != 0) return stop_watching(editor);
+  editor.workspace = Workspace::Resample;
+  watch(editor);
+}
+
+Operator colours_operator(const char* id, const char* label, const char* sentence, std::optional<FemMeasure> measure) {
+  return {id,
+          label,
+          "",
+          "Finite elements",
+          sentence,
+          [measure](Editor& e) {
+            show_difference_overlay(e, false);
+            show_overlap_overlay(e, false);
+            e.fem_overlay->measure = measure;
+          },
+          measure ? why_no_fem_overlay : nullptr,
+          [measure](const Editor& e) {
+            return e.fem_overlay->measure == measure && !e.difference->shown && !e.overlap->shown;
+          }};
+}
+
+void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
+
+// Where nothing was chosen to compare: the volume at rest with the last result.
+void choose_sides(Editor& editor) {
+  if (!why_no_comparison(editor).empty()) editor.comparison.b = editor.document().results.back()->name;
+  if (!why_no_comparison(editor).empty()) editor.comparison.a.clear();
+}
+
+// The side alone, over the whole view.
+void show_side(Editor& editor, bool a) {
+  stop_watching(editor);
+  choose_sides(editor);
+  editor.comparison.views = Comparison::Views::One;
+  editor.comparison.shows_a = a;
+}
+
+// Both sides, or side B alone again.
+void show_sides(Editor& editor, Comparison::Views views) {
+  stop_watching(editor);
+  choose_sides(editor);
+  editor.comparison.views = views;
+  editor.comparison.shows_a = false;
+}
+
+void toggle_wipe(Editor& editor) {
+  show_sides(editor, wiping(editor) ? Comparison::Views::One : Comparison::Views::Wipe);
+  editor.workspace = Workspace::Resample;
+}
+
+void toggle_side_by_side(Editor& editor) {
+  show_sides(editor, side_by_side(editor) ? Comparison::Views::One : Comparison::Views::SideBySide);
+  editor.workspace = Workspace::Resample;
+}
+
+void toggle_difference(Editor& editor) {
+  const bool on = !shows_difference(editor);
+  editor.workspace = Workspace::Resample;
+  stop_watching(editor);
+  choose_sides(editor);
+  show_difference_overlay(editor, on);
+}
+
+void toggle_overlap(Editor& editor) {
+  const bool on = !shows_overlap(editor);
+  editor.workspace = Workspace::Resample;
+  stop_watching(editor);
+  if (on && !shown_result(editor) && !comparing(editor)) show_result(editor, chosen_result(editor)->name);
+  show_overlap_overlay(editor, on);
+}
+
+// The other side, for as long as the key is held; of two views each shows what the other one did.
+class Flicker final : public Modal {
+ public:
+  explicit Flicker(Editor& editor) : key_(Key::F) {
+    if (const auto chord = editor.keymap.chord_of("compare.flicker", contexts(editor))) key_ = chord->key;
+    choose_sides(editor);
+    before_ = editor.comparison;
+    if (side_by_side(editor)) std::swap(editor.comparison.a, editor.comparison.b);
+    else show_side(editor, !before_.shows_a);
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (event.key != key_ || event.down) return true;
+    cancel(editor);
+    return false;
+  }
+  void cancel(Editor& editor) override {
+    const float share = editor.comparison.share;
+    editor.comparison = before_;
+    editor.comparison.share = share;
+  }
+  std::vector<KeyHint> hints(const Editor&) const override { return {{{std::string(name_of(key_))}, "Let go: back"}}; }
+
+ private:
+  Comparison before_;
+  Key key_;
+};
+
+bool results_seen(const Editor& editor) {
+  return editor.arrangement().results && !editor.arrangement().console && !editor.arrangement().timeline;
+}
+
+// What else stands there gives way.
+void show_results(Editor& editor, bool shown) {
+  editor.arrangement().results = shown;
+  if (shown) editor.arrangement().console = editor.arrangement().timeline = false;
+}
+void toggle_results(Editor& editor) { show_results(editor, !results_seen(editor)); }
+
+void delete_result(Editor& editor) {
+  const auto gone = chosen_result(editor);
+  Document next = editor.document();
+  std::erase(next.results, gone);
+  commit(editor, "Delete " + gone->name, std::move(next));
+}
+
+void delete_stale(Editor& editor) {
+  Document next = editor.document();
+  std::erase_if(next.results, [&](const auto& result) { return !stale_reason(editor.document(), *result).empty(); });
+  commit(editor, "Delete stale results", std::move(next));
+}
+
+std::string needs_stale(const Editor& editor) {
+  for (const auto& result : editor.document().results)
+    if (!stale_reason(editor.document(), *result).empty()) return "";
+  return "No result is stale";
+}
+
+}  // namespace
+
+std::vector<Operator> resample_operators() {
+  return {
+      {"resample.run", "Resample this pose", icon::kResample, "Result",
+       "Writes the posed body as a new label volume, beside the work.", [](Editor& e) { start_resampling(e); },
+       why_no_resampling},
+      method_operator("resample.lbs", "LBS", "Linear blending: quick, loses volume at bent and twisted joints.", "lbs"),
+      method_operator("resample.dqs", "DQ",
+                      "Dual quaternions: keeps the thickness of twisted limbs, bulges at shoulders.", "dqs"),
+      method_operator("resample.mix", "Mixed",
+                      "Between linear and dual quaternions; in results flesh then gets its volume back.", "mix"),
+      method_operator(
+          "resample.fem", "FEM",
+          "Finite elements: tissue keeps its volume and skin touches skin. Takes minutes, in the background.", "fem"),
+      {"result.watch", "Watch it settle", icon::kRunning, "Result",
+       "The views show the tissue on its way to the pose, while finite elements are solved.", toggle_watching,
+       needs_solve, [](const Editor& e) { return e.fem->watched != 0; }},
+      {"result.toggle", "Posed volume", icon::kPose, "Result",
+       "The views show the chosen result, or the volume at rest again.", toggle_posed, needs_result,
+       [](const Editor& e) { return shown_result(e) != nullptr; }},
+      {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.",
+       [](Editor& e) { show_result(e, e.document().results.back()->name); }, needs_result},
+      {"result.rename", "Rename result...", icon::kRename, "Result",
+       "Gives the chosen result another name, in the table below the views.",
+       [](Editor& e) {
+         e.renaming_result = {chosen_result(e)->name, chosen_result(e)->name};
+         await_field(e);
+         show_results(e, true);
+       },
+       needs_result},
+      {"result.delete", "Delete result", icon::kTrash, "Result", "Takes the chosen result out of the project.",
+       delete_result, needs_result},
+      {"result.delete_stale", "Delete stale results", icon::kTrash, "Result",
+       "Takes out the results whose inputs have changed.", delete_stale, needs_stale},
+      {"result.copy_report", "Copy report", icon::kCopy, "Result",
+       "Puts the chosen result's report on the clipboard, as JSON.",
+       [](Editor& e) { e.host.set_clipboard(chosen_result(e)->report); }, needs_result},
+      {"compare.show_a", "Show A", icon::kVisible, "Result", "The views show side A of the comparison.",
+       [](Editor& e) { show_side(e, true); }, needs_result,
+       [](const Editor& e) { return !comparing(e) && e.comparison.shows_a; }},
+      {"compare.show_b", "Show B", icon::kVisible, "Result", "The views show side B of the comparison.",
+       [](Editor& e) { show_side(e, false); }, needs_result,
+       [](const Editor& e) { return !comparing(e) && !e.comparison.shows_a; }},
+      {"compare.wipe", "Wipe", icon::kWipe, "Result",
+       "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
+      {"compare.side_by_side", "Side by side", icon::kSplitViews, "Result",
+       "Shows A and B beside one another, each view twice, seen by one camera; the line between them can be dragged.",
+       toggle_side_by_side, needs_result, side_by_side},
+      {"compare.difference", "Difference", icon::kDifference, "Result",
+       "Marks the voxels whose tissue differs between A and B, and counts them.", toggle_difference, needs_result,
+       shows_difference},
+      {"result.overlap", "Overlap", icon::kOverlap, "Result",
+       "Marks the voxels that two places of the body claimed, and counts them.", toggle_overlap, why_no_overlap,
+       shows_overlap},
+      {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.",
+       [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
+      {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.",
+       [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
+      colours_operator("fem.show_tissues", "Tissue colours",
+                       "Shows the tissues of a result by finite elements as elsewhere.", std::nullopt),
+      colours_operator("fem.show_volume_ratio", "Volume ratio",
+                       "Colours by det F: how far each tetrahedron is pressed, blue, or swollen, red.",
+                       FemMeasure::VolumeRatio),
+      colours_operator("fem.show_energy", "Strain energy",
+                       "Colours by the energy that deformation has stored, in kPa: where tissue resists.",
+                       FemMeasure::EnergyDensity),
+      colours_operator("fem.show_gap", "Contact gap",
+                       "Colours by the air between skin and the skin that a fold has brought near, in mm.",
+                       FemMeasure::Gap),
+      {"fem.tets", "Tetrahedra", icon::kTissues, "Finite elements",
+       "Draws the mesh that was solved as lines, where slices, the clip box and the clip plane cut it.",
+       [](Editor& e) { e.fem_overlay->tets = !e.fem_overlay->tets; }, why_no_fem_overlay,
+       [](const Editor& e) { return e.fem_overlay->tets; }},
+      {"fem.display_pie", "Colours by", icon::kVisible, "Finite elements",
+       "Lists what a result by finite elements can be coloured by, at the pointer.",
+       [](Editor& e) { e.open_popup = "Finite elements"; }, why_no_fem_overlay},
+      {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
+       toggle_results, nullptr, results_seen},
+  };
+}
+
+}  // namespace limber::editor

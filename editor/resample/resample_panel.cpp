@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How this pose is resampled: method, spacing, and the button.
+#include <array>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/resample/results.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Of finite elements: how fine, and whether skin touches skin.
+void draw_fem(Editor& editor, Column& column) {
+  auto& settings = editor.resampling;
+  const Rect quality = column.property("Quality");
+  const PathScope path(editor, "Quality");
+  int chosen = settings.quality == "draft" ? 0 : settings.quality == "fine" ? 2 : 1;
+  if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm"}, chosen))
+    settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
+  if (ImGui::IsItemHovered())
+    tooltip(
+        editor, quality, "Quality",
+        "Edge of the tetrahedra that tissue is made of; the fine ones stand around bent joints. Finer takes longer.");
+  const Rect contact = column.property("Contact");
+  checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
+  if (ImGui::IsItemHovered())
+    tooltip(editor, contact, "Skin touches skin", "Folds press against each other instead of passing through.");
+  operator_box(editor, "result.watch", column.property("While solved"), "Watch it settle");
+}
+
+}  // namespace
+
+void draw_resample(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  if (column.begin_section("Resample")) {
+    auto& settings = editor.resampling;
+    const Rect methods = column.row(30);
+    const std::array ids{"resample.mix", "resample.lbs", "resample.dqs", "resample.fem"};
+    const float width = std::floor((methods.width() - look.px(20)) / float(ids.size()));
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Operator* op = find_operator(editor, ids[i]);
+      const float x = methods.low.x + look.px(10) + float(i) * width;
+      operator_button(editor, ids[i], {{x, methods.low.y}, {x + width - look.px(1), methods.low.y + look.px(26)}},
+                      op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+    }
+    if (settings.method == "fem") draw_fem(editor, column);
+    const Rect spacing = column.property("Output");
+    bool committed = false;
+    const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";
+    number_field(editor, "Output", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "", false,
+                 committed);
+    if (ImGui::IsItemHovered())
+      tooltip(editor, spacing, "Output", "Edge of the posed volume's voxels. 0: as the volume at rest.");
+    const Rect apart = column.property("Joints");
+    checkbox(editor, "Keep bones apart", apart, "Keep bones apart", settings.bones_apart);
+    if (ImGui::IsItemHovered())
+      tooltip(editor, apart, "Keep bones apart",
+              "Shifts each bent joint by the least that frees its bones, up to 5 percent of the shorter bone. Off: by "
+              "a voxel at most, so that the result lies as the view shows it. Bones keep their directions.");
+    const Rect exact = column.property("Volumes");
+    checkbox(editor, "Mass-exact", exact, "Mass-exact", settings.mass_exact);
+    if (ImGui::IsItemHovered())
+      tooltip(editor, exact, "Mass-exact",
+              "Afterwards soft tissues get their volumes at rest back: borders between them move by the fewest and "
+              "least sure voxels. Bones stay as they are.");
+    column.space(6);
+    const Rect row = column.row(30);
+    const Rect place{{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(28)}};
+    operator_button(editor, "resample.run", place, "Resample this pose", ButtonStyle::Primary);
+    const Operator* op = find_operator(editor, "resample.run");
+    const std::string reason = why_not(editor, *op);
+    const Rect note = column.row(24);
+    const Document& document = editor.document();
+    const std::string words =
+        !reason.empty()
+            ? reason
+            : name_of_pose(*document.armature, document.pose ? *document.pose : rest_pose(*document.armature));
+    put_text(editor, look.fonts.small, reason.empty() ? look.theme.text2 : look.theme.warn,
+             Rect{{note.low.x + look.px(10), note.low.y}, {note.high.x - look.px(10), note.high.y}}, words);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the views: every result in a row, and beside them what they did to each tissue.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/resample/results.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/keyboard.h"
+#include "editor/ui/list_navigation.h"
+#include "editor/volume/volume_change.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr char kList[] = "results";
+constexpr float kHead = 30, kTableHead = 26;
+constexpr float kColumns[] = {60, 84, 70, 64};  // of time, volume, overlap and inverted cells
+constexpr float kState = 190, kNarrowState = 116, kNarrow = 640, kRoomy = 780;
+
+// Name, method, numbers, state. Inverted cells are left out where there is no room.
+void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>& words,
+               const std::array<Colour, 7>& colours, ImFont* first, ImFont* digits) {
+  const Look& look = editor.look;
+  float right = row.high.x - look.px(10);
+  const float state = look.px(row.width() > look.px(kNarrow) ? kState : kNarrowState);
+  put_text(editor, look.fonts.regular, colours[6], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}},
+           words[6]);
+  right -= state;
+  for (int i = row.width() > look.px(kRoomy) ? 5 : 4; i >= 2; --i) {
+    const float width = look.px(kColumns[i - 2]);
+    put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
+    right -= width;
+  }
+  const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);  // "FEM with contact", or its beginning
+  put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
+  put_text(editor, first, colours[0],
+           Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
+}
+
+std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& result) {
+  const Comparison& comparison = editor.comparison;
+  const bool a = result_named(editor.document(), comparison.a) == result,
+             b = result_named(editor.document(), comparison.b) == result;
+  if (a && b) return "";
+  return a ? "A" : b ? "B" : "";
+}
+
+Colour colour_of_side(const Theme& theme, const std::string& side, bool shown) {
+  return side == "A" ? kColourOfA : side == "B" ? kColourOfB : shown ? theme.accent_text : theme.text2;
+}
+
+std::string state_of(const std::string& side, bool shown) {
+  return side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : "");
+}
+
+// A click makes it side B, Shift and a click side A.
+void choose_side(Editor& editor, const std::string& name) {
+  stop_watching(editor);
+  Comparison& comparison = editor.comparison;
+  if (editor.input.modifiers().shift) {
+    comparison.a = name;
+  } else {
+    comparison.b = comparison.b == name && !comparison.shows_a ? "" : name;
+    comparison.shows_a = false;
+  }
+}
+
+// The name as a text field: Enter or a click elsewhere takes it, Escape leaves it.
+void draw_renaming(Editor& editor, const Rect& row, const std::shared_ptr<const Result>& result) {
+  const Look& look = editor.look;
+  auto& renaming = editor.renaming_result;
+  const Rect field{{row.low.x + look.px(28), row.low.y + look.px(1)},
+                   {row.low.x + std::min(look.px(320), row.width() * 0.6f), row.high.y - look.px(1)}};
+  const bool entered = text_field(editor, "name", field, renaming.text, "", !std::exchange(renaming.focused, true));
+  if (!ImGui::IsItemDeactivated()) return;
+  const std::string name = std::exchange(renaming, {}).text;
+  if (entered) rename_result(editor, result, name);
+}
+
+void draw_rest_row(Editor& editor, Column& column, int index) {
+  const Look& look = editor.look;
+  const bool shown = !shown_result(editor);
+  Rect row;
+  if (!column.list_row(row, index, shown, kList)) return;
+  const PathScope path(editor, "At rest");
+  const Pressed pressed = press_area(editor, "row", row);
+  const std::string side = side_of(editor, nullptr);
+  put_icon(look.fonts.regular, colour_of_side(look.theme, side, shown),
+           Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, icon::kVolume);
+  const Colour plain = look.theme.text, second = look.theme.text2;
+  put_cells(editor, row, {"At rest", "", "", "", "", "", state_of(side, shown)},
+            {plain, second, second, second, second, second, second}, shown ? look.fonts.semibold : look.fonts.regular,
+            look.fonts.mono);
+  if (pressed.hovered)
+    tooltip(editor, row, "At rest",
+            "The volume that was opened. A click shows it; Shift and a click makes it side A of the comparison.");
+  if (!pressed.clicked) return;
+  focus_list(editor, kList, index);
+  choose_side(editor, "");
+}
+
+void draw_result_row(Editor& editor, Column& column, int index, const std::shared_ptr<const Result>& result,
+                     bool& open_menu) {
+  const Look& look = editor.look;
+  const Theme& theme = look.theme;
+  const bool shown = shown_result(editor) == result;
+  const std::string side = side_of(editor, result);
+  Rect row;
+  if (!column.list_row(row, index, shown || !side.empty(), kList)) return;
+  const PathScope path(editor, result->name);
+  if (editor.renaming_result.result == result->name) return draw_renaming(editor, row, result);
+  const Pressed pressed = press_area(editor, "row", row);
+  const std::string reason = stale_reason(editor.document(), *result);
+  const auto facts = facts_of(editor, result);
+  put_icon(look.fonts.regular, !reason.empty() ? theme.warn : colour_of_side(theme, side, shown),
+           Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}},
+           reason.empty() ? icon::kResample : icon::kWaiting);
+  char seconds[24];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
+  const Colour plain = theme.text, second = theme.text2;
+  const std::string state = reason.empty()
+                                ? state_of(side, shown)
+                                : (side.empty() ? "" : side + ", ") +
+                                      "stale: " + reason.substr(0, reason.find(" changed"));  // whole in the tooltip
+  put_cells(editor, row,
+            {result->name, method_name(result->method), seconds, percent(facts->change_percent),
+             grouped(facts->overlap_voxels), facts->inverted ? grouped(*facts->inverted) : "-", state},
+            {plain, second, plain, colour_of_change(theme, facts->change_percent),
+             facts->overlap_voxels ? theme.warn : theme.ok,
+             !facts->inverted   ? second
+             : *facts->inverted ? theme.error
+                                : theme.ok,
+             reason.empty() ? second : theme.warn},
+            shown || !side.empty() ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
+  if (pressed.hovered)
+    tooltip(editor, row, result->name,
+            std::string(shown ? "Shown. A click shows the volume at rest." : "A click shows it in the views.") +
+                " Shift and a click makes it side A of the comparison; a double click renames it." +
+                (reason.empty() ? "" : "\nStale: " + reason));
+  if (pressed.double_clicked) {
+    editor.comparison.b = result->name;
+    editor.renaming_result = {result->name, result->name};
+    await_field(editor);
+  } else if (pressed.clicked) {
+    focus_list(editor, kList, index);
+    choose_side(editor, result->name);
+  }
+  if (pressed.right_clicked) {
+    editor.comparison.b = result->name;
+    editor.comparison.shows_a = false;
+    open_menu = true;
+  }
+}
+
+}  // namespace
+
+void draw_results(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  const auto results = editor.document().results;  // kept, since a new name commits
+  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
+  fill(head, look.theme.head);
+  fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
+  const float x =
+      put_text(editor, look.fonts.semibold, look.theme.text,
+               glm::vec2(head.low.x + look.px(12), head.centre().y - look.fonts.semibold->FontSize / 2), "Results");
+  put_text(editor, look.fonts.regular, look.theme.text2,
+           Rect{{x + look.px(8), head.low.y}, {x + look.px(60), head.high.y}}, std::to_string(results.size()));
+  const float top = head.low.y + look.px(4), bottom = head.high.y - look.px(3);
+  float right = head.high.x - look.px(8);
+  for (const char* id : {"view.results", "result.delete", "result.rename", "result.copy_report", "compare.swap"}) {
+    const bool closes = std::string_view(id) == "view.results";
+    const Rect place{{right - look.px(26), top}, {right, bottom}};
+    if (closes) {
+      if (button(editor, "Close results", place, {icon::kClose, "", ButtonStyle::Flat})) run(editor, id);
+      if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, id), place);
+    } else {
+      operator_button(editor, id, place, "", ButtonStyle::Flat);
+    }
+    right = place.low.x - look.px(4);
+  }
+  right -= look.px(6);
+  for (const char* id : {"compare.show_b", "compare.show_a"}) {
+    const Operator* op = find_operator(editor, id);
+    const float width =
+        width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});  // it does not move when it is
+    operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label,
+                    op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+    right -= width + look.px(1);
+  }
+
+  const Rect body{{rect.low.x, head.high.y}, rect.high};
+  if (results.empty()) {
+    const Operator* op = find_operator(editor, "resample.run");
+    if (why_not(editor, *op).empty()) {
+      if (empty_state(editor, body, "No results", "Resample this pose")) run(editor, *op);
+    } else {
+      put_text(editor, look.fonts.regular, look.theme.text2, body, "No results. " + why_not(editor, *op),
+               Align::Centre);
+    }
+    return;
+  }
+  const bool wide = body.width() > look.px(900);
+  const float middle = wide ? body.high.x - look.px(430) : body.high.x;
+  const Rect table_head{body.low, {middle, body.low.y + look.px(kTableHead)}};
+  const Colour grey = look.theme.text2;
+  put_cells(editor, table_head, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"},
+            {grey, grey, grey, grey, grey, grey, grey}, look.fonts.small, look.fonts.small);
+  bool open_menu = false;
+  {
+    Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
+    const ListKey key = list_key(editor, kList, static_cast<int>(results.size()) + 1);
+    const auto row = static_cast<std::size_t>(editor.list_focus.row);
+    const std::string name = row == 0 || row > results.size() ? "" : results[results.size() - row]->name;
+    if (key == ListKey::Moved) show_result(editor, name);
+    if (key == ListKey::Activate) choose_side(editor, name);
+    if (key == ListKey::Rename && !name.empty()) {
+      editor.renaming_result = {name, name};
+      await_field(editor);
+    }
+    int index = 0;
+    draw_rest_row(editor, column, index++);
+    for (auto result = results.rbegin(); result != results.rend(); ++result)
+      draw_result_row(editor, column, index++, *result, open_menu);
+  }
+  if (open_menu) ImGui::OpenPopup("result menu");
+  if (ImGui::BeginPopup("result menu", ImGuiWindowFlags_NoMove)) {
+    editor.place.region = Region::Popup;
+    push_path(editor, "result menu");
+    put_text(editor, look.fonts.semibold, look.theme.text2,
+             from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)),
+             chosen_result(editor) ? chosen_result(editor)->name : "Result");
+    ImGui::Dummy({look.px(190), look.px(22)});
+    ImGui::Separator();
+    for (const char* id : {"result.toggle", "compare.side_by_side", "compare.wipe", "compare.difference",
+                           "result.overlap", "-", "report.open", "file.export", "result.copy_report", "-",
+                           "result.rename", "result.delete", "result.delete_stale"})
+      if (*id == '-') ImGui::Separator();
+      else operator_menu_item(editor, id);
+    pop_path(editor);
+    editor.place.region = Region::Bottom;
+    ImGui::EndPopup();
+  }
+  if (!wide) return;
+  fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.void_);
+  draw_change_plot(editor, {{middle + look.line(), body.low.y}, body.high});
+}
+
+}  // namespace limber::editor

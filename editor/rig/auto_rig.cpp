@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/rig/auto_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "core/autorig/place_in_tissue.h"
+#include "core/base/error.h"
+#include "core/rig_io/rig_templates.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/dialogs/confirm_dialog.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/shown/frame_all.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kMostlyInside = 0.5;
+
+std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; }
+
+// The document with another rig; what was made for the old one goes.
+Document with_rig(const Document& now, std::shared_ptr<const Armature> rig) {
+  Document next = now;
+  next.armature = std::move(rig);
+  next.weights.reset();
+  next.pose.reset();
+  return next;
+}
+
+std::string what_goes(const Editor& editor) {
+  const Document& now = editor.document();
+  std::string parts;
+  for (const auto& [is_there, name] :
+       {std::pair(now.armature != nullptr, "rig"), std::pair(now.weights != nullptr, "weights"),
+        std::pair(now.pose != nullptr, "pose")})
+    if (is_there) parts += (parts.empty() ? "" : ", ") + std::string(name);
+  return parts.empty() ? "Runs as a job; one edit, which can be undone."
+                       : "Takes the place of: " + parts + ". It can be undone.";
+}
+
+std::vector<std::string> template_labels() {
+  std::vector<std::string> labels;
+  for (const RigTemplate& one : rig_templates()) labels.push_back(one.label);
+  return labels;
+}
+
+}  // namespace
+
+void start_auto_fit(Editor& editor, const std::string& which) {
+  const Document from = editor.document();
+  auto fitted = std::make_shared<AutoFit>();
+  const int id = editor.jobs.start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
+    const Armature rig = which == "rig"
+                             ? *from.armature
+                             : rig_template(which.empty() ? suggest_template(*from.volume, progress) : which);
+    *fitted = fitted_or_placed(*from.volume, *from.tissues, rig, progress);
+    auto laid = std::make_shared<const Armature>(fitted->armature);
+    return [from, laid](const Document& now) {
+      if (now.volume != from.volume)
+        throw Error("the volume was changed meanwhile", "fitting a skeleton", "start it again");
+      return with_rig(now, laid);
+    };
+  });
+  editor.step_of_job[id] = StepOfWork::Rig;
+  editor.after_job[id] = [fitted](Editor& e, const JobStatus& job) {
+    if (job.state != JobState::Done) return;
+    show_fit(e, *fitted);
+  };
+  editor.touch();
+}
+
+void offer_fit(Editor& editor, const std::string& file, double inside) {
+  const auto place = [](Editor& e) {
+    const Document from = e.document();
+    start_task(e, "Place the rig in the tissue", [from](Progress&) -> Finish {
+      auto rig = std::make_shared<const Armature>(placed_in_tissue(*from.volume, *from.armature));
+      return [from, rig](Editor& ed) {
+        if (ed.document().volume != from.volume || ed.document().armature != from.armature)
+          throw Error("the rig or the volume was changed meanwhile", "placing the rig", "start it again");
+        commit(ed, "Place rig", with_rig(ed.document(), rig));
+        frame_all(ed, true);
+      };
+    });
+  };
+  ask(editor, {.title = "This rig does not lie in the body",
+               .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
+                             " may be of another body, or in other units.",
+                         "Fitting finds its joints in the volume, as far as its bones' names tell what they are."},
+               .icon = icon::kWarning,
+               .answers = {{"Leave it", {}},
+                           {"Only place and scale", place},
+                           {"Fit it", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
+}
+
+void show_fit(Editor& editor, const AutoFit& fitted) {
+  const auto sure = std::count_if(fitted.joints.begin(), fitted.joints.end(),
+                                  [](const JointFit& joint) { return joint.confidence >= 0.5; });
+  std::vector<std::size_t> order(fitted.joints.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return fitted.joints[a].confidence > fitted.joints[b].confidence;
+  });
+  // The console shows the last line lowest: there the least sure joints stand together.
+  for (std::size_t b : order) {
+    char line[200];
+    std::snprintf(line, sizeof line, "%s: found by %s, confidence %.0f %%, may be %.0f mm off, %.0f %% in tissue",
+                  fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
+                  100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
+    editor.messages.log.push_back({Severity::Info, line});
+  }
+  for (const std::string& warning : fitted.warnings) editor.messages.warn("Look at the fit", warning);
+  const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) +
+                             " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue";
+  if (sure > 0 && fitted.check.whole >= kMostlyInside) editor.messages.ok("Skeleton fitted", result, "view.console");
+  else
+    editor.messages.warn(sure > 0 ? "Skeleton fitted, but it leaves the body" : "Skeleton placed, but no joint is sure",
+                         result);
+}
+
+void ask_auto_fit(Editor& editor) {
+  std::vector<std::string> choices{"Automatic"};
+  for (const std::string& label : template_labels()) choices.push_back(label);
+  if (editor.document().armature) choices.push_back("The rig that is here");
+  const auto outcome = [](const Editor& e, const std::vector<FormField>&) { return what_goes(e); };
+  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+    const std::size_t chosen = static_cast<std::size_t>(fields[0].chosen);
+    start_auto_fit(e, chosen == 0 ? "" : chosen <= rig_templates().size() ? rig_templates()[chosen - 1].name : "rig");
+  };
+  editor.open_dialog(make_form({"Auto-fit skeleton",
+                                "Joints are found from the bones, or from the body's shape where none are labelled.",
+                                "Fit",
+                                {choice_of("Skeleton", "What lies in the volume.", choices)},
+                                outcome,
+                                act}));
+}
+
+void ask_template(Editor& editor) {
+  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
+    return rig_templates()[fields[0].chosen].about + ". " + what_goes(e);
+  };
+  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+    const RigTemplate& chosen = rig_templates()[fields[0].chosen];
+    auto rig = std::make_shared<const Armature>(scaled_to_tissue(*e.document().volume, rig_template(chosen.name)));
+    e.history.commit("Template " + chosen.label, with_rig(e.document(), rig));
+    e.messages.ok("Template " + chosen.label, "Scaled to the tissue; auto-fit finds its joints");
+  };
+  editor.open_dialog(make_form({"Templates",
+                                "Lays a skeleton into the tissue's extents, to be moved by hand.",
+                                "Place",
+                                {choice_of("Skeleton", "What lies in the volume.", template_labels())},
+                                outcome,
+                                act}));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+#include "editor/rig/bone_table.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+std::vector<Operator> bone_table_operators() {
+  return {
+      {"rig.colour_bones", "Colour by rig bone", icon::kTissues, "Rig",
+       "Colours bone tissue by the rig bone that it follows, in the Rig workspace.",
+       [](Editor& e) { e.bone_table->coloured = !e.bone_table->coloured; },
+       [](const Editor& e) {
+         return e.workspace != Workspace::Rig ? std::string("Works in the Rig workspace") : why_no_bone_table(e);
+       },
+       [](const Editor& e) { return e.bone_table->coloured; }},
+      {"rig.clear_bone_map", "Clear bone map", icon::kTrash, "Rig",
+       "Labels of bone follow again what is found for them.", clear_bone_map,
+       [](const Editor& e) { return e.document().bone_map ? std::string() : std::string("Nothing was said by hand"); }},
+  };
+}
+
+}  // namespace limber::editor

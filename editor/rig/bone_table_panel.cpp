@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Every label of bone tissue with the rig bone that it follows and how that was found. A box of choices gives it
+// another bone.
+#include <algorithm>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/rig/bone_table.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "editor/volume/tissue_edits.h"
+#include "editor/volume/volume_edits.h"
+#include "render/scene/weight_colormap.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kRow = 48, kMostRows = 6, kWord = 92;
+
+std::string name_of(const MappedLabel& row, const Tissue* tissue) {
+  const std::string name = tissue ? shown_name(*tissue) : "Label " + std::to_string(row.label);
+  return name + (!row.side ? "" : *row.side == BodySide::Left ? ", left" : ", right");
+}
+
+// The side first, which a long name would push out of sight.
+std::string shown_in_row(const MappedLabel& row, const Tissue* tissue) {
+  const std::string name = name_of({.label = row.label}, tissue);
+  return !row.side ? name : *row.side == BodySide::Left ? "Left: " + name : "Right: " + name;
+}
+
+std::string how(const MappedLabel& row) {
+  return row.is_sure ? std::string(to_string(row.found_by)) : std::string("not sure");
+}
+
+std::string followed(const MappedLabel& row, const Armature& armature) {
+  if (row.bones.empty()) return row.voxels == 0 ? "No voxels" : "No bone";
+  const std::string first = armature.bones[static_cast<std::size_t>(row.bones[0])].name;
+  return row.bones.size() == 1 ? first : first + " and " + std::to_string(row.bones.size() - 1) + " more";
+}
+
+void choose_bone(Editor& editor, const MappedLabel& row, const Rect& rect) {
+  const Armature& armature = *editor.document().armature;
+  const bool by_hand = row.found_by == FoundBy::Map;
+  std::vector<std::string> choices{by_hand ? "As found" : followed(row, armature)};
+  for (const Bone& bone : armature.bones) choices.push_back(bone.name);
+  int chosen = by_hand && !row.bones.empty() ? row.bones[0] + 1 : 0;
+  if (choice_field(editor, rect, choices, chosen))
+    map_label(editor, row.label, row.side, chosen == 0 ? std::nullopt : std::optional(chosen - 1));
+}
+
+void draw_row(Editor& editor, Column& column, int index, const MappedLabel& row) {
+  const Look& look = editor.look;
+  const Rect rect = column.row(kRow);
+  if (!ImGui::IsRectVisible(im(rect.low), im(rect.high))) return;
+  const Tissue* tissue = editor.document().tissues->find(row.label);
+  const Armature& armature = *editor.document().armature;
+  const std::string name = name_of(row, tissue);
+  const PathScope path(editor, name);
+  if (index % 2) fill(rect, look.theme.row_alt);
+  const float left = rect.low.x + look.px(10), right = rect.high.x - look.px(10), middle = rect.low.y + look.px(23);
+  const std::string voxels = grouped(row.voxels);
+  const float number = text_size(look.fonts.mono, voxels).x;
+  const Rect top{{rect.low.x, rect.low.y}, {rect.high.x, middle}};
+  const Pressed pressed = press_area(editor, "name", top);
+  const glm::vec2 corner{left, std::round(top.centre().y - look.px(6))};
+  if (!row.bones.empty()) {
+    const glm::vec3 colour = render::bone_swatches(armature)[static_cast<std::size_t>(row.bones[0])];
+    fill({corner, corner + look.px(14)}, rgb(colour.r, colour.g, colour.b), look.px(3));
+  }
+  put_text(editor, look.fonts.regular, look.theme.text,
+           Rect{{left + look.px(22), top.low.y}, {right - number - look.px(8), top.high.y}}, shown_in_row(row, tissue));
+  put_text(editor, look.fonts.mono, look.theme.text2, Rect{{right - number, top.low.y}, {right, top.high.y}}, voxels,
+           Align::Right);
+  if (pressed.hovered)
+    tooltip(editor, top, name,
+            voxels + " voxels follow " + followed(row, armature) + ", found by " +
+                std::string(to_string(row.found_by)) +
+                (row.is_sure ? "." : "; the rig has no bone for what the name means."));
+  if (pressed.clicked) {
+    select_tissue(editor, row.label, false);
+    if (!row.bones.empty()) editor.selection.bone = row.bones[0], editor.selection.bones = {row.bones[0]};
+  }
+  const Rect field{{left + look.px(22), middle}, {right - look.px(kWord), middle + look.px(22)}};
+  choose_bone(editor, row, field);
+  const Rect word{{field.high.x + look.px(8), middle}, {right, middle + look.px(22)}};
+  if (row.is_sure)
+    return put_text(editor, look.fonts.regular,
+                    row.found_by == FoundBy::Map ? look.theme.accent_text : look.theme.text2, word,
+                    capitalized(how(row)));
+  put_icon(look.fonts.regular, look.theme.warn, Rect{word.low, {word.low.x + look.px(18), word.high.y}},
+           icon::kWarning);
+  put_text(editor, look.fonts.regular, look.theme.warn, Rect{{word.low.x + look.px(20), word.low.y}, word.high},
+           capitalized(how(row)));
+}
+
+void draw_rows(Editor& editor, Column& column, const std::vector<MappedLabel>& rows) {
+  for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[static_cast<std::size_t>(i)]);
+}
+
+// Fact, figure, one button.
+void draw_left_out(Editor& editor, Column& column, const std::vector<std::string>& left_out) {
+  if (left_out.empty()) return;
+  const Look& look = editor.look;
+  const Rect rect = column.row(28);
+  put_icon(look.fonts.regular, look.theme.warn,
+           Rect{{rect.low.x + look.px(8), rect.low.y}, {rect.low.x + look.px(28), rect.high.y}}, icon::kWarning);
+  const std::string words = std::to_string(left_out.size()) +
+                            (left_out.size() == 1 ? " entry names" : " entries name") + " no tissue or bone";
+  put_text(editor, look.fonts.regular, look.theme.warn,
+           Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, words);
+  std::string all;
+  for (const std::string& key : left_out) all += (all.empty() ? "" : ", ") + key;
+  if (press_area(editor, "left out", rect).hovered) tooltip(editor, rect, "Not used", all);
+}
+
+void draw_foot(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const Rect rect = column.row(38);
+  const float y = rect.low.y + look.px(6);
+  float x = rect.low.x + look.px(10);
+  for (const auto& [id, label] :
+       {std::pair("rig.colour_bones", "Colours"), std::pair("rig.clear_bone_map", "Clear map")}) {
+    const Operator* op = find_operator(editor, id);
+    const float width = width_of_button(editor, {op->icon, label});
+    operator_button(editor, id, {{x, y}, {x + width, y + look.px(26)}}, label,
+                    op->checked && op->checked(editor) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    x += width + look.px(6);
+  }
+}
+
+std::string summary(const BoneTable::Known& known) {
+  const auto unsure =
+      std::count_if(known.rows.begin(), known.rows.end(), [](const MappedLabel& row) { return !row.is_sure; });
+  return std::to_string(known.rows.size()) + (unsure ? ", " + std::to_string(unsure) + " not sure" : "");
+}
+
+}  // namespace
+
+void draw_bone_table(Editor& editor, Column& column) {
+  if (!why_no_bone_table(editor).empty()) return;
+  const auto& last = editor.bone_table->known;
+  const bool is_of_body =
+      last && last->source.volume == editor.document().volume && last->source.tissues == editor.document().tissues;
+  if (column.begin_section("Bone map", is_of_body ? summary(*last) : "", false)) {
+    const BoneTable::Known* known = bone_table(editor);
+    if (!known) {
+      put_text(editor, editor.look.fonts.regular, editor.look.theme.text3, column.row(24), "Looking at the bones",
+               Align::Centre);
+    } else {
+      std::vector<MappedLabel> rows = known->rows;  // kept, since a row may change them; what is not sure first
+      std::stable_partition(rows.begin(), rows.end(), [](const MappedLabel& row) { return !row.is_sure; });
+      draw_left_out(editor, column, known->left_out);
+      if (static_cast<float>(rows.size()) <= kMostRows) {
+        draw_rows(editor, column, rows);
+      } else {
+        Column list(editor, "list", column.row(kRow * kMostRows));
+        draw_rows(editor, list, rows);
+      }
+      draw_foot(editor, column);
+    }
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The axis of a hinge goes with the pointer.
+#include <algorithm>
+#include <cmath>
+
+#include "editor/rig/rig_edits.h"
+#include "editor/rig/rig_transform_tool.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kReach = 124;  // pixels at scale 1, from the joint to what is dragged
+
+class HingeTool final : public TransformTool {
+ public:
+  HingeTool(Editor& editor, const Grip& grip)
+      : TransformTool(editor, grip),
+        rig_(*editor.document().armature),
+        bone_(*editor.selection.bone),
+        before_(rig_.bones[bone_].limits.axis),
+        axis_(before_) {
+    const glm::dvec3& head = rig_.bones[bone_].head;
+    from_ = head + before_ * (kReach * editor.look.scale * view_.millimetres_per_pixel(head));
+    show(editor);
+  }
+
+  std::string title() const override {
+    return "Hinge of " + rig_.bones[bone_].name + ", turned by " + text_of_number("%.1f", degrees()) + "\u00b0";
+  }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"X", "Y", "Z"}, "Along an axis, again: local"},
+            {{"0-9"}, "Turn by degrees"},
+            {{"Ctrl"}, "Snap to own axes"},
+            {{"Shift"}, "Slowly"},
+            {{"Enter"}, "Keep"},
+            {{"Esc"}, "Back"}};
+  }
+  void cancel(Editor& editor) override { drop_shown_rig(editor); }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const glm::dvec3& head = rig_.bones[bone_].head;
+    const double reach = glm::distance(head, from_);
+    const GizmoPainter painter(editor, view_);
+    painter.line(head - axis_ * reach, head + axis_ * reach, kGizmoActive, 2);
+    painter.dot(head + axis_ * reach, kGizmoActive, 0xFF1A1614, 6);
+    painter.read_out(head + axis_ * reach,
+                     (number_.typed() ? number_.text() : text_of_number("%.1f", degrees())) + "\u00b0",
+                     lock_.axis < 0 ? "" : lock_text(number_.typed() ? "about" : "along").substr(1),
+                     rig_.bones[bone_].name, editor.look.theme.view_text2);
+  }
+
+ private:
+  glm::dmat3 axes(Space space) const override { return axes_of(space, rig_, rest_pose(rig_), bone_, view_); }
+  double degrees() const { return glm::degrees(std::acos(std::clamp(glm::dot(axis_, before_), -1.0, 1.0))); }
+
+  // Along the lock, on the side where it was; else towards the pointer, with Ctrl the nearest of the bone's own axes. A
+  // number turns it by so many degrees, about the lock or as the picture is seen.
+  glm::dvec3 pointed_at(Editor& editor) {
+    if (number_.typed())
+      return glm::angleAxis(glm::radians(number_.value()), lock_.axis >= 0 ? lock_axis() : view_.towards_eye) * before_;
+    if (lock_.axis >= 0) return lock_axis() * (glm::dot(lock_axis(), before_) < 0 ? -1.0 : 1.0);
+    const glm::dvec3 towards = dragged(editor, from_, 0, 0) - rig_.bones[bone_].head;
+    if (glm::length(towards) < 1e-9) return axis_;
+    const glm::dvec3 axis = glm::normalize(towards);
+    if (editor.input.down(Key::Ctrl) == editor.handling->snapping) return axis;
+    const glm::dmat3 own = rest_axes(rig_.bones[bone_]);
+    glm::dvec3 nearest = own[0];
+    for (int i = 0; i < 6; ++i)
+      if (const glm::dvec3 one = own[i % 3] * (i < 3 ? 1.0 : -1.0); glm::dot(one, axis) > glm::dot(nearest, axis))
+        nearest = one;
+    return nearest;
+  }
+
+  Armature changed(Editor& editor) {
+    axis_ = pointed_at(editor);
+    Armature next = rig_;
+    next.bones[bone_].limits.axis = axis_;
+    return mirrored_too(editor, std::move(next));
+  }
+
+  void show(Editor& editor) override { show_rig(editor, changed(editor)); }
+  void keep(Editor& editor) override {
+    commit_rig(editor, "Hinge of " + rig_.bones[bone_].name, changed(editor), {bone_});
+  }
+
+  const Armature rig_;
+  int bone_;
+  glm::dvec3 before_, axis_, from_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip) {
+  return std::make_unique<HingeTool>(editor, grip);
+}
+
+}  // namespace limber::editor

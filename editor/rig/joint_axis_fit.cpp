@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/rig/joint_axis_fit.h"
+
+#include <cstdio>
+
+#include "core/rig/edit_armature.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_button.h"
+#include "editor/context/transform_settings.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/widgets.h"
+#include "editor/volume/body_seams.h"
+#include "editor/volume/volume_edits.h"
+#include "render/scene/weight_colormap.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr glm::vec3 kColliding = render::srgb(0xFF3EA5);
+
+std::shared_ptr<const std::vector<glm::u8vec3>> coloured(const LabelVolume& volume, const TissueVoxels& tissue,
+                                                         const TissueTable& tissues,
+                                                         const std::vector<glm::ivec3>& colliding) {
+  std::vector<glm::u8vec3> of_label(65536, glm::u8vec3(178));
+  for (const Tissue& one : tissues.tissues) of_label[one.label] = glm::u8vec3(glm::round(one.colour * 255.0f));
+  auto colours = std::make_shared<std::vector<glm::u8vec3>>(tissue.size());
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& voxel) { (*colours)[place] = of_label[volume.at(voxel)]; });
+  for (const glm::ivec3& voxel : colliding)
+    (*colours)[tissue.index_of(voxel)] = glm::u8vec3(glm::round(kColliding * 255.0f));
+  return colours;
+}
+
+bool is_hinge(const ProposedJoint& proposed) {
+  const auto bone = proposed.from->find(proposed.bone);
+  return bone && proposed.from->bones[static_cast<std::size_t>(*bone)].limits.type == JointLimits::Type::Hinge;
+}
+
+std::string motion_text(const ProposedJoint& proposed) {
+  char text[96];
+  std::snprintf(text, sizeof text,
+                is_hinge(proposed) ? "The axis moves by %.1f mm and turns by %.1f\u00b0"
+                                   : "Becomes a hinge, %.1f mm and %.1f\u00b0 from here",
+                proposed.fit.moved_mm, proposed.fit.turned_degrees);
+  return text;
+}
+
+void propose(Editor& editor, ProposedJoint proposed) {
+  if (editor.document().volume != proposed.volume || editor.document().armature != proposed.from)
+    return editor.messages.warn("Joint axis of " + proposed.bone,
+                                "The rig or the volume was changed meanwhile: start the fit again");
+  if (proposed.fit.overlap_before == 0)
+    return editor.messages.ok("Joint axis of " + proposed.bone,
+                              "No bone enters another within its range: the axis can stay");
+  editor.handling->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
+  editor.touch();
+}
+
+}  // namespace
+
+void start_joint_fit(Editor& editor) {
+  leave_proposed_joint(editor);
+  const Document from = editor.document();
+  const int bone = *editor.selection.bone;
+  const JointLimits& limits = from.armature->bones[bone].limits;
+  // Of a joint that is none, the hinge that it bends by, over the usual range.
+  FitJoint settings;
+  if (limits.type == JointLimits::Type::Hinge)
+    settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
+  const bool both_sides = editor.handling->x_mirror;
+  const int id =
+      start_task(editor, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
+        ProposedJoint proposed{.volume = from.volume,
+                               .from = from.armature,
+                               .fitted = nullptr,
+                               .bone = from.armature->bones[bone].name,
+                               .fit = {},
+                               .tissue = nullptr,
+                               .colours = {}};
+        proposed.tissue = std::make_shared<const TissueVoxels>(*from.volume);
+        const BoneParts parts = split_bones(*from.volume, *proposed.tissue, *from.tissues, *from.armature, progress,
+                                            usable_bone_map(seam_source(from)));
+        proposed.fit = fit_joint(*from.volume, *proposed.tissue, parts, *from.armature, bone, settings, progress);
+        proposed.fitted = std::make_shared<const Armature>(
+            both_sides ? with_mirrored_changes(*from.armature, proposed.fit.armature) : proposed.fit.armature);
+        proposed.colours = {coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_before),
+                            coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_after)};
+        return [proposed](Editor& e) { propose(e, proposed); };
+      });
+  editor.step_of_job[id] = StepOfWork::Rig;
+}
+
+const ProposedJoint* proposed_joint(const Editor& editor) {
+  const auto& proposed = editor.handling->proposed_joint;
+  const bool here = proposed && editor.workspace == Workspace::Rig && editor.document().volume == proposed->volume &&
+                    editor.document().armature == proposed->from;
+  return here ? proposed.get() : nullptr;
+}
+
+void show_proposed_joint(Editor& editor) {
+  const ProposedJoint* proposed = proposed_joint(editor);
+  render::Scene& scene = editor.views->scene;
+  if (!proposed || scene.volume != proposed->volume) return;
+  scene.display = render::Display::XRay;  // bones meet under the flesh
+  scene.bones_in_front = true;
+  scene.bone_shape = render::BoneShape::Stick;  // or it would hide what collides
+  scene.outlined.reset();
+  if (scene.armature && proposed->shows_after) scene.armature = proposed->fitted;
+  scene.weights = render::ShownWeights{.weights = nullptr,
+                                       .tissue = proposed->tissue,
+                                       .display = render::WeightDisplay::Field,
+                                       .swatches = nullptr,
+                                       .region = nullptr,
+                                       .field = proposed->colours[proposed->shows_after],
+                                       .contours = false};
+}
+
+void take_proposed_joint(Editor& editor) {
+  const auto proposed = editor.handling->proposed_joint;
+  leave_proposed_joint(editor);
+  Document next = editor.document();
+  next.armature = proposed->fitted;
+  commit(editor, "Fit joint axis of " + proposed->bone, std::move(next));
+}
+
+void leave_proposed_joint(Editor& editor) {
+  editor.handling->proposed_joint.reset();
+  editor.touch();
+}
+
+void draw_proposed_joint(Editor& editor, const Rect& view) {
+  const ProposedJoint* proposed = proposed_joint(editor);
+  if (!proposed) return;
+  const Look& look = editor.look;
+  const FittedJoint& fit = proposed->fit;
+  constexpr float kWidth = 322, kHeight = 148, kMargin = 12, kRow = 26;
+  const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + kHeight)};
+  const Rect box{low, low + glm::vec2(look.px(kWidth), look.px(kHeight))};
+  const PathScope path(editor, "joint axis");
+  register_widget(editor, "box", box);
+  fill(box, with_alpha(look.theme.panel, 0.94f), look.px(5));
+  outline(box, look.theme.line2, look.px(5), look.line());
+  const float left = box.low.x + look.px(10), right = box.high.x - look.px(10);
+  float y = box.low.y + look.px(4);
+  const auto line = [&](ImFont* font, Colour colour, const std::string& words, Align align = Align::Left) {
+    put_text(editor, font, colour, Rect{{left, y}, {right, y + look.px(kRow)}}, words, align);
+  };
+  line(look.fonts.semibold, look.theme.text, "Joint axis of " + proposed->bone);
+  y += look.px(kRow);
+  fill({{left, y + look.px(6)}, {left + look.px(14), y + look.px(20)}}, rgb(kColliding.r, kColliding.g, kColliding.b),
+       look.px(3));
+  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left + look.px(22), y}, {right, y + look.px(kRow)}},
+           "Bone in bone, worst angle");
+  line(look.fonts.mono, fit.overlap_after > 0 ? look.theme.warn : look.theme.ok,
+       grouped(fit.overlap_before) + " \u2192 " + grouped(fit.overlap_after), Align::Right);
+  y += look.px(kRow);
+  line(look.fonts.regular, look.theme.text2, motion_text(*proposed));
+  y += look.px(kRow + 2);
+  const float half = (right - left - look.px(1)) / 2;
+  const auto side = [&](const char* id, const char* words, float from, bool on) {
+    operator_button(editor, id, {{from, y}, {from + half, y + look.px(kRow)}}, words,
+                    on ? ButtonStyle::Chosen : ButtonStyle::Plain);
+  };
+  side("rig.joint_fit_before", "Before", left, !proposed->shows_after);
+  side("rig.joint_fit_after", "After", left + half + look.px(1), proposed->shows_after);
+  y += look.px(kRow + 8);
+  operator_button(editor, "rig.leave_joint_fit", {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}},
+                  "Leave it");
+  operator_button(editor, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move it",
+                  ButtonStyle::Primary);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/rig/rig_edits.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "core/project/bone_names.h"
+#include "core/rig/mirror.h"
+#include "core/skin/transfer_to_volume.h"
+#include "core/skin/weight_layers.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/transform_settings.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::vector<std::string> names_of(const Armature& armature) {
+  std::vector<std::string> names;
+  for (const Bone& bone : armature.bones) names.push_back(bone.name);
+  return names;
+}
+
+// For each old bone the one that takes over its weight: itself, or the next above that stays.
+std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
+  std::vector<int> to(before.bones.size(), -1);
+  for (int bone = 0; bone < std::ssize(from); ++bone)
+    if (from[bone] >= 0) to[from[bone]] = bone;
+  for (std::size_t bone = 0; bone < to.size(); ++bone)
+    if (const int parent = before.bones[bone].parent; to[bone] < 0 && parent >= 0) to[bone] = to[parent];
+  return to;
+}
+
+using Follow = std::function<void(Document&, const Armature& before, const Armature& after)>;
+
+//   from   #bones of `next`: which one it was, -1 for a new one
+//   follow  takes along what goes by names
+void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from,
+                     const std::vector<int>& chosen, const Follow& follow = {}) {
+  drop_shown_rig(editor);
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  if (before && next == *before) return;
+  check_armature(next, "rig");
+  Document document = editor.document();
+  const std::string lost = "The weights belonged to bones that are gone: compute them again";
+  bool weights_lost = false;
+  if (before && document.pose) document.pose = std::make_shared<const Pose>(carried(*document.pose, from));
+  if (before && document.weights) {
+    const bool fits = document.weights->bones().size() == before->bones.size();
+    const auto weights = fits ? carried(*document.weights, heirs(*before, from), names_of(next)) : std::nullopt;
+    weights_lost = !weights;
+    document.weights = weights ? std::make_shared<const SkinWeights>(*weights) : nullptr;
+    const auto layers =
+        weights && document.layers ? carried(*document.layers, heirs(*before, from), names_of(next)) : std::nullopt;
+    document.layers = layers ? std::make_shared<const WeightLayers>(*layers) : nullptr;
+  }
+  if (follow) follow(document, *before, next);
+  document.armature = std::make_shared<const Armature>(std::move(next));
+  commit(editor, label, std::move(document));
+  if (weights_lost) editor.messages.info(label, lost);
+  editor.selection = {};
+  for (const int bone : chosen) {
+    editor.selection.bone = bone;
+    editor.selection.bones.insert(bone);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Armature> shown_rig(const Editor& editor) {
+  return editor.views->preview_armature ? editor.views->preview_armature : editor.document().armature;
+}
+
+void show_rig(Editor& editor, Armature armature) {
+  editor.views->preview_armature = std::make_shared<const Armature>(std::move(armature));
+  editor.touch();
+}
+
+void drop_shown_rig(Editor& editor) {
+  editor.views->preview_armature.reset();
+  editor.touch();
+}
+
+Armature mirrored_too(const Editor& editor, Armature next) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  return before && editor.handling->x_mirror ? with_mirrored_changes(*before, next) : next;
+}
+
+void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  const std::vector<int> from = before ? bones_of(*before, next) : std::vector<int>(next.bones.size(), -1);
+  commit_followed(editor, label, std::move(next), from, chosen);
+}
+
+void rename_bone(Editor& editor, int bone, const std::string& name) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  commit_names(editor, "Rename " + before->bones[bone].name, renamed(*before, bone, name), {bone});
+}
+
+void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  std::vector<int> from(before->bones.size());
+  std::iota(from.begin(), from.end(), 0);
+  std::map<std::string, glm::dquat> copied;
+  for (std::size_t bone = 0; bone < from.size(); ++bone)
+    if (const auto found = editor.posing.copied.find(before->bones[bone].name); found != editor.posing.copied.end())
+      copied[next.bones[bone].name] = found->second;
+  editor.posing.copied = std::move(copied);
+  commit_followed(editor, label, std::move(next), from, chosen, follow_names);
+}
+
+void mirror_bones(Editor& editor, const std::vector<int>& bones, const std::string& label) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  Armature next = mirrored_bones(*before, bones);
+  std::vector<int> from(next.bones.size()), chosen;
+  for (int bone = 0; bone < std::ssize(from); ++bone) from[bone] = before->find(next.bones[bone].name).value_or(bone);
+  for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value_or(bone));
+  editor.handling->part = Handling::Part::Whole;
+  commit_followed(
+      editor, label, std::move(next), from, chosen,
+      [&](Document& document, const Armature& was, const Armature& is) { follow_mirrored(document, was, is, bones); });
+}
+
+std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones) {
+  if (!editor.handling->x_mirror) return bones;
+  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+  std::vector<int> both;
+  for (const int bone : bones)
+    if (std::find(bones.begin(), bones.end(), pairs[bone]) == bones.end()) both.push_back(pairs[bone]);
+  both.insert(both.end(), bones.begin(), bones.end());
+  return both;
+}
+
+Armature hung(const Editor& editor, const std::vector<int>& bones, int parent, Join join) {
+  const Armature& before = *editor.document().armature;
+  if (parent < 0) return unparented(before, with_other_sides(editor, bones));
+  Armature next = parented(before, bones, parent, join);
+  std::vector<int> others = with_other_sides(editor, bones);
+  others.resize(others.size() - bones.size());
+  const int other_parent = mirror_pairs(before)[parent];
+  const bool one_sided = other_parent == parent && mirrored_name(before.bones[parent].name);
+  if (one_sided) return next;
+  const auto there = [&](int bone) { return next.find(before.bones[bone].name).value(); };
+  for (const int other : others) {
+    bool hangs_below = false;
+    for (int above = there(other_parent); above >= 0; above = next.bones[above].parent)
+      hangs_below = hangs_below || above == there(other);
+    if (!hangs_below) next = parented(next, {there(other)}, there(other_parent), join);
+  }
+  return next;
+}
+
+void hang_on(Editor& editor, const std::vector<int>& bones, int parent) {
+  const std::shared_ptr<const Armature> before = editor.document().armature;
+  Armature next = hung(editor, bones, parent, Join::KeepOffset);
+  std::vector<int> chosen;
+  for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value());
+  const std::string what = bones.size() == 1 ? before->bones[bones[0]].name : std::to_string(bones.size()) + " bones";
+  commit_rig(editor, parent < 0 ? "Clear parent of " + what : "Parent " + what + " to " + before->bones[parent].name,
+             std::move(next), chosen);
+}
+
+void drop_missing_bones(Editor& editor) {
+  const int count = editor.document().armature ? static_cast<int>(editor.document().armature->bones.size()) : 0;
+  Selection& selection = editor.selection;
+  std::erase_if(selection.bones, [&](int bone) { return bone >= count; });
+  if (selection.bone && *selection.bone >= count) selection.bone.reset();
+}
+
+}  // namespace limber::editor

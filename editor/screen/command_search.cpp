@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/screen/command_search.h"
+
+#include <algorithm>
+
+#include "editor/context/pointer_context.h"
+#include "editor/screen/preferences_dialog.h"
+#include "editor/ui/fuzzy_match.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/tooltip.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kMostRows = 8, kLastUsed = 5;
+constexpr int kPlacePenalty = 30, kSentencePenalty = 60;  // a match elsewhere than in the label stands behind
+constexpr std::size_t kLeastForSentence = 3;              // letters
+
+bool can_be_searched(const Editor& editor, const Operator& op) {
+  return op.id != "search.commands" && !needs_pointer(editor, op);
+}
+
+// Where the command would stand without a query: 0 is first.
+std::size_t place_by_use(const Preferences& preferences, const std::string& id) {
+  const auto& recent = preferences.recent_commands;
+  const auto last = recent.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(kLastUsed, recent.size()));
+  const auto found = std::find(recent.begin(), last, id);
+  if (found != last) return static_cast<std::size_t>(found - recent.begin());
+  const auto count = preferences.command_counts.find(id);
+  return count == preferences.command_counts.end() ? 2'000'000 : static_cast<std::size_t>(1'100'000 - count->second);
+}
+
+// Every word of the query is the beginning of a word of the text.
+bool begins_words(const std::string& query, const std::string& text) {
+  const auto match = fuzzy_match(query, text);
+  if (!match) return false;
+  for (std::size_t i = 0, words = 0, last = std::string::npos; i < match->letters.size(); ++i) {
+    words += match->letters[i] != last + 1;
+    last = match->letters[i];
+    if (words > 1 + static_cast<std::size_t>(std::count(query.begin(), query.end(), ' '))) return false;
+  }
+  return true;
+}
+
+struct Ranked {
+  FoundCommand command;
+  int score;
+  std::size_t order;
+};
+
+std::optional<Ranked> rank(const Operator& op, const std::string& query) {
+  if (auto match = fuzzy_match(query, op.label))
+    return Ranked{{&op, std::move(match->letters), ""}, match->score, op.label.size()};
+  if (auto match = fuzzy_match(query, op.place + " " + op.label))
+    return Ranked{{&op, {}, ""}, match->score - kPlacePenalty, op.label.size()};
+  if (query.size() < kLeastForSentence || !begins_words(query, op.sentence)) return std::nullopt;
+  return Ranked{{&op, {}, ""}, -kSentencePenalty, op.label.size()};
+}
+
+class CommandSearch final : public Dialog {
+ public:
+  void draw(Editor& editor) override;
+  bool key(Editor& editor, const Chord& chord) override;
+
+ private:
+  void draw_field(Editor& editor, const Rect& rect);
+  void draw_row(Editor& editor, const Rect& rect, int index);
+  void draw_foot(Editor& editor, const Rect& rect);
+  void run_chosen(Editor& editor);
+
+  std::string query_, last_query_ = "\n";  // so that the first frame searches
+  std::vector<FoundCommand> found_;
+  int chosen_ = 0, first_ = 0;
+  bool focus_ = true, accept_ = false, assign_ = false;
+};
+
+bool CommandSearch::key(Editor&, const Chord& chord) {
+  const int count = static_cast<int>(found_.size());
+  const auto move = [&](int by) { chosen_ = count ? std::clamp(chosen_ + by, 0, count - 1) : 0; };
+  switch (chord.key) {
+    case Key::Down: move(1); return true;
+    case Key::Up: move(-1); return true;
+    case Key::PageDown: move(kMostRows); return true;
+    case Key::PageUp: move(-kMostRows); return true;
+    // After the text field has seen what was typed before.
+    case Key::Return:
+    case Key::NumEnter: accept_ = true; return true;
+    case Key::K: assign_ = chord.modifiers.ctrl; return assign_;
+    default: return false;
+  }
+}
+
+void CommandSearch::run_chosen(Editor& editor) {
+  if (chosen_ >= std::ssize(found_)) return;
+  const Operator& op = *found_[chosen_].op;
+  editor.close_dialog();
+  run(editor, op);
+}
+
+void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  put_icon(look.fonts.regular, look.theme.text2,
+           Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, icon::kSearch);
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0);
+  text_field(
+      editor, "query",
+      {{rect.low.x + look.px(32), rect.low.y + look.px(6)}, {rect.high.x - look.px(90), rect.high.y - look.px(6)}},
+      query_, "Search commands", focus_);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+  focus_ = false;
+  const std::string count = std::to_string(found_.size()) + " of " + std::to_string(count_commands(editor));
+  put_text(editor, look.fonts.small, look.theme.text2,
+           Rect{{rect.high.x - look.px(90), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}}, count,
+           Align::Right);
+}
+
+// The label with its matched letters bold; returns its right end.
+float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, bool chosen) {
+  const Look& look = editor.look;
+  const std::string& label = command.op->label;
+  const Colour plain = chosen ? look.theme.on_accent : command.reason.empty() ? look.theme.text : look.theme.text2;
+  const Colour bold = chosen ? look.theme.on_accent : look.theme.accent_text;
+  const float y = std::round(rect.centre().y - look.fonts.regular->FontSize / 2);
+  float x = rect.low.x;
+  for (std::size_t i = 0; i < label.size();) {
+    const auto matched = [&](std::size_t k) {
+      return std::binary_search(command.letters.begin(), command.letters.end(), k);
+    };
+    const bool is = matched(i);
+    std::size_t end = i + 1;
+    while (end < label.size() && matched(end) == is) ++end;
+    ImFont* font = is ? look.fonts.semibold : look.fonts.regular;
+    const std::string part = label.substr(i, end - i);
+    ImGui::GetWindowDrawList()->AddText(font, font->FontSize, {std::round(x), y}, is ? bold : plain, part.c_str());
+    x += text_size(font, part).x;
+    i = end;
+  }
+  editor.widgets.add_text(label);
+  return x;
+}
+
+void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
+  const Look& look = editor.look;
+  const FoundCommand& command = found_[index];
+  const Pressed pressed = press_area(editor, command.op->id, rect);
+  const bool chosen = index == chosen_;
+  if (chosen) fill(rect, look.theme.accent);
+  else if (pressed.hovered) fill(rect, look.theme.hover);
+  put_icon(look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text2,
+           Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, command.op->icon);
+
+  const auto chord = editor.keymap.chord_of(command.op->id, contexts(editor));
+  const std::vector<std::string> caps = chord ? key_caps(*chord) : std::vector<std::string>{};
+  const float caps_left = rect.high.x - look.px(14) - width_of_key_caps(editor, caps);
+  const float right =
+      put_label(editor, {{rect.low.x + look.px(39), rect.low.y}, {caps_left, rect.high.y}}, command, chosen);
+  const std::string beside = command.reason.empty() ? command.op->place : command.reason;
+  put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
+           Rect{{right + look.px(9), rect.low.y}, {caps_left - look.px(8), rect.high.y}}, beside);
+  put_key_caps(editor, caps_left, rect.centre().y, caps);
+  if (pressed.clicked) {
+    chosen_ = index;
+    accept_ = true;
+  }
+}
+
+void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.line2);
+  const float left = rect.low.x + look.px(14);
+  if (chosen_ < std::ssize(found_)) {
+    const FoundCommand& command = found_[chosen_];
+    put_text(editor, look.fonts.semibold, look.theme.text,
+             Rect{{left, rect.low.y + look.px(8)}, {rect.high.x - look.px(14), rect.low.y + look.px(28)}},
+             command.op->label);
+    put_text(editor, look.fonts.regular, look.theme.text2,
+             Rect{{left, rect.low.y + look.px(28)}, {rect.high.x - look.px(14), rect.low.y + look.px(48)}},
+             command.op->sentence);
+  }
+  float x = left;
+  const float y = rect.high.y - look.px(18);
+  const std::pair<std::vector<std::string>, const char*> hints[] = {
+      {{"Enter"}, "run"}, {{"Up", "Down"}, "choose"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
+  for (const auto& [caps, words] : hints) {
+    x = put_key_caps(editor, x, y, caps) + look.px(7);
+    x = put_text(editor, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2), words) +
+        look.px(12);
+  }
+}
+
+void CommandSearch::draw(Editor& editor) {
+  if (query_ != last_query_) {
+    found_ = find_commands(editor, query_);
+    last_query_ = query_;
+    chosen_ = first_ = 0;
+  }
+  const Look& look = editor.look;
+  const int rows = std::min(kMostRows, std::max(1, static_cast<int>(found_.size())));
+  first_ = std::clamp(first_, chosen_ - rows + 1, chosen_);
+  first_ = std::clamp(first_, 0, std::max(0, static_cast<int>(found_.size()) - rows));
+  const glm::vec2 window = editor.layout.window.size();
+  const float width = std::min(look.px(600), window.x - look.px(16)), left = std::round((window.x - width) / 2),
+              top = look.px(48);
+  const Rect rect{{left, top}, {left + width, top + look.px(44 + 8 + 30.0f * rows + 8 + 84)}};
+
+  begin_region(editor, Region::Dialog, "dim", editor.layout.window, with_alpha(0xFF000000, 0.45f));
+  if (press_area(editor, "outside", editor.layout.window).clicked) editor.close_dialog();
+  end_region(editor);
+  begin_region(editor, Region::Dialog, "search", rect, 0);
+  fill(rect, look.theme.panel, look.px(8));
+  outline(rect, look.theme.line2, look.px(8), look.line());
+  const Rect field{rect.low, {rect.high.x, rect.low.y + look.px(44)}};
+  draw_field(editor, field);
+  fill({{rect.low.x, field.high.y - look.line()}, {rect.high.x, field.high.y}}, look.theme.line2);
+  float y = field.high.y + look.px(4);
+  if (found_.empty())
+    put_text(editor, look.fonts.regular, look.theme.text2,
+             Rect{{rect.low.x + look.px(14), y}, {rect.high.x - look.px(14), y + look.px(30)}},
+             "No command matches '" + query_ + "'");
+  for (int i = first_; i < first_ + rows && i < std::ssize(found_); ++i, y += look.px(30))
+    draw_row(editor, {{rect.low.x + look.line(), y}, {rect.high.x - look.line(), y + look.px(30)}}, i);
+  if (rect.contains(editor.input.pointer) && editor.input.wheel != 0)
+    chosen_ =
+        std::clamp(chosen_ - static_cast<int>(editor.input.wheel), 0, std::max(0, static_cast<int>(found_.size()) - 1));
+  draw_foot(editor, {{rect.low.x, rect.high.y - look.px(84)}, rect.high});
+  end_region(editor);
+
+  if (query_ != last_query_) {
+    editor.touch();
+    if (!accept_ && !assign_) return;
+    found_ = find_commands(editor, query_);
+    last_query_ = query_;
+    chosen_ = 0;
+  }
+  if (std::exchange(accept_, false)) run_chosen(editor);
+  if (std::exchange(assign_, false) && chosen_ < std::ssize(found_))
+    editor.open_dialog(open_preferences(PreferencesPage::Keymap, found_[chosen_].op->label));
+}
+
+}  // namespace
+
+int count_commands(const Editor& editor) {
+  return static_cast<int>(std::count_if(editor.operators.begin(), editor.operators.end(),
+                                        [&](const Operator& op) { return can_be_searched(editor, op); }));
+}
+
+std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query) {
+  const bool any = query.find_first_not_of(' ') != std::string::npos;
+  std::vector<Ranked> ranked;
+  for (const Operator& op : editor.operators) {
+    if (!can_be_searched(editor, op)) continue;
+    auto one = any ? rank(op, query) : Ranked{{&op, {}, ""}, 0, place_by_use(editor.preferences, op.id)};
+    if (!one) continue;
+    one->command.reason = why_not(editor, op);
+    ranked.push_back(std::move(*one));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    if (a.command.reason.empty() != b.command.reason.empty()) return a.command.reason.empty();
+    if (a.score != b.score) return a.score > b.score;
+    return a.order < b.order;
+  });
+  std::vector<FoundCommand> found;
+  for (Ranked& one : ranked) found.push_back(std::move(one.command));
+  return found;
+}
+
+std::unique_ptr<Dialog> open_command_search() { return std::make_unique<CommandSearch>(); }
+
+}  // namespace limber::editor

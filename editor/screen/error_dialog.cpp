@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The user's own act failed: what happened, where, what to do. Stays until it is read; its details can be copied.
+#include <cstdio>
+
+#include "editor/context/panels.h"
+#include "editor/dialogs/dialog.h"
+#include "editor/screen/help_dialog.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 480, kButton = 28;
+constexpr const char kUnharmed[] = "Nothing was changed in the project.";
+
+// What a report of it should hold: the chain of what failed in what, and where the program runs.
+std::string details_of(const Editor& editor, const ErrorMessage& message) {
+  std::string text = message.line;
+  for (auto at = text.find(": "); at != std::string::npos; at = text.find(": ", at + 3)) text.replace(at, 2, ":\n");
+  if (!message.during.empty()) text = "While: " + message.during + "\n" + text;
+  return text + "\n" + system_facts(editor);
+}
+
+struct Part {
+  ImFont* font;
+  Colour colour;
+  std::string text;
+};
+
+}  // namespace
+
+void draw_error_message(Editor& editor) {
+  if (editor.messages.errors.empty()) {
+    editor.error_details = false;
+    return;
+  }
+  const ErrorMessage message = editor.messages.errors.front();
+  const Look& look = editor.look;
+  const std::string title =
+      message.times > 1 ? message.what + " (" + std::to_string(message.times) + " times)" : message.what;
+  const float width = std::min(look.px(kWidth), editor.layout.window.width() - look.px(16)) - look.px(18 + 30 + 18);
+  std::vector<Part> parts{{look.fonts.semibold, look.theme.text, title},
+                          {look.fonts.regular, look.theme.text2, message.where},
+                          {look.fonts.regular, look.theme.text, message.what_to_do},
+                          {look.fonts.small, look.theme.text2, kUnharmed}};
+  std::erase_if(parts, [](const Part& part) { return part.text.empty(); });
+  float words = 0;
+  for (const Part& part : parts) words += height_of_wrapped(part.font, part.text, width, 6) + look.px(8);
+  const auto close_first = [&editor] { editor.messages.errors.erase(editor.messages.errors.begin()); };
+  const std::string details = editor.error_details ? details_of(editor, message) : "";
+  const float plate = editor.error_details
+                          ? height_of_wrapped(look.fonts.small_mono, details, width - look.px(16), 12) + look.px(12 + 8)
+                          : 0;
+  const Rect rect =
+      begin_dialog(editor, "Message", kWidth, (words + plate) / look.scale + 36 + 18 + 10 + kButton + 18, close_first);
+
+  const Rect whole{{rect.low.x - look.px(18), rect.low.y - look.px(54)}, rect.high + look.px(18)};
+  fill({whole.low + glm::vec2(look.px(6), 0), {whole.high.x - look.px(6), whole.low.y + look.px(3)}}, look.theme.error);
+  put_icon(look.fonts.icons, look.theme.error, Rect{rect.low, rect.low + look.px(20)}, icon::kError);
+  const float left = rect.low.x + look.px(30);
+  float y = rect.low.y;
+  for (const Part& part : parts)
+    y += put_wrapped(editor, part.font, part.colour, {left, y}, width, part.text, 6) + look.px(8);
+  if (editor.error_details) {
+    fill({{left, y}, {rect.high.x, y + plate - look.px(8)}}, look.theme.field, look.px(4));
+    put_wrapped(editor, look.fonts.small_mono, look.theme.text2, {left + look.px(8), y + look.px(6)},
+                width - look.px(16), details, 12);
+  }
+
+  const float low = rect.high.y - look.px(kButton);
+  const ButtonLook fold{editor.error_details ? icon::kOpened : icon::kClosed, "Details", ButtonStyle::Flat};
+  const Rect place{{left - look.px(8), low}, {left - look.px(8) + width_of_button(editor, fold), rect.high.y}};
+  if (button(editor, "Details", place, fold)) {
+    editor.error_details = !editor.error_details;
+    editor.touch();
+  }
+  if (ImGui::IsItemHovered())
+    tooltip(editor, place, "Details", "The whole message and the system's facts, for a report.");
+  const Rect close{{rect.high.x - look.px(80), low}, rect.high};
+  const ButtonLook copy_face{icon::kCopy, "Copy"};
+  const Rect copy{{close.low.x - look.px(8) - width_of_button(editor, copy_face), low},
+                  {close.low.x - look.px(8), rect.high.y}};
+  if (button(editor, "Copy message", copy, copy_face)) editor.host.set_clipboard(details_of(editor, message));
+  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the details on the clipboard.");
+  if (button(editor, "Close", close, {"", "Close", ButtonStyle::Primary})) close_first();
+  end_dialog(editor);
+}
+
+}  // namespace limber::editor

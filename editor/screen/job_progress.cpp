@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Jobs at work: a slot in the status bar, and the list that it opens, with stage, time left and Cancel.
+#include "editor/screen/job_progress.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "editor/context/panels.h"
+#include "editor/shown/fem_live_view.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFirstEstimate = 3;  // s that a job runs before its time left is shown
+constexpr double kQuickEnd = 0.1;     // s: a cancelled job that ends within them is not said to be stopping
+constexpr double kSpin = 1.0 / 12;    // s between the spinner's steps
+constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // finite elements have more to tell
+
+std::vector<JobStatus> at_work(const Editor& editor) {
+  std::vector<JobStatus> jobs = editor.jobs.statuses();
+  std::erase_if(jobs, [](const JobStatus& job) { return !job.active() || job.label.empty(); });
+  return jobs;
+}
+
+float row_height(const Editor& editor, const JobStatus& job) {
+  return editor.fem->solves.contains(job.id) ? kSolveRowHeight : kRowHeight;
+}
+
+// Of the solve itself where it tells; else of the stage.
+std::optional<double> seconds_left(const Editor& editor, const JobStatus& job) {
+  const auto solve = editor.fem->solves.find(job.id);
+  if (solve != editor.fem->solves.end())
+    if (const auto left = solve->second.feed->seen().progress.seconds_left) return left;
+  return job.seconds_left;
+}
+
+std::string state_of(Editor& editor, const JobStatus& job) {
+  if (job.state == JobState::Queued) return "Waiting";
+  std::string stage = job.stage.empty() ? "starting" : job.stage;
+  stage[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(stage[0])));
+  if (job.state != JobState::Stopping) return stage;
+  const double since = editor.stopping_since.try_emplace(job.id, editor.now).first->second;
+  editor.wake_at(since + kQuickEnd);
+  return editor.now - since >= kQuickEnd ? "Stopping" : stage;
+}
+
+void draw_spinner(Editor& editor, const glm::vec2& centre, float radius) {
+  const Look& look = editor.look;
+  const int step = editor.preferences.reduce_motion ? 0 : static_cast<int>(std::floor(editor.now / kSpin));
+  for (int i = 0; i < 12; i += 2) {
+    const float angle = static_cast<float>(i + step % 12) * 0.5235988f;
+    ImGui::GetWindowDrawList()->AddCircleFilled(
+        im(centre + radius * glm::vec2(std::cos(angle), std::sin(angle))), std::max(1.0f, radius * 0.24f),
+        with_alpha(look.theme.accent_text, 0.25f + 0.07f * static_cast<float>(i)), 8);
+  }
+  if (!editor.preferences.reduce_motion) editor.wake_at(editor.now + kSpin);
+}
+
+void draw_track(const Editor& editor, const Rect& track, double fraction) {
+  const Look& look = editor.look;
+  fill(track, look.theme.field, track.height() / 2);
+  const float width = track.width() * static_cast<float>(std::clamp(fraction, 0.0, 1.0));
+  if (width >= 1)
+    fill({track.low, {track.low.x + std::max(width, track.height()), track.high.y}}, look.theme.accent,
+         track.height() / 2);
+}
+
+void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
+  const Look& look = editor.look;
+  const PathScope path(editor, job.label);
+  const float left = row.low.x + look.px(10), right = row.high.x - look.px(10);
+  const Rect cancel{{right - look.px(84), row.high.y - look.px(30)}, {right, row.high.y - look.px(6)}};
+  const float line = row.low.y + look.px(20);
+  if (const auto solve = editor.fem->solves.find(job.id); solve != editor.fem->solves.end())
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, line + look.px(10)}, {right, line + look.px(28)}},
+             progress_text(solve->second));
+  char percent[16];
+  std::snprintf(percent, sizeof percent, "%.0f %%", 100 * job.fraction);
+  put_text(editor, look.fonts.semibold, look.theme.text,
+           Rect{{left, row.low.y + look.px(2)}, {right - look.px(50), line}}, job.label);
+  if (job.state != JobState::Queued)
+    put_text(editor, look.fonts.mono, look.theme.accent_text,
+             Rect{{right - look.px(50), row.low.y + look.px(2)}, {right, line}}, percent, Align::Right);
+  draw_track(editor, {{left, line + look.px(3)}, {right, line + look.px(8)}}, job.fraction);
+  float end = cancel.low.x - look.px(8);
+  if (const auto time = seconds_left(editor, job); time && job.seconds >= kFirstEstimate) {
+    const std::string words = time_left_text(*time) + " left";
+    const float begin = end - text_size(look.fonts.small, words).x - 1;
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{begin, cancel.low.y}, {end, cancel.high.y}}, words);
+    end = begin - look.px(8);
+  }
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, cancel.low.y}, {end, cancel.high.y}},
+           state_of(editor, job));
+  const bool stopping = job.state == JobState::Stopping;
+  if (button(editor, "Cancel", cancel, {icon::kClose, "Cancel", ButtonStyle::Plain, !stopping}))
+    editor.jobs.cancel(job.id);
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    tooltip(editor, cancel, "Cancel",
+            stopping ? "It has been told to stop." : "Stops it; nothing of the project changes.");
+}
+
+}  // namespace
+
+std::string time_left_text(double seconds) {
+  if (seconds < 8) return "a few seconds";
+  if (seconds < 55) return "about " + std::to_string(static_cast<int>(std::ceil(seconds / 5) * 5)) + " s";
+  if (seconds < 90) return "about 1 min";
+  if (seconds < 55 * 60) return "about " + std::to_string(static_cast<int>(std::lround(seconds / 60))) + " min";
+  return "about " + std::to_string(static_cast<int>(std::lround(seconds / 3600 + 0.2))) + " h";
+}
+
+void draw_running(Editor& editor, Column& column) {
+  const std::vector<JobStatus> jobs = at_work(editor);
+  const auto queued =
+      std::count_if(jobs.begin(), jobs.end(), [](const JobStatus& job) { return job.state == JobState::Queued; });
+  const auto running = std::ssize(jobs) - queued;
+  std::string count = jobs.empty() ? "" : running == 1 ? "1 job" : std::to_string(running) + " jobs";
+  if (queued > 0) count += ", " + std::to_string(queued) + " queued";
+  if (column.begin_section("Running", count)) {
+    if (jobs.empty()) {
+      const Rect row = column.row(30);
+      put_text(editor, editor.look.fonts.regular, editor.look.theme.text2,
+               Rect{{row.low.x + editor.look.px(14), row.low.y}, row.high}, "Nothing is running");
+    }
+    for (const JobStatus& job : jobs) draw_job_row(editor, job, column.row(row_height(editor, job)));
+  }
+  column.end_section();
+}
+
+float draw_job_slot(Editor& editor, const Rect& bar, float right) {
+  const Look& look = editor.look;
+  const std::vector<JobStatus> jobs = at_work(editor);
+  std::erase_if(editor.stopping_since, [&](const auto& one) {
+    return std::none_of(jobs.begin(), jobs.end(), [&](const JobStatus& job) { return job.id == one.first; });
+  });
+  const Rect slot{{right - look.px(150), bar.low.y}, {right, bar.high.y}};
+  if (!jobs.empty()) {
+    const auto running =
+        std::find_if(jobs.begin(), jobs.end(), [](const JobStatus& job) { return job.state != JobState::Queued; });
+    const JobStatus& job = running == jobs.end() ? jobs.front() : *running;
+    const Pressed pressed = press_area(editor, "Running", slot);
+    if (pressed.hovered) {
+      fill({slot.low + glm::vec2(0, look.px(2)), slot.high - glm::vec2(0, look.px(2))}, look.theme.hover, look.px(4));
+      tooltip(editor, slot, job.label, state_of(editor, job) + "\nOpens the list of jobs.");
+    }
+    draw_spinner(editor, {slot.low.x + look.px(12), slot.centre().y}, look.px(6));
+    const Rect track{{slot.high.x - look.px(58), slot.centre().y - look.px(3)},
+                     {slot.high.x - look.px(6), slot.centre().y + look.px(3)}};
+    const std::string words = jobs.size() > 1                   ? std::to_string(jobs.size()) + " jobs"
+                              : job.state == JobState::Stopping ? state_of(editor, job)
+                                                                : job.label;
+    put_text(editor, look.fonts.small, look.theme.text2,
+             Rect{{slot.low.x + look.px(24), slot.low.y}, {track.low.x - look.px(6), slot.high.y}}, words);
+    draw_track(editor, track, job.fraction);
+    if (pressed.clicked) ImGui::OpenPopup("running jobs");
+  }
+  float rows = jobs.empty() ? kRowHeight : 0;
+  for (const JobStatus& job : jobs) rows += row_height(editor, job);
+  const float width = look.px(320), height = look.px(rows + 8);
+  ImGui::SetNextWindowPos({slot.high.x - width, bar.low.y - height - look.px(4)});
+  ImGui::SetNextWindowSize({width, height});
+  if (ImGui::BeginPopup("running jobs", ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoScrollbar)) {
+    editor.place.region = Region::Popup;
+    push_path(editor, "running");
+    float y = bar.low.y - height;
+    const float left = slot.high.x - width;
+    if (jobs.empty()) ImGui::CloseCurrentPopup();
+    for (const JobStatus& job : jobs) {
+      const float row = look.px(row_height(editor, job));
+      draw_job_row(editor, job, {{left, y}, {left + width, y + row}});
+      y += row;
+    }
+    pop_path(editor);
+    editor.place.region = Region::Status;
+    ImGui::EndPopup();
+  }
+  return jobs.empty() ? right : slot.low.x - look.px(12);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the project holds, as a tree: the volume with its tissues, the bones by their parents, the results. A triangle
+// folds, an eye shows and hides, a double click or F2 renames, the right button lists what can be done. In the Rig
+// workspace a bone is dragged onto its new parent. The search keeps the parents of what it finds.
+#include <algorithm>
+
+#include <imgui_internal.h>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/context/transform_settings.h"
+#include "editor/resample/results.h"
+#include "editor/rig/rig_edits.h"
+#include "editor/ui/fuzzy_match.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/list_navigation.h"
+#include "editor/volume/tissue_edits.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr const char kList[] = "outliner";
+constexpr int kManyBones = 24;  // more are folded below their first generation
+constexpr int kDeepest = 8;     // that still moves to the right
+constexpr float kRow = 24;      // pixels at scale 1
+constexpr float kBoneSection = 204,
+                kFewestRows = 4;  // what stays free below for the bone's numbers, and what is shown all the same
+
+struct Row {
+  enum class Kind { Volume, Tissues, Tissue, Armature, Bone, Results, Result } kind;
+  std::string key, name, count;
+  const char* icon = "";
+  int depth = 0, index = 0;  // among its kind
+  bool folds = false, open = false, chosen = false;
+  std::optional<bool> visible;  // none: no eye
+  std::optional<Colour> swatch;
+};
+
+class Tree {
+ public:
+  explicit Tree(const Editor& editor) : editor_(editor), document_(editor.document()) {
+    add_volume();
+    add_bones();
+    add_results();
+    if (!editor.outliner.search.empty()) keep_found();
+  }
+  std::vector<Row> rows;
+
+ private:
+  bool open(const std::string& key, bool at_first) const {
+    if (!editor_.outliner.search.empty()) return true;
+    const auto found = editor_.outliner.open.find(key);
+    return found == editor_.outliner.open.end() ? at_first : found->second;
+  }
+
+  void add_volume() {
+    if (!document_.volume) return;
+    const bool shown = any_visible();
+    rows.push_back({Row::Kind::Volume, "volume", editor_.name.empty() ? "Volume" : editor_.name,
+                    size_text(document_.volume->grid.size), icon::kVolume, 0, 0, true, open("volume", true)});
+    rows.back().visible = shown;
+    if (!rows.back().open) return;
+    const auto& tissues = document_.tissues->tissues;
+    rows.push_back({Row::Kind::Tissues, "tissues", "Tissues", std::to_string(tissues.size()), icon::kTissues, 1, 0,
+                    !tissues.empty(), open("tissues", false)});
+    rows.back().visible = shown;
+    if (!rows.back().open) return;
+    for (int i = 0; i < std::ssize(tissues); ++i) {
+      const Tissue& tissue = tissues[i];
+      rows.push_back({Row::Kind::Tissue, "tissue " + std::to_string(tissue.label), shown_name(tissue),
+                      std::to_string(tissue.label), "", 2, i});
+      rows.back().chosen = editor_.selection.tissues.contains(tissue.label);
+      rows.back().visible = look_of(document_, tissue.label).visible;
+      rows.back().swatch = rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b);
+    }
+  }
+
+  bool any_visible() const {
+    return std::any_of(document_.tissues->tissues.begin(), document_.tissues->tissues.end(),
+                       [&](const Tissue& tissue) { return look_of(document_, tissue.label).visible; });
+  }
+
+  void add_bones() {
+    if (!document_.armature) return;
+    const auto& bones = document_.armature->bones;
+    rows.push_back({Row::Kind::Armature, "armature", "Armature", std::to_string(bones.size()), icon::kRig, 0, 0,
+                    !bones.empty(), open("armature", true)});
+    rows.back().visible = editor_.views->bones;
+    if (!rows.back().open) return;
+    children_.assign(bones.size() + 1, {});
+    for (int b = 0; b < std::ssize(bones); ++b) children_[bones[b].parent + 1].push_back(b);
+    for (const int root : children_[0]) add_bone(root, 1);
+  }
+
+  void add_bone(int b, int depth) {
+    const Bone& bone = document_.armature->bones[b];
+    const std::string key = "bone " + bone.name;
+    rows.push_back({Row::Kind::Bone, key, bone.name, "", "", std::min(depth, kDeepest), b, !children_[b + 1].empty(),
+                    open(key, std::ssize(document_.armature->bones) <= kManyBones || depth < 2)});
+    rows.back().chosen = editor_.selection.bones.contains(b);
+    if (!rows.back().open) return;
+    for (const int child : children_[b + 1]) add_bone(child, depth + 1);
+  }
+
+  void add_results() {
+    if (document_.results.empty()) return;
+    rows.push_back({Row::Kind::Results, "results", "Results", std::to_string(document_.results.size()), icon::kResample,
+                    0, 0, true, open("results", true)});
+    if (!rows.back().open) return;
+    const auto shown = shown_result(editor_);
+    for (int i = 0; i < std::ssize(document_.results); ++i) {
+      const Result& result = *document_.results[i];
+      rows.push_back(
+          {Row::Kind::Result, "result " + result.name, result.name, method_name(result.method), icon::kResample, 1, i});
+      rows.back().chosen = rows.back().visible.emplace(document_.results[i] == shown);
+    }
+  }
+
+  // From the last row up: a parent stays for a child that stays.
+  void keep_found() {
+    std::vector<Row> kept;
+    int needed = 0;  // depth of the parents that are wanted
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+      const bool found = contains_ignoring_case(row->name, editor_.outliner.search);
+      if (!found && row->depth >= needed) continue;
+      needed = row->depth;
+      kept.push_back(*row);
+    }
+    rows.assign(kept.rbegin(), kept.rend());
+  }
+
+  const Editor& editor_;
+  const Document& document_;
+  std::vector<std::vector<int>> children_;  // of each bone, the first list without a parent
+};
+
+// ---- what is done with a row
+
+void toggle_eye(Editor& editor, const Row& row, bool alone) {
+  std::set<Label> all;
+  if (editor.document().tissues)
+    for (const Tissue& tissue : editor.document().tissues->tissues) all.insert(tissue.label);
+  switch (row.kind) {
+    case Row::Kind::Volume:
+    case Row::Kind::Tissues: return show_tissues(editor, all, !*row.visible);
+    case Row::Kind::Tissue: {
+      const Label label = editor.document().tissues->tissues[row.index].label;
+      return alone ? solo_tissues(editor, {label}) : show_tissues(editor, {label}, !*row.visible);
+    }
+    case Row::Kind::Armature: editor.views->bones = !editor.views->bones; return editor.touch();
+    case Row::Kind::Result: show_result(editor, *row.visible ? "" : row.name); return editor.touch();
+    default: return;
+  }
+}
+
+void choose(Editor& editor, const Row& row, bool extended) {
+  Selection& selection = editor.selection;
+  if (row.kind == Row::Kind::Tissue)
+    return select_tissue(editor, editor.document().tissues->tissues[row.index].label, extended);
+  if (row.kind != Row::Kind::Bone) return;
+  if (!extended) selection.bones.clear();
+  if (extended && selection.bones.erase(row.index) > 0) {
+    if (selection.bone == row.index)
+      selection.bone = selection.bones.empty() ? std::nullopt : std::optional(*selection.bones.begin());
+    return;
+  }
+  selection.bone = row.index;
+  selection.bones.insert(row.index);
+}
+
+bool can_rename(const Row& row) {
+  return row.kind == Row::Kind::Tissue || row.kind == Row::Kind::Result || row.kind == Row::Kind::Bone;
+}
+
+void rename(Editor& editor, const Row& row, const std::string& name) {
+  if (row.kind == Row::Kind::Tissue) rename_tissue(editor, editor.document().tissues->tissues[row.index].label, name);
+  if (row.kind == Row::Kind::Bone) rename_bone(editor, row.index, name);
+  if (row.kind == Row::Kind::Result) rename_result(editor, editor.document().results[row.index], name);
+}
+
+void open_menu(Editor& editor, const Row& row) {
+  switch (row.kind) {
+    case Row::Kind::Volume:
+    case Row::Kind::Tissues: editor.open_popup = "Volume"; return;
+    case Row::Kind::Armature: editor.open_popup = "Armature"; return;
+    case Row::Kind::Bone:
+      editor.open_popup = editor.workspace == Workspace::Rig    ? "Bone"
+                          : editor.workspace == Workspace::Pose ? "Posed bone"
+                                                                : "Armature";
+      return;
+    case Row::Kind::Tissue: editor.open_popup = "Tissue"; return;
+    case Row::Kind::Results: return;
+    case Row::Kind::Result:
+      show_result(editor, row.name);
+      editor.open_popup = "Result";
+      return;
+  }
+}
+
+// ---- drawing
+
+void draw_fold(Editor& editor, const Row& row, const Rect& rect) {
+  if (!row.folds) return;
+  if (press_area(editor, "fold", rect).clicked) {
+    editor.outliner.open[row.key] = !row.open;
+    editor.touch();
+  }
+  put_icon(editor.look.fonts.regular, editor.look.theme.text2, rect, row.open ? icon::kOpened : icon::kClosed);
+}
+
+void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
+  if (!row.visible) return;
+  const Look& look = editor.look;
+  const Pressed eye = press_area(editor, "eye", rect);
+  put_icon(look.fonts.regular, *row.visible || eye.hovered ? look.theme.text2 : look.theme.text3, rect,
+           *row.visible ? icon::kVisible : icon::kHidden);
+  if (eye.hovered)
+    tooltip(editor, rect, *row.visible ? "Hide" : "Show",
+            row.kind == Row::Kind::Tissue ? "Ctrl+click shows only this tissue." : "");
+  if (eye.clicked) toggle_eye(editor, row, editor.input.down(Key::Ctrl));
+}
+
+// A row that is dragged hangs its bone, or all chosen ones with it, on the bone where it is let go; on the armature's
+// row on nothing. Escape leaves them.
+std::vector<int> dragged_bones(const Editor& editor) {
+  const auto bone = editor.document().armature->find(editor.handling->row_drag.bone);
+  if (!bone) return {};
+  const std::set<int>& chosen = editor.selection.bones;
+  return chosen.contains(*bone) ? std::vector<int>(chosen.begin(), chosen.end()) : std::vector<int>{*bone};
+}
+
+void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
+  auto& drag = editor.handling->row_drag;
+  if (row.kind != Row::Kind::Bone || editor.workspace != Workspace::Rig) return;
+  if (pressed.activated) drag = {row.name, editor.input.pointer, false};
+  if (drag.bone == row.name && pressed.held)
+    drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
+}
+
+// What letting go does, beside the pointer.
+void draw_dragged(Editor& editor, const std::string& words) {
+  const Look& look = editor.look;
+  const glm::vec2 size = text_size(look.fonts.regular, words) + glm::vec2(look.px(16), look.px(8));
+  glm::vec2 low = editor.input.pointer + glm::vec2(look.px(14), look.px(10));
+  low.x = std::min(low.x, editor.layout.window.high.x - size.x - look.px(4));
+  ImDrawList& canvas = *ImGui::GetForegroundDrawList();
+  canvas.AddRectFilled(im(low), im(low + size), look.theme.raised, look.px(4));
+  canvas.AddRect(im(low), im(low + size), look.theme.line2, look.px(4), 0, look.line());
+  canvas.AddText(look.fonts.regular, look.fonts.regular->FontSize, im(low + glm::vec2(look.px(8), look.px(4))),
+                 look.theme.text, words.c_str());
+}
+
+void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
+  const auto& drag = editor.handling->row_drag;
+  if (!drag.moved || !rect.contains(editor.input.pointer) ||
+      (row.kind != Row::Kind::Bone && row.kind != Row::Kind::Armature))
+    return;
+  const std::vector<int> bones = dragged_bones(editor);
+  if (row.kind == Row::Kind::Bone && std::find(bones.begin(), bones.end(), row.index) != bones.end()) return;
+  const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
+  outline(rect, editor.look.theme.select, 0, 2 * editor.look.line());
+  const std::string what = bones.size() == 1 ? drag.bone : std::to_string(bones.size()) + " bones";
+  draw_dragged(editor, parent < 0 ? "Clear parent of " + what : what + " onto " + row.name);
+  if (editor.input.down(MouseButton::Left) || bones.empty()) return;
+  attempt(editor, "Make parent", [&](Editor& e) {
+    hang_on(e, bones, parent);
+    e.outliner.open[row.key] = true;  // they stay in sight
+  });
+}
+
+void draw_row(Editor& editor, Column& column, int index, const Row& row) {
+  const Look& look = editor.look;
+  Rect rect;
+  const std::string renamed = kList + row.key;
+  if (is_renaming(editor, renamed) && !editor.renaming->shown) focus_list(editor, kList, index);
+  if (!column.list_row(rect, index, row.chosen, kList)) return;
+  const PathScope path(editor, row.key);
+  const float x = rect.low.x + look.px(8 + 14 * static_cast<float>(row.depth)), end = rect.high.x - look.px(30);
+  draw_fold(editor, row, {{x, rect.low.y}, {x + look.px(16), rect.high.y}});
+  draw_eye(editor, row, {{end, rect.low.y}, {rect.high.x - look.px(6), rect.high.y}});
+
+  const Rect icon{{x + look.px(18), rect.low.y}, {x + look.px(36), rect.high.y}};
+  const bool active_bone = row.kind == Row::Kind::Bone && editor.selection.bone == row.index;
+  if (row.swatch) {
+    const glm::vec2 side(look.px(7));
+    fill({glm::round(icon.centre() - side), glm::round(icon.centre() + side)}, *row.swatch, look.px(3));
+  } else if (row.kind == Row::Kind::Bone) {
+    put_bone_icon(look, icon, active_bone ? look.theme.select : row.chosen ? look.theme.accent_text : look.theme.text2);
+  } else {
+    put_icon(look.fonts.regular, row.chosen ? look.theme.accent_text : look.theme.text2, icon, row.icon);
+  }
+
+  const float count = row.count.empty() ? 0 : text_size(look.fonts.small, row.count).x + look.px(8);
+  const Rect name{{icon.high.x, rect.low.y}, {end, rect.high.y}},
+      words{{name.low.x + look.px(4), rect.low.y}, {end - count, rect.high.y}};
+  if (is_renaming(editor, renamed)) {
+    std::string accepted = row.name;
+    if (rename_field(editor, {words.low + glm::vec2(0, look.px(1)), words.high - glm::vec2(0, look.px(1))}, accepted))
+      rename(editor, row, accepted);
+    return;
+  }
+  const Pressed pressed = press_area(editor, "name", name);
+  const bool faint = row.visible == false && row.kind != Row::Kind::Result;
+  put_text(editor, look.fonts.regular, faint ? (row.chosen ? look.theme.text2 : look.theme.text3) : look.theme.text,
+           words, row.name);
+  put_text(editor, look.fonts.small, row.chosen ? look.theme.text2 : look.theme.text3,
+           Rect{{end - count, rect.low.y}, {end - look.px(4), rect.high.y}}, row.count, Align::Right);
+  take_drag(editor, row, pressed);
+  draw_drag(editor, row, rect);
+  if (pressed.clicked && !editor.handling->row_drag.moved) {
+    focus_list(editor, kList, index);
+    choose(editor, row, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
+  }
+  if (pressed.double_clicked)
+    can_rename(row) ? begin_renaming(editor, renamed, row.name) : void(editor.outliner.open[row.key] = !row.open);
+  if (pressed.right_clicked) {
+    if (!row.chosen) choose(editor, row, false);
+    open_menu(editor, row);
+  }
+}
+
+void take_key(Editor& editor, const std::vector<Row>& rows) {
+  const ListKey key = list_key(editor, kList, static_cast<int>(rows.size()));
+  if (key == ListKey::None || rows.empty()) return;
+  const Row& row = rows[editor.list_focus.row];
+  switch (key) {
+    case ListKey::Moved: return choose(editor, row, false);
+    case ListKey::Activate:
+      return row.folds                       ? void(editor.outliner.open[row.key] = !row.open)
+             : row.kind == Row::Kind::Result ? toggle_eye(editor, row, false)
+                                             : choose(editor, row, false);
+    case ListKey::Toggle: return row.visible ? toggle_eye(editor, row, false) : void();
+    case ListKey::Rename: return can_rename(row) ? begin_renaming(editor, kList + row.key, row.name) : void();
+    case ListKey::Unfold:
+      if (row.folds) editor.outliner.open[row.key] = true;
+      return;
+    case ListKey::Fold: {
+      if (row.folds && row.open) return void(editor.outliner.open[row.key] = false);
+      for (int i = editor.list_focus.row; i >= 0; --i)
+        if (rows[i].depth < row.depth) return focus_list(editor, kList, i);
+      return;
+    }
+    case ListKey::None: return;
+  }
+}
+
+void draw_search(Editor& editor, Column& column) {
+  if (!editor.outliner.searching) return;
+  const Look& look = editor.look;
+  const Rect row = column.row(32);
+  const bool focus = std::exchange(editor.outliner.focus_search, false);
+  text_field(editor, "search",
+             {row.low + glm::vec2(look.px(10), look.px(4)), row.high - glm::vec2(look.px(10), look.px(4))},
+             editor.outliner.search, "Search the project", focus);
+  if ((ImGui::IsItemActive() || ImGui::IsItemDeactivated()) &&
+      (ImGui::IsKeyPressed(static_cast<int>(Key::Down)) || ImGui::IsKeyPressed(static_cast<int>(Key::Return)))) {
+    ImGui::ClearActiveID();
+    focus_list(editor, kList, 0);
+  }
+}
+
+// Unfolds what a bone lies in.
+void unfold_to(Editor& editor, int bone) {
+  const auto& bones = editor.document().armature->bones;
+  editor.outliner.open["armature"] = true;
+  for (int above = bones[bone].parent; above >= 0; above = bones[above].parent)
+    editor.outliner.open["bone " + bones[above].name] = true;
+}
+
+// The bone that was chosen or made since the last frame: it comes into sight.
+std::optional<int> newly_chosen(const Editor& editor) {
+  const auto bone = editor.selection.bone;
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const bool known = bone && rig && *bone < std::ssize(rig->bones);
+  const int now = known ? static_cast<int>(ImGui::GetID(rig->bones[*bone].name.c_str())) : 0;
+  int& last = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("chosen bone"), 0);
+  return std::exchange(last, now) != now && known ? bone : std::nullopt;
+}
+
+// As high as its rows, but in the rig only so high that the bone's numbers have room below it.
+float height_of_list(const Editor& editor, const Column& column, float whole) {
+  const Look& look = editor.look;
+  if (editor.workspace != Workspace::Rig || !editor.document().armature) return whole;
+  const float top = column.head().high.y + ImGui::GetScrollY() - editor.layout.sidebar.low.y +
+                    (editor.outliner.searching ? look.px(32) : 0);
+  const float room = std::floor((editor.layout.sidebar.height() - top) / look.scale - kBoneSection);
+  // While the sidebar is pointed at, what stands above the list does not change its height.
+  float& rows = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("rows"), -1);
+  float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("height"), -1);
+  if (rows == whole && (editor.layout.sidebar.contains(editor.input.pointer) || editor.input.down(MouseButton::Left)))
+    return height;
+  rows = whole;
+  return height = std::min(whole, std::max(kRow * kFewestRows, room));
+}
+
+// The row in the middle of the list, unless it is seen already.
+void scroll_to_row(const Look& look, int row, float height) {
+  const float top = look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
+  if (top < scroll || top + look.px(kRow) > scroll + height)
+    ImGui::SetScrollY(std::max(0.0f, top - (height - look.px(kRow)) / 2));
+}
+
+}  // namespace
+
+void draw_outliner(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const bool open = column.begin_section("Outliner");
+  const Rect head = column.head(), place{{head.high.x - look.px(34), head.low.y + look.px(2)},
+                                         {head.high.x - look.px(6), head.high.y - look.px(2)}};
+  const Operator& search = *find_operator(editor, "view.find");
+  if (button(editor, "Search outliner", place,
+             {icon::kSearch, "", editor.outliner.searching ? ButtonStyle::Soft : ButtonStyle::Flat})) {
+    if (editor.outliner.searching) editor.outliner.searching = false, editor.outliner.search.clear();
+    else run(editor, search);
+  }
+  if (ImGui::IsItemHovered()) operator_tooltip(editor, search, place);
+  if (open) {
+    draw_search(editor, column);
+    const auto revealed = newly_chosen(editor);
+    if (revealed) unfold_to(editor, *revealed);
+    const std::vector<Row> rows = Tree(editor).rows;
+    take_key(editor, rows);
+    auto& drag = editor.handling->row_drag;
+    if (editor.input.down(Key::Escape)) drag = {};
+    const float whole = kRow * static_cast<float>(rows.size()), height = height_of_list(editor, column, whole);
+    if (height >= whole) {
+      for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
+    } else {
+      const Rect place = column.row(height);
+      Column list(editor, "", place);
+      const auto is_revealed = [&](const Row& row) { return row.kind == Row::Kind::Bone && row.index == *revealed; };
+      if (revealed)
+        if (const auto row = std::find_if(rows.begin(), rows.end(), is_revealed); row != rows.end())
+          scroll_to_row(look, static_cast<int>(row - rows.begin()), place.height());
+      for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, list, i, rows[i]);
+    }
+    if (!editor.input.down(MouseButton::Left)) drag = {};
+    if (rows.empty() && editor.outliner.search.empty()) {
+      const Rect row = column.row(30);
+      put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
+               "Nothing is open");
+    } else if (rows.empty() && empty_state(editor, column.row(72), "Nothing is named '" + editor.outliner.search + "'",
+                                           "Clear search")) {
+      editor.outliner.search.clear();
+    }
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/screen/preferences_dialog.h"
+
+#include "editor/context/keep_preferences.h"
+#include "editor/dialogs/dialog.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+struct Page {
+  const char* title;
+  const char* icon;
+};
+constexpr Page kPages[] = {{"Interface", icon::kTheme}, {"Keymap", icon::kKeyboard},
+                           {"View", icon::kCamera},     {"Undo and saving", icon::kHistory},
+                           {"Jobs", icon::kJobs},       {"Folders", icon::kFolder}};
+
+class PreferencesDialog final : public Dialog {
+ public:
+  PreferencesDialog(PreferencesPage page, const std::string& search) : page_(page), keys_(search) {}
+
+  void draw(Editor& editor) override;
+  bool key(Editor& editor, const Chord& chord) override {
+    return page_ == PreferencesPage::Keymap && keys_.key(editor, chord);
+  }
+  void escape(Editor& editor) override {
+    if (!keys_.stop_waiting()) editor.close_dialog();
+  }
+
+ private:
+  void draw_pages(Editor& editor, const Rect& rect);
+  void draw_page(Editor& editor, const Rect& rect);
+  void draw_interface(Editor& editor, Column& column);
+  void draw_view(Editor& editor, Column& column);
+  void draw_undo(Editor& editor, Column& column);
+  void draw_jobs(Editor& editor, Column& column);
+  void draw_folders(Editor& editor, Column& column);
+
+  // One row each; the label's sentence is its tool tip.
+  Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& sentence);
+  void number(Editor& editor, Column& column, const std::string& label, const std::string& sentence, double low,
+              double high, const char* format, const char* unit, const std::function<double&(Preferences&)>& value);
+  void whole_number(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+                    int Preferences::*value, int low, int high, const char* unit);
+  void check(Editor& editor, Column& column, const std::string& label, const std::string& sentence, bool& on);
+  void note(Editor& editor, Column& column, const std::string& text);
+
+  PreferencesPage page_;
+  KeymapPage keys_;
+  std::string edited_;  // the number that is being dragged or typed
+  double edited_value_ = 0;
+};
+
+Rect PreferencesDialog::labelled(Editor& editor, Column& column, const std::string& label,
+                                 const std::string& sentence) {
+  const Look& look = editor.look;
+  const Rect row = column.row(32);
+  const Rect words{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(206), row.high.y}};
+  put_text(editor, look.fonts.regular, look.theme.text2, words, label);
+  if (ImGui::IsWindowHovered() && words.contains(editor.input.pointer)) tooltip(editor, words, label, sentence);
+  return {{words.high.x + look.px(8), row.low.y + look.px(4)},
+          {words.high.x + look.px(8 + 220), row.high.y - look.px(4)}};
+}
+
+void PreferencesDialog::number(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+                               double low, double high, const char* format, const char* unit,
+                               const std::function<double&(Preferences&)>& value) {
+  const Rect rect = labelled(editor, column, label, sentence);
+  double shown = edited_ == label ? edited_value_ : value(editor.preferences);
+  bool committed = false;
+  if (number_field(editor, label, rect, shown, low, high, format, unit, true, committed)) {
+    edited_ = label;
+    edited_value_ = shown;
+  }
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence + "\nDrag it, or click it and type.");
+  if (!committed || edited_ != label) return;
+  value(editor.preferences) = edited_value_;
+  edited_.clear();
+  keep_preferences(editor);
+}
+
+void PreferencesDialog::whole_number(Editor& editor, Column& column, const std::string& label,
+                                     const std::string& sentence, int Preferences::*value, int low, int high,
+                                     const char* unit) {
+  double real = editor.preferences.*value;
+  number(editor, column, label, sentence, low, high, "%.0f", unit, [&](Preferences&) -> double& { return real; });
+  const int rounded = static_cast<int>(std::lround(real));
+  if (rounded == editor.preferences.*value) return;
+  editor.preferences.*value = rounded;
+  keep_preferences(editor);
+}
+
+void PreferencesDialog::check(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+                              bool& on) {
+  const Look& look = editor.look;
+  const Rect row = column.row(30);
+  const Rect rect{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(434), row.high.y}};
+  if (checkbox(editor, label, rect, label, on)) keep_preferences(editor);
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence);
+}
+
+void PreferencesDialog::note(Editor& editor, Column& column, const std::string& text) {
+  const Look& look = editor.look;
+  const Rect row = column.row(26);
+  put_text(editor, look.fonts.small, look.theme.text2,
+           Rect{{row.low.x + look.px(16), row.low.y}, {row.high.x - look.px(12), row.high.y}}, text);
+}
+
+void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const Rect theme = labelled(editor, column, "Theme", "Dark or light. The views stay dark in both.");
+  const float half = std::round(theme.width() / 2);
+  for (const auto& [name, label, left] :
+       {std::tuple("dark", "Dark", theme.low.x), std::tuple("light", "Light", theme.low.x + half)}) {
+    const bool chosen = editor.preferences.theme == name;
+    if (button(editor, label, {{left, theme.low.y}, {left + half - look.px(1), theme.high.y}},
+               {"", label, chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) {
+      editor.preferences.theme = name;
+      keep_preferences(editor);
+    }
+  }
+  number(editor, column, "Scale", "Size of texts and buttons, times the monitor's own.", 0.75, 3, "%.2f", "\u00d7",
+         [](Preferences& p) -> double& { return p.scale; });
+  number(editor, column, "Tool tips after", "How long the pointer rests before a tool tip comes.", 0, 3, "%.1f", "s",
+         [](Preferences& p) -> double& { return p.tooltip_delay; });
+  column.space(6);
+  check(editor, column, "Reduce motion", "Views jump instead of turning, nothing fades.",
+        editor.preferences.reduce_motion);
+  check(editor, column, "Advanced steps", "The list of steps offers more than the shortest way.",
+        editor.preferences.advanced_steps);
+}
+
+void PreferencesDialog::draw_view(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  Preferences& preferences = editor.preferences;
+  const Rect display = labelled(editor, column, "Display", "How a body is shown when the editor starts.");
+  const float third = std::round(display.width() / 3);
+  float x = display.low.x;
+  for (const auto& [name, label, op] :
+       {std::tuple("solid", "Solid", "view.solid"), std::tuple("xray", "X-ray", "view.xray_display"),
+        std::tuple("tissue", "Tissue", "view.tissue")}) {
+    const bool chosen = preferences.display == name;
+    if (button(editor, label, {{x, display.low.y}, {x + third - look.px(1), display.high.y}},
+               {"", label, chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) {
+      preferences.display = name;
+      run(editor, op);
+      keep_preferences(editor);
+    }
+    x += third;
+  }
+  column.space(6);
+  Views& views = *editor.views;
+  const auto overlay = [&](const char* label, const char* sentence, bool Preferences::*kept, bool Views::*shown) {
+    check(editor, column, label, sentence, preferences.*kept);
+    views.*shown = preferences.*kept;
+  };
+  overlay("Grid", "The ground grid of the 3D view.", &Preferences::grid, &Views::grid);
+  overlay("Axes", "The axis ball of the 3D view.", &Preferences::axes, &Views::axes);
+  overlay("Scale bar", "A scale bar in every view.", &Preferences::scale_bar, &Views::scale_bar);
+  overlay("Orientation letters", "Which side of the body is where.", &Preferences::letters, &Views::letters);
+  overlay("Cross-hair", "Where the slices meet.", &Preferences::cross_hair, &Views::show_cross_hair);
+}
+
+void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
+  whole_number(editor, column, "Memory for undo",
+               "When edits take more, the oldest can no longer be undone; the history says so.",
+               &Preferences::undo_limit_mb, 64, 65536, "MB");
+  const History& history = editor.history;
+  note(editor, column,
+       std::to_string(history.steps().size()) + " states take " + std::to_string(history.bytes() >> 20) + " MB now." +
+           (history.note().empty() ? "" : " " + history.note()));
+  column.space(6);
+  whole_number(editor, column, "Save every", "Saves the project's file by itself, once it has one. 0: only when asked.",
+               &Preferences::autosave_minutes, 0, 240, "min");
+  note(editor, column, "Edits are kept within a second in any case, and offered again after a crash.");
+}
+
+void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
+  whole_number(editor, column, "Jobs at once", "As many run together, the others wait.", &Preferences::jobs_at_once, 1,
+               8, "");
+  whole_number(editor, column, "Memory of a resampling", "More ends it with a message. 0: no limit.",
+               &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
+  number(editor, column, "Time of a resampling", "Longer ends it with a message. 0: no limit.", 0, 1440, "%.1f", "min",
+         [](Preferences& p) -> double& { return p.worker_minutes; });
+  note(editor, column, "A resampling runs in a process of its own: whatever happens to it, the project stays.");
+}
+
+void PreferencesDialog::draw_folders(Editor& editor, Column& column) {
+  Preferences& preferences = editor.preferences;
+  const Rect scratch =
+      labelled(editor, column, "Scratch", "Where a resampling reads and writes; emptied when it ends.");
+  const std::string before = preferences.scratch_folder;
+  const Rect wide{scratch.low, {scratch.high.x + editor.look.px(110), scratch.high.y}};
+  if (text_field(editor, "Scratch", wide, preferences.scratch_folder, "The system's own")) keep_preferences(editor);
+  if (ImGui::IsItemHovered())
+    tooltip(editor, wide, "Scratch", "Where a resampling reads and writes; emptied when it ends.");
+  column.space(6);
+  note(editor, column,
+       "Preferences are kept in " +
+           (editor.preferences_path.empty() ? preferences_path() : editor.preferences_path).string());
+}
+
+void PreferencesDialog::draw_pages(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), look.theme.head, look.px(8),
+                                            ImDrawFlags_RoundCornersBottomLeft);
+  float y = rect.low.y + look.px(8);
+  for (int i = 0; i < std::ssize(kPages); ++i, y += look.px(32)) {
+    const Rect row{{rect.low.x, y}, {rect.high.x, y + look.px(32)}};
+    const bool chosen = static_cast<int>(page_) == i;
+    const Pressed pressed = press_area(editor, kPages[i].title, row);
+    if (chosen) fill(row, look.theme.accent_soft);
+    else if (pressed.hovered) fill(row, look.theme.hover);
+    const Colour colour = chosen ? look.theme.accent_text : look.theme.text2;
+    put_icon(look.fonts.regular, colour,
+             Rect{{row.low.x + look.px(12), row.low.y}, {row.low.x + look.px(32), row.high.y}}, kPages[i].icon);
+    put_text(editor, look.fonts.regular, chosen ? look.theme.accent_text : look.theme.text,
+             Rect{{row.low.x + look.px(40), row.low.y}, row.high}, kPages[i].title);
+    if (!pressed.clicked) continue;
+    keys_.stop_waiting();
+    page_ = static_cast<PreferencesPage>(i);
+  }
+}
+
+void PreferencesDialog::draw_page(Editor& editor, const Rect& rect) {
+  if (page_ == PreferencesPage::Keymap) return keys_.draw(editor, rect);
+  Column column(editor, kPages[static_cast<int>(page_)].title, rect);
+  column.space(10);
+  switch (page_) {
+    case PreferencesPage::Interface: return draw_interface(editor, column);
+    case PreferencesPage::Keymap: return;
+    case PreferencesPage::View: return draw_view(editor, column);
+    case PreferencesPage::Undo: return draw_undo(editor, column);
+    case PreferencesPage::Jobs: return draw_jobs(editor, column);
+    case PreferencesPage::Folders: return draw_folders(editor, column);
+  }
+}
+
+void PreferencesDialog::draw(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect rect = begin_dialog(editor, "Preferences", 760, 440);
+  const Rect body{rect.low - look.px(18), rect.high + look.px(18)};
+  const float middle = body.low.x + look.px(176);
+  draw_pages(editor, {{body.low.x + look.line(), body.low.y}, {middle, body.high.y - look.line()}});
+  fill({{middle, body.low.y}, {middle + look.line(), body.high.y - look.line()}}, look.theme.line2);
+  draw_page(editor, {{middle + look.line(), body.low.y}, {body.high.x - look.line(), body.high.y - look.px(4)}});
+  end_dialog(editor);
+}
+
+}  // namespace
+
+std::unique_ptr<Dialog> open_preferences(PreferencesPage page, const std::string& search) {
+  return std::make_unique<PreferencesDialog>(page, search);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The gaps between regions can be dragged: 6 pixels are gripped, a line in accent shows it after a moment; a double
+// click restores the default.
+#include "editor/context/panels.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kGrip = 6;            // pixels
+constexpr double kShownAfter = 0.15;  // s
+
+const char* name_of(SplitterId id) {
+  constexpr const char* kNames[] = {"sidebar", "bottom", "split-x", "split-y", "four-x", "four-y"};
+  return kNames[static_cast<int>(id)];
+}
+
+}  // namespace
+
+void draw_splitters(Editor& editor) {
+  const Look& look = editor.look;
+  for (const Splitter& splitter : editor.layout.splitters) {
+    const float more =
+        std::round((look.px(kGrip) - (splitter.vertical ? splitter.line.width() : splitter.line.height())) / 2);
+    const glm::vec2 grow = splitter.vertical ? glm::vec2(more, 0) : glm::vec2(0, more);
+    const Rect grip{splitter.line.low - grow, splitter.line.high + grow};
+    begin_region(editor, Region::Views, std::string("splitter ") + name_of(splitter.id), grip, 0);
+    const Pressed pressed = press_area(editor, "grip", grip);
+    if (pressed.hovered || pressed.held) editor.cursor = splitter.vertical ? Cursor::ResizeX : Cursor::ResizeY;
+    if (pressed.hovered && editor.hovered_splitter != &splitter - editor.layout.splitters.data()) {
+      editor.hovered_splitter = static_cast<int>(&splitter - editor.layout.splitters.data());
+      editor.splitter_since = editor.now;
+    }
+    if (pressed.held || (pressed.hovered && editor.now - editor.splitter_since >= kShownAfter)) {
+      const glm::vec2 middle = grip.centre(), half = glm::vec2(look.line());
+      fill(splitter.vertical ? Rect{{middle.x - half.x, grip.low.y}, {middle.x + half.x, grip.high.y}}
+                             : Rect{{grip.low.x, middle.y - half.y}, {grip.high.x, middle.y + half.y}},
+           look.theme.accent);
+    }
+    if (pressed.hovered && !pressed.held && editor.now < editor.splitter_since + kShownAfter)
+      editor.wake_at(editor.splitter_since + kShownAfter);
+    if (pressed.double_clicked) editor.arrangement() = restored(editor.arrangement(), splitter.id, editor.workspace);
+    else if (pressed.held && !pressed.activated && ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] < 2)
+      editor.arrangement() =
+          dragged(editor.arrangement(), splitter.id, editor.input.pointer, editor.layout, look.scale);
+    end_region(editor);
+  }
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "editor/context/panels.h"
+#include "editor/context/pointer_context.h"
+#include "editor/pose/live_preview.h"
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/fem_overlay.h"
+#include "editor/seams/seam_view.h"
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/paint_region.h"
+#include "editor/skin/weight_display.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/tissue_edits.h"
+#include "editor/volume/volume_change.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kFewHints = 5, kMostHints = 8;
+
+// With modifiers held: what they do together with the keys and buttons of this place.
+std::vector<KeyHint> held_hints(const Editor& editor) {
+  std::vector<KeyHint> all;
+  std::vector<Chord> seen;
+  for (const std::string& context : contexts(editor)) {
+    const auto bindings = editor.keymap.contexts.find(context);
+    if (bindings == editor.keymap.contexts.end()) continue;
+    for (const Binding& binding : bindings->second) {
+      const Operator* op = find_operator(editor, binding.operator_id);
+      if (!(binding.chord.modifiers == editor.input.modifiers()) ||
+          std::find(seen.begin(), seen.end(), binding.chord) != seen.end())
+        continue;
+      seen.push_back(binding.chord);
+      if (!op || !why_not(editor, *op).empty()) continue;
+      Chord alone = binding.chord;
+      alone.modifiers = {};
+      all.push_back({key_caps(alone), op->label});
+      // A click of the left button has a meaning of its own beside its drag.
+      if (alone.kind == Chord::Kind::Drag && alone.button == MouseButton::Left) all.back().caps.back() += " drag";
+    }
+  }
+  return all;
+}
+
+std::vector<KeyHint> hints(const Editor& editor) {
+  if (editor.modal) return editor.modal->hints(editor);
+  if (editor.drag) return {{{"Esc"}, "Drop the drag"}};
+  if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Drop the drag"}};
+  if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
+  std::vector<std::pair<const char*, const char*>> operators;
+  const ViewPlace* view = hovered_view(editor);
+  if (contexts(editor).front() == "timeline")
+    operators = {{"motion.scrub", "Scrub"},         {"motion.zoom", "Zoom"},
+                 {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},
+                 {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},
+                 {"motion.marker", "Marker"},       {"motion.play", "Play"}};
+  else if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
+    operators = {{"skin.paint", "Cut a seam"},
+                 {"skin.paint_subtract", "Erase"},
+                 {"skin.radius", "Radius"},
+                 {"edit.undo", "Undo"},
+                 {"skin.brush_pie", "Brushes"}};
+  else if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
+    operators = {{"skin.paint", rule_of(editor.skin->painting->kind).name.c_str()},
+                 {"skin.paint_subtract", "Take away"},
+                 {"skin.paint_smooth", "Smooth"},
+                 {"skin.radius", "Radius"},
+                 painted_region(editor) ? std::pair{"skin.region_clear", "Clear region"}
+                                        : std::pair{"skin.strength", "Strength"},
+                 {"skin.pick_bone", "Pick bone"},
+                 {"skin.flood", "Flood"},
+                 {"skin.display_pie", "Display"}};
+  else if (view && view->id != ViewId::Body)
+    operators = {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"},
+                 {"slice.step", "Slice"},
+                 {"slice.zoom", "Zoom"},
+                 {"slice.pan", "Shift"},
+                 {"view.place_cross_hair", "Cross-hair"},
+                 {"slice.outline", "Outline"},
+                 {"view.maximize", "Maximize"}};
+  else if (!editor.document().volume || editor.start_screen)
+    operators = {{"file.open", "Open"},
+                 {"file.new", "New"},
+                 {"search.commands", "Search"},
+                 {"help.guide", "Help"},
+                 {"file.quit", "Quit"}};
+  else if (editor.workspace == Workspace::Resample && !editor.document().results.empty())
+    operators = {{"compare.flicker", "Flicker A / B"},
+                 {"compare.show_a", "A"},
+                 {"compare.show_b", "B"},
+                 {"compare.side_by_side", "Side by side"},
+                 {"compare.wipe", "Wipe"},
+                 {"compare.difference", "Difference"},
+                 {"resample.run", "Resample"},
+                 {"report.open", "Report"}};
+  else if (editor.workspace == Workspace::Rig && editor.selection.bone)
+    operators = {{"rig.move", "Move"},   {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"},
+                 {"view.orbit", "Turn"}, {"view.xray", "X-ray"},   {"select.all", "All bones"}};
+  else if (editor.workspace == Workspace::Pose && editor.selection.bone)
+    operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"},  {"pose.clear_rotation", "Clear"},
+                 {"view.orbit", "Turn"},    {"view.xray", "X-ray"}, {"select.all", "All bones"}};
+  else
+    operators = {{"view.orbit", "Turn"},         {"view.pan", "Shift"},         {"view.zoom_step", "Zoom"},
+                 {"view.xray", "X-ray"},         {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
+                 {"view.frame_all", "Frame all"}};
+  std::vector<KeyHint> all;
+  for (const auto& [id, words] : operators)
+    if (const auto chord = editor.keymap.chord_of(id, contexts(editor)); chord && find_operator(editor, id))
+      all.push_back({key_caps(*chord), words});
+  return all;
+}
+
+void draw_hints(Editor& editor, const Rect& bar, float right) {
+  const Look& look = editor.look;
+  float x = bar.low.x + look.px(10);
+  std::size_t shown = 0;
+  for (const KeyHint& hint : hints(editor)) {
+    if (shown++ == (editor.layout.few_hints && !editor.modal ? kFewHints : kMostHints)) break;
+    const float words = text_size(look.fonts.small, hint.words).x;
+    if (x + width_of_key_caps(editor, hint.caps) + look.px(7) + words > right - look.px(16)) break;
+    x = put_key_caps(editor, x, bar.centre().y, hint.caps) + look.px(7);
+    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {x + words + 1, bar.high.y}}, hint.words);
+    x += words + look.px(12);
+  }
+}
+
+// Each of these takes its place at the right and returns what is left.
+struct SavedState {
+  const char* icon;
+  Colour colour;
+  std::string words, sentence;
+};
+
+SavedState saved_state(const Editor& editor) {
+  const Theme& theme = editor.look.theme;
+  const ProjectLife& life = editor.life;
+  if (!life.trouble.empty()) return {icon::kWarning, theme.warn, "Not kept", life.trouble};
+  if (editor.history.unsaved())
+    return {icon::kDot, theme.select, "Not saved",
+            life.session ? "Every edit is kept on disk meanwhile, and offered again after a crash." : ""};
+  if (editor.project_path.empty()) return {"", theme.text2, "No project", "What is open has no project file yet."};
+  std::string words = "Saved";
+  if (life.saved_at > 0) {
+    const std::time_t at = life.saved_at;
+    std::tm local{};
+    localtime_r(&at, &local);
+    char time[16];
+    std::strftime(time, sizeof time, " %H:%M", &local);
+    words += time;
+  }
+  return {icon::kTick, theme.ok, words, editor.project_path.string()};
+}
+
+float draw_saved(Editor& editor, const Rect& bar, float right) {
+  if (!editor.document().volume) return right;
+  const Look& look = editor.look;
+  const SavedState state = saved_state(editor);
+  const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y},
+                  {right, bar.high.y}};  // as wide for all
+  if (*state.icon)
+    put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
+  put_text(editor, look.fonts.small, look.theme.text2,
+           Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, state.words);
+  if (press_area(editor, "Saved", slot).hovered && !state.sentence.empty())
+    tooltip(editor, slot, state.words, state.sentence);
+  return slot.low.x - look.px(12);
+}
+
+float draw_hover(Editor& editor, const Rect& bar, float right) {
+  const Hover& hover = editor.views->hover;
+  if (!hover.view || !editor.document().volume) return right;
+  const Look& look = editor.look;
+  std::string words = "Outside";
+  char place[64] = "";
+  if (hover.inside) {
+    const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
+    words = (tissue ? shown_name(*tissue) : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
+    std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+    if (!hover.weights.empty()) {
+      char weight[16];
+      std::snprintf(weight, sizeof weight, " %.3f", hover.weights[0].value);
+      words += " \u00b7 " + hover.weights[0].bone + weight;
+    }
+  }
+  const std::string measured = hover.inside ? measure_text_at(editor, hover.voxel) : "";
+  if (!measured.empty()) words += " \u00b7 " + measured;
+  if (const std::string there = hover.inside ? other_side_text_at(editor, hover.voxel) : ""; !there.empty())
+    words += " \u00b7 " + there;
+  const float mono = *place ? look.px(170) : 0,
+              width = std::min(text_size(look.fonts.small, words).x + 1,
+                               look.px(hover.weights.empty() && measured.empty() ? 220 : 320));
+  const float left = right - mono - width;
+  if (*place)
+    put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}},
+             place, Align::Right);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);
+  return left;
+}
+
+// The one figure of the pose that matters, where no sidebar shows it.
+float draw_volume_change(Editor& editor, const Rect& bar, float right) {
+  LivePose& live = *editor.live;
+  if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty())
+    return right;
+  live.metrics().want();
+  const PoseMetrics* known = live.metrics().known();
+  const PoseMetrics* metrics = known ? known : live.metrics().last();
+  if (!metrics) return right;
+  const Look& look = editor.look;
+  const auto change = metrics->total.change_percent();
+  const Colour colour = known ? colour_of_change(look.theme, change) : look.theme.text3;
+  const Rect slot{{right - text_size(look.fonts.small, "Volume +00.00 %").x - look.px(22), bar.low.y},
+                  {right, bar.high.y}};
+  put_icon(look.fonts.small, colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}},
+           std::abs(change.value_or(0)) <= kSmallChange ? icon::kOk : icon::kWarning);
+  put_text(editor, look.fonts.small, colour,
+           Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, "Volume " + percent(change));
+  if (press_area(editor, "Volume change", slot).hovered)
+    tooltip(editor, slot, "Volume " + percent(change),
+            "Of all tissue, against rest. N opens the sidebar with every tissue.");
+  return slot.low.x - look.px(12);
+}
+
+}  // namespace
+
+void draw_status_bar(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& bar = editor.layout.status;
+  begin_region(editor, Region::Status, "status", bar, look.theme.head);
+  fill({bar.low, {bar.high.x, bar.low.y + look.line()}}, look.theme.void_);
+  float right = draw_saved(editor, bar, bar.high.x - look.px(10));
+  if (editor.start_screen) {
+    const std::string words = "or drop a file on the window";
+    put_text(editor, look.fonts.small, look.theme.text2,
+             Rect{{right - text_size(look.fonts.small, words).x - 1, bar.low.y}, {right, bar.high.y}}, words);
+  }
+  right = draw_volume_change(editor, bar, right);
+  right = draw_job_slot(editor, bar, right);
+  right = draw_hover(editor, bar, right);
+  draw_hints(editor, bar, right);
+  end_region(editor);
+}
+
+}  // namespace limber::editor

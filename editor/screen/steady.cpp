@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/screen/steady.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <imgui_internal.h>
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Kept by the sidebar's window, under these names.
+constexpr ImGuiID kShift = 1, kWidget = 2, kLow = 3, kHigh = 4, kScroll = 5, kState = 6, kHead = 7, kSection = 8,
+                  kEnd = 9;
+
+ImGuiWindow* sidebar() {
+  ImGuiWindow* window = ImGui::FindWindowByName("##sidebar");
+  return window && window->Active ? window : nullptr;
+}
+
+// Of all that scrolls in it.
+float scroll_of(const ImGuiWindow& sidebar) {
+  float scroll = 0;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+    if (window->Active && window->RootWindow == &sidebar) scroll += window->Scroll.y;
+  return scroll;
+}
+
+ImGuiID id_of(const Widget& widget) { return ImHashStr(widget.name.c_str()); }
+
+// The smallest widget of the sidebar under the pointer.
+const Widget* pointed_at(const Editor& editor) {
+  const Widget* found = nullptr;
+  for (const Widget& widget : editor.widgets.widgets())
+    if (widget.region == Region::Sidebar && widget.rect.contains(editor.input.pointer) &&
+        (!found || widget.rect.height() <= found->rect.height()))
+      found = &widget;
+  return found;
+}
+
+const Widget* with_id(const Editor& editor, ImGuiID id) {
+  for (const Widget& widget : editor.widgets.widgets())
+    if (widget.region == Region::Sidebar && id_of(widget) == id) return &widget;
+  return nullptr;
+}
+
+// "sidebar/sections/Bone/Length" is in the section Bone.
+ImGuiID section_of(const Widget& widget) {
+  constexpr std::string_view kSections = "sidebar/sections/";
+  if (!widget.name.starts_with(kSections)) return 0;
+  const std::string rest = widget.name.substr(kSections.size());
+  return ImHashStr(rest.substr(0, rest.find('/')).c_str());
+}
+
+// How far a widget went since it was noted; the end that is not clipped by the sidebar tells.
+float way_of(const Widget& widget, const ImGuiStorage& noted, const Rect& sidebar) {
+  const bool clipped = widget.rect.low.y <= sidebar.low.y || noted.GetFloat(kLow) <= sidebar.low.y;
+  return clipped ? widget.rect.high.y - noted.GetFloat(kHigh) : widget.rect.low.y - noted.GetFloat(kLow);
+}
+
+// The widget that is to stay where it is now; nullptr for none.
+void note(ImGuiStorage& noted, const Widget* widget, float scroll) {
+  noted.SetInt(kWidget, widget ? static_cast<int>(id_of(*widget)) : 0);
+  noted.SetFloat(kScroll, scroll);
+  if (!widget) return;
+  noted.SetFloat(kLow, widget->rect.low.y);
+  noted.SetFloat(kHigh, widget->rect.high.y);
+  noted.SetInt(kSection, static_cast<int>(section_of(*widget)));
+  noted.SetFloat(kHead, noted.GetFloat(section_of(*widget)));
+}
+
+}  // namespace
+
+float sidebar_shift() { return ImGui::GetStateStorage()->GetFloat(kShift); }
+
+float sidebar_rest(float end) {
+  ImGuiStorage& noted = ImGui::GetCurrentWindow()->RootWindow->StateStorage;
+  const float whole = noted.GetInt(kWidget) != 0 ? std::max(noted.GetFloat(kEnd), end) : end;
+  noted.SetFloat(kEnd, whole);
+  return whole - end;
+}
+
+bool has_moved_under_pointer(Editor& editor) {
+  ImGuiWindow* window = sidebar();
+  if (!window) return false;
+  ImGuiStorage& noted = window->StateStorage;
+  const Rect& rect = editor.layout.sidebar;
+  const float shift = noted.GetFloat(kShift), scroll = scroll_of(*window);
+  // Another arrangement begins anew.
+  const int state =
+      static_cast<int>(editor.workspace) + 8 * static_cast<int>(rect.width()) + 65536 * static_cast<int>(rect.height());
+  const bool same = noted.GetInt(kState) == state, held = editor.input.down(MouseButton::Left);
+  if (!same || (!held && !rect.contains(editor.input.pointer))) {
+    noted.SetInt(kWidget, 0);
+    noted.SetInt(kState, state);
+    noted.SetFloat(kShift, 0);
+    return shift != 0;
+  }
+  const bool scrolled = scroll != noted.GetFloat(kScroll) || editor.input.wheel != 0;
+  const ImGuiID id = static_cast<ImGuiID>(noted.GetInt(kWidget));
+  const Widget* widget = id != 0 && !scrolled ? with_id(editor, id) : nullptr;
+  const ImGuiID section = static_cast<ImGuiID>(noted.GetInt(kSection));
+  float way = widget ? std::round(way_of(*widget, noted, rect)) : 0;
+  // One that went out of sight went with its section.
+  if (id != 0 && !scrolled && !widget && section != 0)
+    way = std::round(noted.GetFloat(section) - noted.GetFloat(kHead));
+  if (way != 0) {
+    noted.SetFloat(kShift, shift - way);
+    return true;
+  }
+  const Widget* now = held && id != 0 ? with_id(editor, id) : pointed_at(editor);
+  note(noted, now, scroll);
+  return false;
+}
+
+void note_pressed(const Editor& editor) {
+  if (ImGuiWindow* window = sidebar()) note(window->StateStorage, pointed_at(editor), scroll_of(*window));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Short messages at the bottom right of the 3D view: info 4 s, warnings 8 s, errors stay. At most three are seen, where
+// only slices are shown one; the older ones are counted above them. While the pointer is over them they stay as they
+// are: none goes, and what comes meanwhile waits.
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/severity_style.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kMost = 3;
+constexpr float kWidth = 332, kLeast = 52, kGap = 8, kLeastPlace = 240;
+constexpr int kLines = 2, kDetailLines = 3;
+constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // s
+
+double life_of(Severity severity) {
+  return severity == Severity::Error ? 1e300 : severity == Severity::Warning ? 8 : 4;
+}
+
+// What is shown of a toast, and how large that is.
+struct Shape {
+  std::string line, action;
+  float words = 0, action_width = 0;  // widths
+  float line_height = 0, height = 0;
+};
+
+Shape shape_of(const Editor& editor, const Toast& toast, float width) {
+  const Look& look = editor.look;
+  Shape shape;
+  shape.line = toast.times > 1 ? toast.line + " (" + std::to_string(toast.times) + " times)" : toast.line;
+  const Operator* op = toast.action.empty() ? nullptr : find_operator(editor, toast.action);
+  shape.action = !toast.failure.empty() ? "Details" : op ? op->label : "";
+  shape.action_width = shape.action.empty() ? 0 : text_size(look.fonts.regular, shape.action).x + look.px(24);
+  shape.words = width - look.px(42 + 34) - shape.action_width;
+  shape.line_height = height_of_wrapped(look.fonts.regular, shape.line, shape.words, kLines);
+  const float detail =
+      toast.detail.empty() ? 0 : height_of_wrapped(look.fonts.small, toast.detail, shape.words, kDetailLines);
+  shape.height = std::max(look.px(kLeast), std::round(shape.line_height + detail + look.px(18)));
+  return shape;
+}
+
+// How much of it is seen as it comes and goes.
+float presence(Editor& editor, const Toast& toast) {
+  if (editor.preferences.reduce_motion) return 1;
+  const double age = editor.now - toast.since, left = life_of(toast.severity) - age;
+  if (age < kFadeIn || left < kFadeOut) editor.wake_at(editor.now);
+  return static_cast<float>(std::clamp(std::min((age + 0.02) / kFadeIn, left / kFadeOut), 0.0, 1.0));
+}
+
+void fade(ImDrawList& canvas, int first, float presence) {
+  for (int i = first; i < canvas.VtxBuffer.Size; ++i) {
+    ImU32& colour = canvas.VtxBuffer[i].col;
+    colour = with_alpha(colour, static_cast<float>(colour >> 24) / 255 * presence);
+  }
+}
+
+// True when it was closed.
+bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Rect& rect, int index) {
+  const Look& look = editor.look;
+  begin_region(editor, Region::Toast, "toast " + std::to_string(index), rect, 0);
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const int first = canvas.VtxBuffer.Size;
+  const Sign sign = sign_of(look.theme, toast.severity);
+  fill(rect, look.theme.panel, look.px(6));
+  outline(rect, look.theme.line2, look.px(6), look.line());
+  canvas.AddRectFilled(im(rect.low), {rect.low.x + look.px(3), rect.high.y}, sign.colour, look.px(6),
+                       ImDrawFlags_RoundCornersLeft);
+  put_icon(look.fonts.regular, sign.colour,
+           Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.low.x + look.px(34), rect.high.y}}, sign.icon);
+
+  const float left = rect.low.x + look.px(42), middle = rect.centre().y;
+  const float detail =
+      toast.detail.empty() ? 0 : height_of_wrapped(look.fonts.small, toast.detail, shape.words, kDetailLines);
+  const float top = std::round(middle - (shape.line_height + detail) / 2);
+  put_wrapped(editor, look.fonts.regular, look.theme.text, {left, top}, shape.words, shape.line, kLines);
+  if (detail > 0)
+    put_wrapped(editor, look.fonts.small, look.theme.text2, {left, top + shape.line_height}, shape.words, toast.detail,
+                kDetailLines);
+  if (!shape.action.empty()) {
+    const Rect link{{left + shape.words + look.px(8), middle - look.px(12)},
+                    {left + shape.words + shape.action_width, middle + look.px(12)}};
+    const Operator* op = find_operator(editor, toast.action);
+    const Pressed pressed = press_area(editor, shape.action, link);
+    put_text(editor, look.fonts.regular, look.theme.accent_text, link, shape.action, Align::Centre);
+    if (pressed.hovered)
+      op ? operator_tooltip(editor, *op, link) : tooltip(editor, link, "Details", "The whole of it, with what to do.");
+    if (pressed.clicked) op ? run(editor, *op) : editor.messages.show_again(toast.failure);
+  }
+  const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};
+  register_widget(editor, "box", rect);
+  const bool closed = button(editor, "Close message", close, {icon::kClose, "", ButtonStyle::Flat});
+  fade(canvas, first, presence(editor, toast));
+  end_region(editor);
+  return closed;
+}
+
+// The older ones; a click shows them in the console.
+void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
+  const Look& look = editor.look;
+  const std::string words = "+" + std::to_string(count) + " more";
+  const float width = text_size(look.fonts.small, words).x + look.px(20);
+  const Rect rect{{right - width, bottom - look.px(22)}, {right, bottom}};
+  begin_region(editor, Region::Toast, "toasts", rect, 0);
+  const Pressed pressed = press_area(editor, "more", rect);
+  fill(rect, pressed.hovered ? look.theme.hover : look.theme.panel, look.px(5));
+  outline(rect, look.theme.line2, look.px(5), look.line());
+  put_text(editor, look.fonts.small, look.theme.text2, rect, words, Align::Centre);
+  if (pressed.hovered) tooltip(editor, rect, "Older messages", "Opens the console, which keeps all of them.");
+  if (pressed.clicked) {
+    editor.messages.toasts.clear();
+    if (!editor.arrangement().console) run(editor, "view.console");
+  }
+  end_region(editor);
+}
+
+// Over the 3D view, else over the views.
+Rect place_of_toasts(const Editor& editor) {
+  const Layout& layout = editor.layout;
+  Rect place = layout.views;
+  for (const ViewPlace& view : layout.view_places)
+    if (view.id == ViewId::Body && !view.side_a && view.rect.width() >= editor.look.px(kLeastPlace)) place = view.rect;
+  if (layout.sidebar_over_views && !layout.sidebar.empty()) place.high.x = std::min(place.high.x, layout.sidebar.low.x);
+  return place;
+}
+
+// As they were drawn last.
+bool points_at_toasts(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
+    return widget.region == Region::Toast && widget.name.starts_with("toast") &&
+           widget.rect.contains(editor.input.pointer);
+  });
+}
+
+}  // namespace
+
+void draw_toasts(Editor& editor) {
+  auto& toasts = editor.messages.toasts;
+  const Look& look = editor.look;
+  const bool held = points_at_toasts(editor);
+  for (Toast& toast : toasts) {
+    // One that came again is seen already.
+    if (toast.since < 0 && (!held || toast.times > 1)) toast.since = editor.now;
+    if (held && toast.since >= 0) toast.since = std::max(toast.since, editor.now - kFadeIn);
+  }
+  std::erase_if(toasts, [&](const Toast& toast) {
+    return toast.since >= 0 && editor.now - toast.since >= life_of(toast.severity);
+  });
+  std::vector<std::size_t> seen;  // newest first
+  for (std::size_t at = toasts.size(); at-- > 0;)
+    if (toasts[at].since >= 0) seen.push_back(at);
+
+  const Rect views = place_of_toasts(editor);
+  const float width = std::min(look.px(kWidth), views.width() - look.px(24)), right = views.high.x - look.px(12);
+  float bottom = views.high.y - look.px(12);
+  std::size_t closed = toasts.size();
+  const std::size_t most = std::min(seen.size(), editor.layout.place_of(ViewId::Body) ? kMost : 1);
+  std::size_t shown = 0;
+  for (; shown < most && (shown == 0 || bottom > views.centre().y); ++shown) {
+    const std::size_t at = seen[shown];
+    const Toast toast = toasts[at];  // what is pressed in it may bring others
+    const Shape shape = shape_of(editor, toast, width);
+    const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
+    if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;
+    if (life_of(toast.severity) < 1e9) editor.wake_at(toasts[at].since + life_of(toast.severity) - kFadeOut);
+    bottom = rect.low.y - look.px(kGap);
+  }
+  if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
+  else if (seen.size() > shown) draw_more(editor, seen.size() - shown, bottom, right);
+}
+
+}  // namespace limber::editor

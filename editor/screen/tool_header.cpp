@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Below the top bar: how the body is shown, what is clipped, the layout of the views.
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/screen/menus.h"
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/weight_display.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+class Header {
+ public:
+  // `drawn`: else it is only found out what has room.
+  Header(Editor& editor, bool drawn, bool short_labels)
+      : editor_(editor),
+        bar_(editor.layout.tool_header),
+        x_(editor.look.px(8)),
+        drawn_(drawn),
+        short_labels_(short_labels) {}
+
+  // Operators of which one is on, as one bar.
+  //   words  they stand there as words, as long as words beside icons have room
+  void segments(std::initializer_list<const char*> ids, bool words = false) {
+    for (const char* id : ids) {
+      const Operator* op = find_operator(editor_, id);
+      ButtonLook face = face_of(*op, !words);
+      if (words && !face.label.empty()) face.icon = "";
+      const float width = *face.icon && face.label.empty()
+                              ? px(36)
+                              : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
+      place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      x_ += px(1);
+    }
+    x_ += px(9);
+  }
+
+  void toggle(const char* id, const char* label = "") {
+    const Operator* op = find_operator(editor_, id);
+    ButtonLook face = face_of(*op, false);
+    if (*label) face.label = label;
+    const float width = face.label.empty() ? px(30) : width_of_button(editor_, face);
+    place(id, face.label, width, op->checked && op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
+  // One of several, behind a button as wide as the longest of their names.
+  void choice(const char* name, std::initializer_list<const char*> ids) {
+    const Operator* chosen =
+        find_operator(editor_, *ids.begin());  // where none is on: what is on instead has another button
+    float width = 0;
+    for (const char* id : ids) {
+      const Operator* op = find_operator(editor_, id);
+      if (op->checked(editor_)) chosen = op;
+      width = std::max(width, width_of_button(editor_, {op->icon, op->label}));
+    }
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2), x = x_;
+    x_ += width + px(6);
+    if (!drawn_) return;
+    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {chosen->icon, chosen->label})) ImGui::OpenPopup(name);
+    if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, name);
+    for (const char* id : ids) operator_menu_item(editor_, id);
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
+  }
+
+  // A list of commands behind a word.
+  void menu(const char* name, const char* word) {
+    const float width = width_of_button(editor_, {"", word}), height = px(26),
+                y = std::round(bar_.centre().y - height / 2), x = x_;
+    x_ += width + px(8);
+    if (!drawn_) return;
+    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {"", word})) ImGui::OpenPopup(name);
+    if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, name);
+    draw_menu(editor_, pointer_menu(name, ViewId::Body));
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
+  }
+
+  // A number of the brush, dragged or typed.
+  void number(const char* name, double& value, double low, double high, const char* format, const char* unit,
+              float width) {
+    label(name);
+    const float height = px(24), y = std::round(bar_.centre().y - height / 2);
+    bool committed = false;
+    if (drawn_)
+      number_field(editor_, name, {{x_, y}, {x_ + px(width), y + height}}, value, low, high, format, unit, true,
+                   committed);
+    x_ += px(width + 10);
+  }
+
+  // What the workspace is for.
+  void action(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    const ButtonLook face{op->icon, op->label};
+    place(id, face.label, width_of_button(editor_, face),
+          why_not(editor_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
+  void plain(const char* id) {
+    const Operator* op = find_operator(editor_, id);
+    place(id, op->label, width_of_button(editor_, {op->icon, op->label}), ButtonStyle::Plain);
+    x_ += px(6);
+  }
+
+  void label(const std::string& text) {
+    const float width = text_size(editor_.look.fonts.regular, text).x;
+    if (drawn_)
+      put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2,
+               Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
+    x_ += width + px(8);
+  }
+
+  void line() {
+    if (drawn_)
+      fill({{x_, bar_.low.y + px(9)}, {x_ + editor_.look.line(), bar_.high.y - px(9)}}, editor_.look.theme.line2);
+    x_ += editor_.look.line() + px(10);
+  }
+
+  // Layout buttons never leave: they stand at the right end.
+  void layouts() {
+    x_ = bar_.high.x - px(8) - 3 * px(36) - 2 * px(1);
+    right_ = x_;
+    segments({"view.one", "view.split", "view.four"});
+  }
+  // What did not fit goes behind "...", left of the layout buttons.
+  void more() {
+    if (dropped_.empty()) return;
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
+    if (button(editor_, "More", {{x_, y}, {x_ + px(30), y + height}}, {icon::kMore})) ImGui::OpenPopup("more");
+    if (!ImGui::BeginPopup("more", ImGuiWindowFlags_NoMove)) return;
+    editor_.place.region = Region::Popup;
+    push_path(editor_, "more");
+    for (const std::string& id : dropped_) operator_menu_item(editor_, id);
+    pop_path(editor_);
+    editor_.place.region = Region::ToolHeader;
+    ImGui::EndPopup();
+  }
+  bool dropped_any() const { return !dropped_.empty(); }
+  // The width of a toggle without its label, where that is short.
+  float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
+  // Whether a group of that width fits; if not, its operators go behind "...".
+  bool fits(float width, std::initializer_list<const char*> ids) {
+    if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
+    dropped_.insert(dropped_.end(), ids.begin(), ids.end());
+    return false;
+  }
+  void to_left() { x_ = bar_.low.x + px(8); }
+
+ private:
+  float px(float size) const { return editor_.look.px(size); }
+  ButtonLook face_of(const Operator& op, bool segment) const {
+    const bool layout = segment && *op.icon;
+    const bool icon_alone = layout || (short_labels_ && *op.icon);
+    return {op.icon, icon_alone ? "" : op.label};
+  }
+  void place(const char* id, const std::string& label, float width, ButtonStyle style) {
+    const float height = px(26), y = std::round(bar_.centre().y - height / 2);
+    if (drawn_) operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
+    x_ += width;
+  }
+
+  Editor& editor_;
+  Rect bar_;
+  float x_, right_ = 1e9f;
+  bool drawn_, short_labels_;
+  std::vector<std::string> dropped_;
+};
+
+// How the body is shown, and what the workspace chooses from.
+void put_options(Editor& editor, Header& header) {
+  header.layouts();
+  header.to_left();
+  const bool paints = editor.workspace == Workspace::Skin && editor.document().weights;
+  if (!paints) {
+    header.segments({"view.solid", "view.xray_display", "view.tissue"});
+    header.line();
+  }
+  if (editor.workspace == Workspace::Rig) {
+    header.action("rig.auto_fit");
+    if (header.fits(110, {"rig.templates"})) header.plain("rig.templates");
+    header.line();
+  }
+  if (editor.workspace == Workspace::Rig && editor.document().armature) {
+    if (header.fits(140, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"}))
+      header.choice("Snap", {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"});
+    if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
+    if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"}))
+      header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
+    header.line();
+  }
+  if (editor.workspace == Workspace::Skin && editor.document().armature && !paints) {
+    header.action("skin.heat");
+    if (header.fits(150, {"skin.compute"})) header.plain("skin.compute");
+    header.line();
+  }
+  if (paints) {
+    Painting& painting = *editor.skin->painting;
+    header.menu("Edit weights", "Weights");
+    if (header.fits(140, {"skin.radius"}))
+      header.number("Radius", painting.radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm", 80);
+    if (header.fits(140, {"skin.strength"})) header.number("Strength", painting.strength, 0, 1, "%.2f", "", 64);
+    const bool takes_value = rule_of(painting.kind).takes_value;
+    if (takes_value && header.fits(130, {"skin.value"})) header.number("Value", painting.value, 0, 1, "%.2f", "", 64);
+    header.line();
+    const auto kDisplays = {"skin.show_active", "skin.show_dominant", "skin.show_mixed", "skin.show_count",
+                            "skin.show_tissues"};
+    if (header.fits(140, kDisplays)) header.choice("Weight display", kDisplays);
+    if (header.fits(130, {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"}))
+      header.choice("Reach", {"skin.reach_surface", "skin.reach_depth", "skin.reach_through"});
+    if (header.fits(90, {"skin.along_tissue"})) header.toggle("skin.along_tissue");
+    if (header.fits(140, {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"}))
+      header.choice("Painted tissue", {"skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible"});
+    if (header.fits(180, {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"}))
+      header.choice("Normalize", {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"});
+    if (header.fits(header.toggle_width(90), {"skin.posed"})) header.toggle("skin.posed");
+    if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
+    if (header.fits(90, {"skin.contours"})) header.toggle("skin.contours");
+    const auto kBodies = {"view.solid", "view.xray_display", "view.tissue"};
+    if (header.fits(200, kBodies)) header.segments(kBodies);
+    header.line();
+  }
+  if (editor.workspace == Workspace::Resample) {
+    const auto kCompared = {"compare.side_by_side", "compare.wipe", "compare.difference"};
+    if (header.fits(3 * header.toggle_width(88), kCompared)) header.segments(kCompared, true);
+    const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
+    if (header.fits(150, kColours)) header.choice("Colours", kColours);
+    if (header.fits(header.toggle_width(90), {"result.overlap"})) header.toggle("result.overlap");
+    if (header.fits(header.toggle_width(120), {"fem.tets"})) header.toggle("fem.tets");
+    header.line();
+    for (const char* id : {"report.open", "file.export"})
+      if (header.fits(header.toggle_width(100), {id})) header.toggle(id);
+    header.line();
+  }
+  if (editor.workspace == Workspace::Pose) {
+    if (header.fits(230, {"resample.mix", "resample.lbs", "resample.dqs"})) {
+      header.label("Preview");
+      header.segments({"resample.mix", "resample.lbs", "resample.dqs"});
+    }
+    if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"}))
+      header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
+    if (header.fits(90, {"pose.limits"})) header.toggle("pose.limits", "Limits");
+    for (const char* id : {"pose.auto_ik", "edit.x_mirror", "motion.onion_skin"})
+      if (header.fits(header.toggle_width(110), {id})) header.toggle(id);
+    header.line();
+  }
+}
+
+}  // namespace
+
+void draw_tool_header(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect& rect = editor.layout.tool_header;
+  begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
+  fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
+  // Labels beside icons go before anything goes behind "...".
+  Header measured(editor, false, editor.layout.short_labels);
+  put_options(editor, measured);
+  Header header(editor, true, editor.layout.short_labels || measured.dropped_any());
+  put_options(editor, header);
+  if (editor.layout.several()) {
+    if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
+      header.label("Slices");
+      header.segments({"slice.show_labels", "slice.show_outlines"});
+    }
+    if (header.fits(100, {"view.cross_hair"})) header.toggle("view.cross_hair");
+  }
+  for (const char* id : {"view.clip_box", "view.clip_plane"})
+    if (header.fits(header.toggle_width(120), {id})) header.toggle(id);
+  header.more();
+  end_region(editor);
+}
+
+}  // namespace limber::editor

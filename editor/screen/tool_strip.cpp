@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The tools at the left edge, one of them active, and switches that belong to the views.
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/skin/painting.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+void draw_tool_strip(Editor& editor) {
+  const Rect& rect = editor.layout.tool_strip;
+  if (rect.empty()) return;
+  const Look& look = editor.look;
+  begin_region(editor, Region::ToolStrip, "strip", rect, look.theme.panel);
+  fill({{rect.high.x - look.line(), rect.low.y}, rect.high}, look.theme.void_);
+  float y = rect.low.y + look.px(4);
+  std::vector<std::string> tools = {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"};
+  if (editor.workspace == Workspace::Pose)
+    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.reach",
+             "-",           "pose.breakdown",  "-", "view.clip_box", "view.clip_plane"};
+  if (editor.workspace == Workspace::Skin)
+    tools = with_brushes({"*", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "skin.pick_bone", "-",
+                          "view.clip_box", "view.clip_plane"});
+  if (editor.workspace == Workspace::Rig)
+    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.scale", "-",
+             "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane"};
+  for (const std::string& id : tools) {
+    if (id == "-") {
+      fill({{rect.low.x + look.px(8), y + look.px(5)}, {rect.high.x - look.px(9), y + look.px(5) + look.line()}},
+           look.theme.line2);
+      y += look.px(11);
+      continue;
+    }
+    const Operator* op = find_operator(editor, id);
+    const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + look.px(34)}};
+    const Pressed pressed = press_area(editor, id, place, why_not(editor, *op).empty());
+    const bool on = op->checked && op->checked(editor);
+    if (on) fill(place, look.theme.accent, look.px(5));
+    else if (pressed.hovered) fill(place, look.theme.hover, look.px(5));
+    const Colour colour = on ? look.theme.on_accent : why_not(editor, *op).empty() ? look.theme.text : look.theme.text3;
+    put_icon(look.fonts.icons, colour, place, op->icon);
+    if (pressed.hovered) operator_tooltip(editor, *op, place);
+    if (pressed.clicked) run(editor, *op);
+    y = place.high.y + look.px(1);
+  }
+  end_region(editor);
+}
+
+}  // namespace limber::editor

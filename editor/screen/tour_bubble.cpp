@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The tour's bubble: beside what it speaks of, with an arrow at it.
+#include "editor/files/tour.h"
+
+#include "editor/context/panels.h"
+#include "editor/context/pointer_context.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 320, kPadding = 14, kArrow = 10;
+
+// Beside the target where there is room: below, at the right, at the left; inside it when it is as large as a view.
+struct Place {
+  Rect rect;
+  glm::vec2 tip, base;  // of the arrow
+};
+
+Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) {
+  const Rect window = editor.layout.window.grown(-editor.look.px(8));
+  const float gap = editor.look.px(kArrow + 4);
+  const auto within = [&](glm::vec2 corner) {
+    return Rect{glm::round(glm::clamp(corner, window.low, window.high - size)),
+                glm::round(glm::clamp(corner, window.low, window.high - size)) + size};
+  };
+  const glm::vec2 middle = target.centre();
+  if (target.height() > 2 * size.y && target.width() > size.x) {
+    const Rect rect = within({target.low.x + editor.look.px(16), target.high.y - size.y - editor.look.px(60)});
+    return {rect, rect.low + glm::vec2(size.x * 0.8f, -gap), rect.low + glm::vec2(size.x * 0.8f, 0)};
+  }
+  if (target.high.y + gap + size.y < window.high.y && target.height() < editor.look.px(60) &&
+      target.high.x < window.high.x - editor.look.px(300)) {
+    const Rect rect = within({middle.x - editor.look.px(60), target.high.y + gap});
+    return {rect,
+            {middle.x, target.high.y + editor.look.px(2)},
+            {std::clamp(middle.x, rect.low.x + gap, rect.high.x - gap), rect.low.y}};
+  }
+  const bool right = target.high.x + gap + size.x < window.high.x;
+  const Rect rect = within({right ? target.high.x + gap : target.low.x - gap - size.x, middle.y - editor.look.px(40)});
+  const float y = std::clamp(middle.y, rect.low.y + gap, rect.high.y - gap);
+  return {rect,
+          {right ? target.high.x + editor.look.px(2) : target.low.x - editor.look.px(2), middle.y},
+          {right ? rect.low.x : rect.high.x, y}};
+}
+
+}  // namespace
+
+void draw_tour(Editor& editor) {
+  if (!editor.tour.shown || editor.dialog || !editor.messages.errors.empty() || editor.start_screen ||
+      !editor.document().volume)
+    return;
+  const Look& look = editor.look;
+  const TourStep& step = tour_steps()[editor.tour.step];
+  ImFont* font = look.fonts.regular;
+  const float wrap = look.px(kWidth - 2 * kPadding), padding = look.px(kPadding);
+  const float words = height_of_wrapped(font, step.text, wrap);
+  const glm::vec2 size{look.px(kWidth), look.px(14 + 24 + 8 + 26 + 14) + words};
+  const Widget* target = editor.widgets.find(step.widget);
+  const Place place = place_of(editor, target ? target->rect : editor.layout.views, size);
+
+  begin_region(editor, Region::Toast, "tour", place.rect, 0);
+  ImDrawList& canvas = *ImGui::GetForegroundDrawList();
+  fill(place.rect, look.theme.panel, look.px(6));
+  outline(place.rect, look.theme.accent, look.px(6), 2 * look.line());
+  if (target) {
+    const glm::vec2 along = place.tip - place.base,
+                    side = glm::length(along) > 0 ? glm::normalize(glm::vec2(-along.y, along.x)) * look.px(8)
+                                                  : glm::vec2(0);
+    canvas.AddTriangleFilled(im(place.tip), im(place.base + side), im(place.base - side), look.theme.accent);
+  }
+  const float left = place.rect.low.x + padding, right = place.rect.high.x - padding;
+  float y = place.rect.low.y + look.px(12);
+  put_text(editor, look.fonts.semibold, look.theme.text, Rect{{left, y}, {right, y + look.px(20)}}, step.title);
+  if (const auto chord = editor.keymap.chord_of(step.operator_id)) {
+    const auto caps = key_caps(*chord);
+    put_key_caps(editor, right - width_of_key_caps(editor, caps), y + look.px(10), caps);
+  }
+  y += look.px(26);
+  put_wrapped(editor, font, look.theme.text2, {left, y}, wrap, step.text);
+
+  const float low = place.rect.high.y - look.px(12 + 26), high = low + look.px(26);
+  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, low}, {left + look.px(80), high}},
+           std::to_string(editor.tour.step + 1) + " of " + std::to_string(tour_steps().size()));
+  const float skip = look.px(80), end = look.px(76);
+  if (button(editor, "Skip step", {{right - skip, low}, {right, high}}, {"", "Skip step"}))
+    go_to_step(editor, editor.tour.step + 1);
+  if (button(editor, "End tour", {{right - skip - look.px(8) - end, low}, {right - skip - look.px(8), high}},
+             {"", "End tour", ButtonStyle::Flat}))
+    end_tour(editor);
+  end_region(editor);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/screen/workflow_steps.h"
+
+#include "editor/context/keep_preferences.h"
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/resample/resample_job.h"
+#include "editor/resample/results.h"
+#include "editor/seams/seam_view.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+// The job at work for that step: "Heat diffusion, weights"; "" for none.
+std::string at_work(const Editor& editor, StepOfWork step) {
+  for (const JobStatus& job : editor.jobs.statuses()) {
+    const auto known = editor.step_of_job.find(job.id);
+    if (job.active() && known != editor.step_of_job.end() && known->second == step)
+      return job.label + ", " + (job.stage.empty() ? "waiting" : job.stage);
+  }
+  return "";
+}
+
+Step prepare_step(const Editor& editor) {
+  Step step{"Prepare", StepState::Later, "No volume is open", "file.open", "Open...", {}};
+  const Document& document = editor.document();
+  if (!document.volume) return step;
+  step.state = StepState::Done;
+  step.line = size_text(document.volume->grid.size) + ", " +
+              std::to_string(document.tissues ? document.tissues->tissues.size() : 0) + " tissues";
+  step.operator_id = "prepare.statistics";
+  step.button = "Statistics";
+  step.more = {"prepare.regrid", "prepare.crop",  "prepare.crop_to_clip_box", "prepare.pad", "prepare.orient",
+               "prepare.merge",  "prepare.specks"};
+  return step;
+}
+
+Step rig_step(const Editor& editor) {
+  Step step{"Rig",          StepState::Later, "No skeleton yet",
+            "rig.auto_fit", "Auto-fit",       {"rig.auto_fit", "rig.templates", "file.import_rig"}};
+  if (!editor.document().armature) return step;
+  step.state = StepState::Done;
+  const std::size_t bones = editor.document().armature->bones.size();
+  step.line = std::to_string(bones) + (bones == 1 ? " bone" : " bones");
+  return step;
+}
+
+Step skin_step(const Editor& editor) {
+  Step step{"Skin",      StepState::Later, "No weights yet",
+            "skin.heat", "Compute",        {"skin.heat", "skin.geodesic", "skin.rigid", "skin.drop_weights"}};
+  const Document& document = editor.document();
+  if (!document.weights) return step;
+  step.state = StepState::Done;
+  step.line = grouped(document.weights->size()) + " voxels";
+  if (document.armature && document.weights->bones().size() != document.armature->bones.size()) {
+    step.state = StepState::Warning;
+    step.line = "The weights belong to another rig";
+  } else if (const std::string why = why_weights_are_old(editor); !why.empty()) {
+    step.state = StepState::Warning;
+    step.line = why;
+  }
+  return step;
+}
+
+Step pose_step(const Editor& editor) {
+  const Document& document = editor.document();
+  Step step{"Pose",      StepState::Later, "At rest",
+            "pose.flex", "Flex...",        {"pose.flex", "file.import_pose", "pose.clear"}};
+  if (!document.armature || !document.pose || *document.pose == rest_pose(*document.armature)) return step;
+  step.state = StepState::Done;
+  step.line = name_of_pose(*document.armature, *document.pose);
+  return step;
+}
+
+Step resample_step(const Editor& editor) {
+  Step step{"Resample",          StepState::Later,
+            "Not resampled yet", "resample.run",
+            "Resample",          {"resample.mix", "resample.lbs", "resample.dqs", "resample.fem", "result.toggle"}};
+  const Document& document = editor.document();
+  // The newest that still holds; where none does, the newest.
+  for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
+    const auto& result = *at;
+    if (!is_of_this_pose(document, *result)) continue;
+    const std::string reason = stale_reason(document, *result);
+    if (!reason.empty() && step.state == StepState::Warning) continue;
+    step.state = reason.empty() ? StepState::Done : StepState::Warning;
+    step.line = reason.empty() ? result->name : "Stale: " + reason;
+    if (reason.empty()) break;
+  }
+  return step;
+}
+
+constexpr float kRow = 40, kMore = 26;
+
+struct Sign {
+  const char* icon;
+  Colour colour;
+};
+Sign sign_of(const Theme& theme, StepState state) {
+  switch (state) {
+    case StepState::Done: return {icon::kOk, theme.ok};
+    case StepState::Next: return {icon::kNext, theme.accent_text};
+    case StepState::Working: return {icon::kRunning, theme.accent_text};
+    case StepState::Warning: return {icon::kWarning, theme.warn};
+    case StepState::Later: break;
+  }
+  return {icon::kWaiting, theme.text3};
+}
+
+void draw_step(Editor& editor, Column& column, const Step& step, int number) {
+  const Look& look = editor.look;
+  const Rect row = column.row(kRow);
+  const PathScope path(editor, step.title);
+  const Sign sign = sign_of(look.theme, step.state);
+  put_icon(look.fonts.regular, sign.colour,
+           Rect{{row.low.x + look.px(8), row.low.y}, {row.low.x + look.px(28), row.high.y}}, sign.icon);
+
+  const Operator* op = find_operator(editor, step.operator_id);
+  const bool next = step.state == StepState::Next;
+  const float width = op && !step.button.empty() && step.state != StepState::Working ? look.px(88) : 0;
+  const Rect place{{row.high.x - look.px(10) - width, row.low.y + look.px(7)},
+                   {row.high.x - look.px(10), row.high.y - look.px(7)}};
+  const float left = row.low.x + look.px(34), right = width > 0 ? place.low.x - look.px(8) : row.high.x - look.px(10),
+              middle = row.centre().y;
+  put_text(editor, next ? look.fonts.semibold : look.fonts.regular,
+           step.state == StepState::Later ? look.theme.text2 : look.theme.text,
+           Rect{{left, middle - look.px(18)}, {right, middle}}, std::to_string(number) + "  " + step.title);
+  put_text(editor, look.fonts.small, step.state == StepState::Warning ? look.theme.warn : look.theme.text2,
+           Rect{{left, middle}, {right, middle + look.px(16)}}, step.line);
+  if (width <= 0) return;
+  const bool enabled = why_not(editor, *op).empty();
+  if (button(editor, step.button, place,
+             {"", step.button, next && enabled ? ButtonStyle::Primary : ButtonStyle::Plain, enabled}))
+    run(editor, *op);
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);
+}
+
+// The other operators of a step, as small buttons in as many rows as they need.
+void draw_more(Editor& editor, Column& column, const Step& step) {
+  const Look& look = editor.look;
+  const PathScope path(editor, step.title + " more");
+  Rect row = column.row(kMore);
+  float x = row.low.x + look.px(34);
+  for (const std::string& id : step.more) {
+    const Operator* op = find_operator(editor, id);
+    if (!op) continue;
+    const bool on = op->checked && op->checked(editor);
+    const float width = text_size(look.fonts.regular, op->label).x + look.px(14);
+    if (x + width > row.high.x - look.px(10)) {
+      row = column.row(kMore);
+      x = row.low.x + look.px(34);
+    }
+    const Rect place{{x, row.low.y + look.px(1)}, {x + width, row.high.y - look.px(1)}};
+    const bool enabled = why_not(editor, *op).empty();
+    if (button(editor, id, place, {"", op->label, on ? ButtonStyle::Soft : ButtonStyle::Plain, enabled}))
+      run(editor, *op);
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);
+    x += width + look.px(4);
+  }
+  column.space(6);
+}
+
+}  // namespace
+
+std::vector<Step> steps(const Editor& editor) {
+  std::vector<Step> all = {prepare_step(editor), rig_step(editor), skin_step(editor), pose_step(editor),
+                           resample_step(editor)};
+  bool found = false;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (const std::string working = at_work(editor, static_cast<StepOfWork>(i)); !working.empty()) {
+      all[i].state = StepState::Working;
+      all[i].line = working;
+      found = true;
+    }
+    if (found || all[i].state == StepState::Done) continue;
+    if (all[i].state == StepState::Later) all[i].state = StepState::Next;
+    found = true;
+  }
+  return all;
+}
+
+void draw_steps(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const bool open = column.begin_section("Steps");
+  const Rect head = column.head();
+  const bool advanced = editor.preferences.advanced_steps;
+  const Rect place{{head.high.x - look.px(88), head.low.y + look.px(4)},
+                   {head.high.x - look.px(10), head.high.y - look.px(3)}};
+  if (button(editor, "Advanced", place, {"", "Advanced", advanced ? ButtonStyle::Soft : ButtonStyle::Flat})) {
+    editor.preferences.advanced_steps = !advanced;
+    keep_preferences(editor);
+  }
+  if (ImGui::IsItemHovered())
+    tooltip(editor, place, advanced ? "Basic" : "Advanced",
+            advanced ? "The shortest way: one button a step." : "Offers every tool of each step.");
+  if (open) {
+    int number = 1;
+    for (const Step& step : steps(editor)) {
+      draw_step(editor, column, step, number++);
+      if (editor.preferences.advanced_steps && !step.more.empty()) draw_more(editor, column, step);
+    }
+    column.space(4);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

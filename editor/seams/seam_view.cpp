@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/seams/seam_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/context/background_task.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
+#include "editor/shown/compare_wipe.h"
+#include "editor/ui/draw.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr Colour kSeam = 0xFF4BFFD6, kUnder = 0x8C000000;  // D6FF4B, which no tissue has; black at 55 %
+constexpr float kSheet = 0.22f;                            // its cover
+constexpr std::size_t kMostRectangles = 15'000;            // in 3D; of more the rims alone
+
+const SeamSheet& drawn_sheet(Editor& editor, const std::shared_ptr<const Seams>& seams, std::int64_t strokes) {
+  auto& drawn = editor.seams->drawn;
+  if (drawn.of != seams || drawn.strokes != strokes)
+    drawn = {seams, strokes, sheet_of(*seams, editor.document().volume->grid)};
+  return drawn.sheet;
+}
+
+void draw_line(const Look& look, const glm::dvec2& a, const glm::dvec2& b, float width) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  canvas.AddLine(im(glm::vec2(a)), im(glm::vec2(b)), kUnder, 2 * width * look.scale);
+  canvas.AddLine(im(glm::vec2(a)), im(glm::vec2(b)), kSeam, width * look.scale);
+}
+
+void draw_in_body(const Look& look, const SeenFrom& seen, const SeamSheet& sheet) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  for (std::size_t i = 0; i < sheet.rectangles.size() && sheet.rectangles.size() <= kMostRectangles; ++i) {
+    std::array<ImVec2, 4> corners;
+    int in_front = 0;
+    for (const glm::dvec3& corner : sheet.rectangles[i])
+      if (const auto pixel = seen.pixel_of(corner))
+        corners[static_cast<std::size_t>(in_front++)] = im(glm::vec2(*pixel));
+    if (in_front == 4) canvas.AddQuadFilled(corners[0], corners[1], corners[2], corners[3], with_alpha(kSeam, kSheet));
+  }
+  for (const auto& rim : sheet.rims) {
+    const auto from = seen.pixel_of(rim[0]), to = seen.pixel_of(rim[1]);
+    if (from && to) draw_line(look, *from, *to, 1.2f);
+  }
+}
+
+// Where the slice's plane goes through a rectangle.
+std::optional<std::array<glm::dvec3, 2>> crossing(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& point,
+                                                  const glm::dvec3& normal) {
+  std::array<glm::dvec3, 2> ends;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < 4 && found < 2; ++i) {
+    const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 4];
+    const double above = glm::dot(a - point, normal), beyond = glm::dot(b - point, normal);
+    if ((above > 0) != (beyond > 0)) ends[found++] = glm::mix(a, b, above / (above - beyond));
+  }
+  return found == 2 ? std::optional(ends) : std::nullopt;
+}
+
+void draw_in_slice(const Editor& editor, const SeenFrom& seen, const SeamSheet& sheet) {
+  for (const auto& rectangle : sheet.rectangles)
+    if (const auto line = crossing(rectangle, editor.views->cross_hair, seen.towards_eye)) {
+      const auto from = seen.pixel_of((*line)[0]), to = seen.pixel_of((*line)[1]);
+      if (from && to) draw_line(editor.look, *from, *to, 1.8f);
+    }
+}
+
+}  // namespace
+
+std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor) {
+  if (editor.seams->running) return editor.seams->running->seams;
+  const Document& document = editor.document();
+  if (!document.volume || !document.tissues) return nullptr;
+  return body_seams().known(seam_source(document));
+}
+
+std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor) {
+  const std::shared_ptr<const TissueVoxels>& whole = tissue_voxels(*editor.views, editor.document());
+  const auto seams = shown_seams(editor);
+  if (!seams || !*seams || (*seams)->empty() || (*seams)->grid_size() != whole->grid_size()) return whole;
+  auto parted = std::make_shared<TissueVoxels>(*whole);
+  parted->set_seams(*seams);
+  return parted;
+}
+
+void note_weights_source(Editor& editor) {
+  auto& from = editor.seams->weights_from;
+  if (!from || from->volume != editor.document().volume) from = seam_source(editor.document());
+}
+
+std::string why_weights_are_old(const Editor& editor) {
+  const auto& from = editor.seams->weights_from;
+  const Document& document = editor.document();
+  if (!document.weights || !from || from->volume != document.volume) return "";
+  if (from->kept != document.seams) return "Older than the seams";
+  return from->bone_map != document.bone_map ? "Older than the bone map" : "";
+}
+
+void draw_seams(Editor& editor, const ViewPlace& view) {
+  const render::Scene& scene = scene_of(editor, view);
+  if (!editor.seams->shown || editor.workspace != Workspace::Skin || scene.pose || !scene.volume ||
+      scene.volume->grid.size != editor.document().volume->grid.size)
+    return;
+  const auto seams = shown_seams(editor);
+  if (!seams || !*seams || (*seams)->empty()) return;
+  const SeamSheet& sheet = drawn_sheet(editor, *seams, editor.seams->running ? editor.seams->running->faces : -1);
+  const SeenFrom seen(editor, view);
+  if (view.id == ViewId::Body) draw_in_body(editor.look, seen, sheet);
+  else draw_in_slice(editor, seen, sheet);
+}
+
+const std::vector<SeamPair>* counted_pairs(Editor& editor) {
+  SeamView& view = *editor.seams;
+  const auto shown = shown_seams(editor);
+  if (view.running || !shown || !*shown) return nullptr;
+  const SeamSource source = seam_source(editor.document());
+  if (view.counted.seams == *shown && view.counted.source == source) return &view.counted.pairs;
+  if ((view.counting && editor.tasks.contains(*view.counting)) || !source.armature) return nullptr;
+  view.counting = start_task(
+      editor, "",
+      [source, seams = *shown](Progress& progress) -> Finish {
+        const TissueVoxels tissue(*source.volume);
+        const BoneParts parts =
+            split_bones(*source.volume, tissue, *source.tissues, *source.armature, progress, usable_bone_map(source));
+        auto pairs = seam_pairs(*seams, *source.volume, tissue, *source.armature, parts, progress);
+        return [counted = SeamView::Counted{source, seams, std::move(pairs)}](Editor& e) {
+          e.seams->counted = counted;
+          e.touch();
+        };
+      },
+      [source, seams = *shown](Editor& e, const std::string& error) {  // not tried again for the same ones
+        e.seams->counted = {source, seams, {}};
+        e.messages.show_error(error, "Counting seams");
+      });
+  return nullptr;
+}
+
+std::string why_no_seams(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.volume || !document.tissues) return "Open a volume first";
+  if (!document.armature) return "Import a rig first: its names say what the limbs are";
+  if (!body_seams().has_limbs(document.armature)) return "The names of the rig's bones mean no arms, legs or fingers";
+  return editor.seams->searching && editor.tasks.contains(*editor.seams->searching) ? "They are being looked for" : "";
+}
+
+void find_seams_again(Editor& editor) {
+  SeamSource source = seam_source(editor.document());
+  const bool was_edited = source.kept != nullptr;
+  source.kept = nullptr;
+  editor.seams->searching = start_task(editor, "Find seams", [source, was_edited](Progress& progress) -> Finish {
+    const auto found = body_seams().of(source, progress);
+    return [source, was_edited, faces = found ? found->size() : 0](Editor& e) {
+      if (was_edited && e.document().volume == source.volume && e.document().seams) {
+        note_weights_source(e);
+        Document next = e.document();
+        next.seams.reset();
+        e.history.commit("Find seams", std::move(next));
+      }
+      e.messages.ok("Find seams",
+                    faces > 0 ? grouped(faces) + " voxel faces between limbs that touch" : "No limbs touch");
+      e.touch();
+    };
+  });
+  editor.touch();
+}
+
+void clear_seams(Editor& editor) {
+  note_weights_source(editor);
+  Document next = editor.document();
+  next.seams = std::make_shared<const Seams>(next.volume->grid.size);
+  editor.history.commit("Remove seams", std::move(next));
+}
+
+}  // namespace limber::editor

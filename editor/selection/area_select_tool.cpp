@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/selection/area_select_tool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/pose/pose_edits.h"
+#include "editor/rig/rig_edits.h"
+#include "editor/ui/draw.h"
+#include "editor/viewport/gizmo_draw.h"
+#include "editor/viewport/transform_tool.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kSamples = 16;                            // parts of a bone that are looked at
+constexpr float kRadius = 24, kLeast = 4, kMost = 400;  // of the circle, pixels at scale 1
+constexpr float kGrowth = 1.15f;                        // for a step of the wheel
+
+// A bone as it is seen: points from its head to its tail.
+struct SeenBone {
+  int bone;
+  std::vector<glm::dvec2> points;
+};
+
+std::vector<SeenBone> bones_seen(const Editor& editor, const SeenFrom& view) {
+  const bool posed = editor.workspace == Workspace::Pose;
+  const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
+  const auto moved = posed_from_rest(*rig, posed ? seen_pose(editor) : rest_pose(*rig));
+  std::vector<SeenBone> seen;
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
+    SeenBone one{bone, {}};
+    for (int i = 0; i <= kSamples; ++i) {
+      const glm::dvec3 point =
+          moved[bone] * glm::mix(rig->bones[bone].head, rig->bones[bone].tail, double(i) / kSamples);
+      const auto pixel = view.shows(point) ? view.pixel_of(point) : std::nullopt;
+      if (pixel) one.points.push_back(*pixel);
+    }
+    seen.push_back(std::move(one));
+  }
+  return seen;
+}
+
+class AreaSelection : public Modal {
+ public:
+  explicit AreaSelection(Editor& editor)
+      : view_(editor, place_of_tool(editor)),
+        before_(editor.selection),
+        pointer_(editor.input.pointer),
+        bones_(bones_seen(editor, view_)) {}
+
+  bool moved(Editor& editor, const glm::vec2&) override {
+    pointer_ = editor.input.pointer;
+    editor.touch();
+    return true;
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    if (event.key == Key::Escape) cancel(editor);
+    return event.key != Key::Escape && !(ends_by_key() && (event.key == Key::Return || event.key == Key::NumEnter));
+  }
+  void cancel(Editor& editor) override { editor.selection = before_; }
+
+ protected:
+  virtual bool ends_by_key() const { return false; }
+
+  // Bones with a point in the area join the chosen ones, or leave them with Shift. The active one stays while it is
+  // chosen.
+  template <class Inside>
+  void take(Editor& editor, const Inside& inside) {
+    Selection& selection = editor.selection;
+    for (const SeenBone& bone : bones_) {
+      if (std::none_of(bone.points.begin(), bone.points.end(), inside)) continue;
+      if (editor.input.down(Key::Shift)) selection.bones.erase(bone.bone);
+      else selection.bones.insert(bone.bone);
+    }
+    if (!selection.bone || !selection.bones.contains(*selection.bone))
+      selection.bone = selection.bones.empty() ? std::nullopt : std::optional(*selection.bones.begin());
+    selection.tissues.clear();
+    selection.tissue.reset();
+    editor.handling->part = Handling::Part::Whole;
+  }
+
+  SeenFrom view_;
+  const Selection before_;
+  glm::vec2 pointer_;
+
+ private:
+  std::vector<SeenBone> bones_;
+};
+
+class BoxSelection final : public AreaSelection {
+ public:
+  using AreaSelection::AreaSelection;
+
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (event.button == MouseButton::Right && event.down) return false;
+    if (event.button != MouseButton::Left) return true;
+    if (event.down) {
+      from_ = editor.input.pointer;
+      return true;
+    }
+    if (!from_) return true;
+    const glm::dvec2 low = glm::min(*from_, pointer_), high = glm::max(*from_, pointer_);
+    take(editor, [&](const glm::dvec2& p) { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; });
+    return false;
+  }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const Theme& theme = editor.look.theme;
+    if (!from_) {
+      const Colour line = with_alpha(theme.view_text, 0.5f);
+      fill({{place.rect.low.x, pointer_.y}, {place.rect.high.x, pointer_.y + editor.look.line()}}, line);
+      fill({{pointer_.x, place.rect.low.y}, {pointer_.x + editor.look.line(), place.rect.high.y}}, line);
+      return;
+    }
+    const Rect box{glm::min(*from_, pointer_), glm::max(*from_, pointer_)};
+    fill(box, with_alpha(theme.view_text, 0.08f));
+    outline(box, theme.view_text, 0, editor.look.line());
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"LMB"}, "Draw a box"}, {{"Shift"}, "Take out"}, {{"Esc"}, "Back"}};
+  }
+  std::string title() const override { return "Select in a box"; }
+
+ private:
+  std::optional<glm::vec2> from_;
+};
+
+class CircleSelection final : public AreaSelection {
+ public:
+  using AreaSelection::AreaSelection;
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    AreaSelection::moved(editor, pixels);
+    if (painting_) paint(editor);
+    return true;
+  }
+  bool wheel(Editor& editor, float steps) override {
+    radius_ = std::clamp(radius_ * std::pow(kGrowth, steps), kLeast, kMost);
+    editor.touch();
+    return true;
+  }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (event.button == MouseButton::Right && event.down) return false;
+    if (event.button != MouseButton::Left) return true;
+    painting_ = event.down;
+    if (painting_) paint(editor);
+    return true;
+  }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    const bool taking_out = editor.input.down(Key::Shift);
+    ImGui::GetWindowDrawList()->AddCircle(im(pointer_), radius_ * editor.look.scale,
+                                          taking_out ? kViewError : editor.look.theme.view_text, 64,
+                                          1.5f * editor.look.line());
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"LMB"}, "Paint"}, {{"Shift"}, "Take out"}, {{"Wheel"}, "Size"}, {{"Enter"}, "Done"}, {{"Esc"}, "Back"}};
+  }
+  std::string title() const override { return "Select with a circle"; }
+
+ private:
+  bool ends_by_key() const override { return true; }
+  void paint(Editor& editor) {
+    const double reach = radius_ * editor.look.scale;
+    take(editor, [&](const glm::dvec2& p) { return glm::distance(p, glm::dvec2(pointer_)) <= reach; });
+  }
+
+  float radius_ = kRadius;
+  bool painting_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Modal> begin_box_selection(Editor& editor) { return std::make_unique<BoxSelection>(editor); }
+
+std::unique_ptr<Modal> begin_circle_selection(Editor& editor) { return std::make_unique<CircleSelection>(editor); }
+
+}  // namespace limber::editor

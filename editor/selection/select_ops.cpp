@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "core/rig/mirror.h"
+#include "editor/context/operator_polls.h"
+#include "editor/context/pointer_context.h"
+#include "editor/context/transform_settings.h"
+#include "editor/selection/area_select_tool.h"
+#include "editor/selection/transform_gizmo.h"
+#include "editor/shown/compare_wipe.h"
+#include "editor/shown/shown_result.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/tissue_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+void pick(Editor& editor) {
+  if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
+  editor.handling->part = Handling::Part::Whole;
+  if (pick_bone_part(editor)) return;
+  if (const auto bone = bone_at_pointer(editor)) return choose_bone(editor, *bone);
+  const Hover& hover = editor.views->hover;
+  if (hover.inside) select_tissue(editor, hover.label, false);
+  else editor.selection = {};
+}
+
+void extend(Editor& editor) {
+  editor.handling->part = Handling::Part::Whole;
+  if (const auto bone = bone_at_pointer(editor)) {
+    // The active one pressed again is given up.
+    if (editor.selection.bone == bone) {
+      editor.selection.bones.erase(*bone);
+      editor.selection.bone =
+          editor.selection.bones.empty() ? std::nullopt : std::optional(*editor.selection.bones.begin());
+    } else {
+      editor.selection.bone = bone;
+      editor.selection.bones.insert(*bone);
+    }
+    return;
+  }
+  if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
+}
+
+// Every visible tissue along the line of sight, nearest first, with its depth before the eye. In a slice only the one
+// under the pointer, at none.
+std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  std::vector<std::pair<double, Label>> found;
+  const ViewPlace* under = hovered_view(editor);
+  if (!hover.inside || !under) return found;
+  const render::Scene& scene = scene_at_pointer(editor, *under);
+  const LabelVolume& volume = *scene.volume;
+  const auto add = [&](double depth, Label label) {
+    const bool known =
+        std::any_of(found.begin(), found.end(), [&](const auto& other) { return other.second == label; });
+    if (label != 0 && look_of(editor.document(), label).visible && !known) found.push_back({depth, label});
+  };
+  if (hover.view != ViewId::Body) {
+    add(0, hover.label);
+    return found;
+  }
+  const render::Camera& camera = editor.views->body.camera;
+  const auto depth_of = [&](const glm::dvec3& point) {
+    return -(render::view_from_world(camera) * glm::dvec4(point, 1)).z;
+  };
+  add(depth_of(hover.point), hover.label);
+  const render::Ray ray =
+      render::ray_through(camera, editor.input.pointer - under->rect.low, glm::ivec2(under->rect.size()));
+  const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z}) / 2;
+  const double reach = glm::length(volume.grid.spacing * glm::dvec3(volume.grid.size));
+  for (double t = 0; t < reach; t += step) {
+    const glm::dvec3 point = hover.point + ray.direction * t;
+    if (const auto voxel = voxel_shown_at(scene, point)) add(depth_of(point), volume.at_or_air(*voxel));
+  }
+  return found;
+}
+
+// What is meant by a click is chosen at once; a list offers all that lies there, nearest first.
+void pick_list(Editor& editor) {
+  pick(editor);
+  std::vector<std::pair<double, Pickable>> below;
+  for (const auto& [depth, label] : tissues_below(editor)) below.push_back({depth, {std::nullopt, label}});
+  for (const auto& [depth, bone] : bones_below(editor)) below.push_back({depth, {bone}});
+  std::stable_sort(below.begin(), below.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  editor.pick_list.clear();
+  for (const auto& [depth, thing] : below) editor.pick_list.push_back(thing);
+  editor.open_pick_list = editor.pick_list.size() > 1;
+}
+
+void add_bone(Editor& editor, int bone) {
+  editor.selection.bone = bone;
+  editor.selection.bones.insert(bone);
+}
+
+void go_to_parent(Editor& editor, bool extend) {
+  const int parent = editor.document().armature->bones[*editor.selection.bone].parent;
+  if (parent >= 0) extend ? add_bone(editor, parent) : choose_bone(editor, parent);
+}
+
+void go_to_child(Editor& editor, bool extend) {
+  const std::vector<Bone>& bones = editor.document().armature->bones;
+  for (int b = 0; b < std::ssize(bones); ++b)
+    if (bones[b].parent == *editor.selection.bone) return extend ? add_bone(editor, b) : choose_bone(editor, b);
+}
+
+// The bone and all that hangs on it.
+void choose_chain(Editor& editor) {
+  const std::vector<Bone>& bones = editor.document().armature->bones;
+  for (int b = *editor.selection.bone; b < std::ssize(bones); ++b)
+    if (bones[b].parent >= 0 && editor.selection.bones.contains(bones[b].parent)) editor.selection.bones.insert(b);
+}
+
+void choose_mirrored(Editor& editor) {
+  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+  std::set<int> bones;
+  for (int bone : editor.selection.bones) bones.insert(pairs[bone]);
+  editor.selection.bones = bones;
+  editor.selection.bone = pairs[*editor.selection.bone];
+}
+
+void choose_all(Editor& editor) {
+  const Document& document = editor.document();
+  if (document.armature && (editor.workspace == Workspace::Pose ||
+                            (editor.workspace == Workspace::Rig && editor.selection.tissues.empty()))) {
+    for (int b = 0; b < std::ssize(document.armature->bones); ++b) editor.selection.bones.insert(b);
+    if (!editor.selection.bone) editor.selection.bone = 0;
+    return;
+  }
+  for (const Tissue& tissue : document.tissues->tissues) editor.selection.tissues.insert(tissue.label);
+}
+
+std::string needs_bones(const Editor& editor) {
+  if (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose)
+    return "Works in the Rig and Pose workspaces";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+
+bool chooses_bones(const Editor& editor) { return needs_bones(editor).empty() && editor.selection.tissues.empty(); }
+
+void invert(Editor& editor) {
+  Selection& selection = editor.selection;
+  if (chooses_bones(editor)) {
+    std::set<int> others;
+    for (int b = 0; b < std::ssize(editor.document().armature->bones); ++b)
+      if (!selection.bones.contains(b)) others.insert(b);
+    selection.bone = others.empty() ? std::nullopt : std::optional(*others.begin());
+    selection.bones = std::move(others);
+    return;
+  }
+  std::set<Label> others;
+  for (const Tissue& tissue : editor.document().tissues->tissues)
+    if (!selection.tissues.contains(tissue.label)) others.insert(tissue.label);
+  selection.tissue = others.empty() ? std::nullopt : std::optional(*others.begin());
+  selection.tissues = std::move(others);
+}
+
+// Adds the bones that `alike` finds like one of the chosen ones.
+void choose_alike(Editor& editor, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
+  const Armature& rig = *editor.document().armature;
+  const std::set<int> chosen = editor.selection.bones;
+  for (int other = 0; other < std::ssize(rig.bones); ++other)
+    if (std::any_of(chosen.begin(), chosen.end(), [&](int bone) { return alike(rig, bone, other); }))
+      editor.selection.bones.insert(other);
+}
+
+Operator alike_operator(const char* id, const char* label, const char* sentence,
+                        bool (*alike)(const Armature&, int chosen, int other)) {
+  return {id, label, "", "Select", sentence, [alike](Editor& e) { choose_alike(e, alike); }, needs_bone};
+}
+
+double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
+
+Operator tool_operator(const char* id, const char* label, const char* icon, const char* sentence, Tool tool) {
+  return {id,       label,
+          icon,     "Tool",
+          sentence, [tool](Editor& e) { e.tool = tool; },
+          nullptr,  [tool](const Editor& e) { return e.tool == tool; }};
+}
+
+}  // namespace
+
+std::vector<Operator> select_operators() {
+  return {
+      {"select.pick", "Select", icon::kSelect, "Select", "Chooses the bone or tissue under the pointer.", pick,
+       needs_volume},
+      {"select.extend", "Extend selection", "", "Select",
+       "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
+      {"select.pick_list", "Select from list", icon::kPick, "Select",
+       "Chooses what is under the pointer and lists the bones and tissues behind it.", pick_list, needs_volume},
+      {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
+      {"select.all", "Select all", "", "Select",
+       "Chooses every bone in the Rig and Pose workspaces, every tissue elsewhere or where one is chosen.", choose_all,
+       needs_volume},
+      {"select.invert", "Invert selection", "", "Select",
+       "Chooses the bones, or tissues, that are not chosen, in place of those that are.", invert, needs_volume},
+      {"select.box", "Box select", "", "Select", "Adds the bones in a box that is drawn; with Shift takes them out.",
+       [](Editor& e) { e.modal = begin_box_selection(e); }, needs_bones},
+      {"select.circle", "Circle select", "", "Select",
+       "Adds the bones that a circle is painted over; with Shift takes them out.",
+       [](Editor& e) { e.modal = begin_circle_selection(e); }, needs_bones},
+      {"select.similar", "Select similar", "", "Select",
+       "Lists in what other bones may be like the chosen ones, at the pointer.",
+       [](Editor& e) { e.open_popup = "Similar"; }, needs_bone},
+      alike_operator("select.siblings", "Siblings", "Adds the bones that hang where the chosen ones hang.",
+                     [](const Armature& rig, int chosen, int other) {
+                       return rig.bones[chosen].parent == rig.bones[other].parent;
+                     }),
+      alike_operator("select.children", "Children", "Adds the bones that hang on the chosen ones.",
+                     [](const Armature& rig, int chosen, int other) { return rig.bones[other].parent == chosen; }),
+      alike_operator("select.same_joint", "Same joint",
+                     "Adds the bones whose joints are of the chosen ones' kind: hinge, ball, fixed or free.",
+                     [](const Armature& rig, int chosen, int other) {
+                       return rig.bones[chosen].limits.type == rig.bones[other].limits.type;
+                     }),
+      alike_operator("select.same_length", "Same length", "Adds the bones as long as the chosen ones, to a tenth.",
+                     [](const Armature& rig, int chosen, int other) {
+                       return std::abs(length_of(rig.bones[chosen]) - length_of(rig.bones[other])) <=
+                              0.1 * length_of(rig.bones[chosen]);
+                     }),
+      {"select.parent", "Select parent", "", "Select", "Chooses the bone that the active one hangs on.",
+       [](Editor& e) { go_to_parent(e, false); }, needs_bone},
+      {"select.child", "Select child", "", "Select", "Chooses the first bone that hangs on the active one.",
+       [](Editor& e) { go_to_child(e, false); }, needs_bone},
+      {"select.extend_parent", "Extend to parent", "", "Select", "Adds the bone that the active one hangs on.",
+       [](Editor& e) { go_to_parent(e, true); }, needs_bone},
+      {"select.extend_child", "Extend to child", "", "Select", "Adds the first bone that hangs on the active one.",
+       [](Editor& e) { go_to_child(e, true); }, needs_bone},
+      {"select.chain", "Select chain", "", "Select", "Adds everything that hangs on the chosen bones.", choose_chain,
+       needs_bone},
+      {"select.mirror", "Select mirrored", "", "Select", "Chooses the bones of the other side instead.",
+       choose_mirrored, needs_bone},
+      tool_operator("tool.select", "Select", icon::kSelect, "A click chooses the tissue under the pointer.",
+                    Tool::Select),
+      tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair,
+                    "A click moves the cross-hair, and the slices with it.", Tool::CrossHair),
+      tool_operator("tool.move", "Move tool", icon::kMove,
+                    "Arrows at the active bone's end move it, and its limb follows; at the root they move the body.",
+                    Tool::Move),
+      tool_operator("tool.rotate", "Rotate tool", icon::kRotate, "Rings at the active bone's joint turn it.",
+                    Tool::Rotate),
+      tool_operator("tool.scale", "Scale tool", icon::kScale,
+                    "Boxes at the active bone's head lengthen and shorten it.", Tool::Scale),
+      tool_operator("tool.extrude", "Extrude tool", icon::kExtrude, "A new bone grows from the joint that is dragged.",
+                    Tool::Extrude),
+      tool_operator("tool.reach", "Reach tool", icon::kReach, "Any joint is dragged, and its limb follows.",
+                    Tool::Reach),
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,512 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/selection/transform_gizmo.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/constants.hpp>
+
+#include "core/rig/anatomical_position.h"
+#include "core/rig/joint_limits.h"
+#include "editor/context/pointer_context.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/pose/pose_tools.h"
+#include "editor/rig/joint_gizmo.h"
+#include "editor/rig/rig_check.h"
+#include "editor/rig/rig_edits.h"
+#include "editor/rig/rig_transform_tool.h"
+#include "editor/selection/bone_name_overlay.h"
+#include "editor/shown/compare_wipe.h"
+#include "editor/ui/draw.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Pixels at scale 1.
+constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
+constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
+constexpr double kJointHit = 10;
+constexpr double kHidden = 0.0698,
+                 kEdgeOn = 0.1392;  // sines of 4 and 8 degrees: from where a ring fades, until where it is gone
+constexpr int kSteps = 96;
+
+double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, double& share) {
+  const glm::dvec2 along = b - a;
+  const double squared = glm::dot(along, along);
+  share = squared > 0 ? glm::clamp(glm::dot(p - a, along) / squared, 0.0, 1.0) : 0;
+  return glm::distance(p, a + share * along);
+}
+
+// How steeply a plane is seen: the sine of its angle with the line of sight.
+double steepness(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+  return std::abs(glm::dot(gizmo.axes[axis], view.direction_to_eye(gizmo.centre)));
+}
+float ring_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+  return static_cast<float>(glm::clamp((steepness(gizmo, view, axis) - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
+}
+// An arrow that points at the eye cannot be drawn along.
+float arrow_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+  const double s = steepness(gizmo, view, axis), across = std::sqrt(std::max(0.0, 1 - s * s));
+  return static_cast<float>(glm::clamp((across - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
+}
+
+// How near the eye the visible part of a ring is where the pixel touches it; nothing where it does not.
+std::optional<double> touched(const Ring& ring, const SeenFrom& view, const glm::dvec2& pixel, double reach) {
+  const glm::dvec3 to_eye = view.direction_to_eye(ring.centre);
+  const auto [begin, by] = ring.front(view);
+  double best = reach;
+  std::optional<double> nearness;
+  glm::dvec3 from = ring.at(begin);
+  auto from_pixel = view.pixel_of(from);
+  for (int i = 1; i <= kSteps; ++i) {
+    const glm::dvec3 to = ring.at(begin + by * i / kSteps);
+    const auto to_pixel = view.pixel_of(to);
+    double share = 0;
+    if (from_pixel && to_pixel)
+      if (const double distance = distance_to_segment(pixel, *from_pixel, *to_pixel, share); distance <= best) {
+        best = distance;
+        nearness = glm::dot(glm::mix(from, to, share) - ring.centre, to_eye);
+      }
+    from = to;
+    from_pixel = to_pixel;
+  }
+  return nearness;
+}
+
+std::optional<GizmoPart> rotating_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel,
+                                       const glm::dvec2& centre) {
+  std::optional<GizmoPart> found;
+  double nearest = -1e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (steepness(gizmo, view, axis) < kEdgeOn) continue;
+    const auto nearness =
+        touched(ring_of(view, scale, gizmo.centre, gizmo.axes[axis], kRing), view, pixel, kHit * scale);
+    if (nearness && *nearness > nearest) {
+      nearest = *nearness;
+      found = GizmoPart{GizmoPart::Kind::Ring, axis};
+    }
+  }
+  if (found) return found;
+  const double distance = glm::distance(pixel, centre) / scale;
+  if (std::abs(distance - kViewRing) <= kHit) return GizmoPart{GizmoPart::Kind::ViewRing};
+  if (distance <= kTrackball) return GizmoPart{GizmoPart::Kind::Trackball};
+  return std::nullopt;
+}
+
+glm::dvec3 middle_of_square(const Gizmo& gizmo, int axis, double unit) {
+  return gizmo.centre + (gizmo.axes[(axis + 1) % 3] + gizmo.axes[(axis + 2) % 3]) * (kSquareAt * unit);
+}
+
+std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel,
+                                     const glm::dvec2& centre) {
+  if (glm::distance(pixel, centre) <= (kCentre + kHit / 2) * scale) return GizmoPart{GizmoPart::Kind::Centre};
+  const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
+  const glm::dvec3 to_eye = view.direction_to_eye(gizmo.centre);
+  std::optional<GizmoPart> found;
+  double nearest = -1e300;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto begin = view.pixel_of(gizmo.centre + gizmo.axes[axis] * (kArrowBegin * unit)),
+               end = view.pixel_of(gizmo.centre + gizmo.axes[axis] * ((kArrowEnd + kCone) * unit));
+    double share;
+    if (begin && end && arrow_alpha(gizmo, view, axis) >= 1 &&
+        distance_to_segment(pixel, *begin, *end, share) <= kHit * scale)
+      if (const double nearness = glm::dot(gizmo.axes[axis], to_eye) * share; nearness > nearest) {
+        nearest = nearness;
+        found = GizmoPart{GizmoPart::Kind::Arrow, axis};
+      }
+  }
+  if (found || gizmo.tool == Tool::Scale) return found;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto middle = view.pixel_of(middle_of_square(gizmo, axis, unit));
+    if (middle && steepness(gizmo, view, axis) >= kEdgeOn && glm::distance(pixel, *middle) <= kSquare * scale * 0.8)
+      return GizmoPart{GizmoPart::Kind::Plane, axis};
+  }
+  return std::nullopt;
+}
+
+// The tail nearest to the pointer, else the bone under it.
+std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  const Armature& armature = *editor.document().armature;
+  const auto posed = posed_from_rest(armature, seen_pose(editor));
+  std::optional<int> found;
+  double nearest = kJointHit * editor.look.scale;
+  for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
+    if (const auto tail = view.pixel_of(posed[bone] * armature.bones[bone].tail);
+        tail && view.shows(posed[bone] * armature.bones[bone].tail) && glm::distance(*tail, pixel) <= nearest) {
+      nearest = glm::distance(*tail, pixel);
+      found = bone;
+    }
+  return found ? found : bone_at_pointer(editor);
+}
+
+bool press_joint(Editor& editor, const SeenFrom& view) {
+  const auto bone = joint_at(editor, view, glm::dvec2(editor.input.pointer));
+  if (!bone) return false;
+  choose_bone(editor, *bone);
+  begin_tool(editor, begin_dragging(editor, {.held = MouseButton::Left}));
+  return true;
+}
+
+void draw_rotating(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter,
+                   const std::optional<GizmoPart>& hovered) {
+  const Theme& theme = editor.look.theme;
+  const float scale = editor.look.scale;
+  const auto over = [&](GizmoPart::Kind kind, int axis = -1) { return hovered && *hovered == GizmoPart{kind, axis}; };
+  const auto centre = view.pixel_of(gizmo.centre);
+  if (centre && over(GizmoPart::Kind::Trackball))
+    ImGui::GetWindowDrawList()->AddCircleFilled({static_cast<float>(centre->x), static_cast<float>(centre->y)},
+                                                static_cast<float>(kTrackball) * scale, with_alpha(0xFFFFFFFF, 0.06f),
+                                                64);
+  const bool seen = over(GizmoPart::Kind::ViewRing);
+  painter.ring(ring_of(view, scale, gizmo.centre, view.towards_eye, kViewRing),
+               with_alpha(theme.view_text, seen ? 1 : 0.55f), seen ? 2.5f : 1.5f, GizmoPainter::Part::Whole);
+  // The one turned away most lies behind the others.
+  int order[] = {0, 1, 2};
+  std::sort(order, order + 3, [&](int a, int b) { return steepness(gizmo, view, a) > steepness(gizmo, view, b); });
+  for (const int axis : order) {
+    const bool on = over(GizmoPart::Kind::Ring, axis);
+    const float alpha = ring_alpha(gizmo, view, axis);
+    if (alpha > 0)
+      painter.ring(ring_of(view, scale, gizmo.centre, gizmo.axes[axis], kRing),
+                   with_alpha(theme.axis[axis], alpha * (on ? 1 : 0.8f)), on ? 3.5f : 2.5f, GizmoPainter::Part::Front);
+  }
+}
+
+void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter,
+                 const std::optional<GizmoPart>& hovered) {
+  const Theme& theme = editor.look.theme;
+  const float scale = editor.look.scale;
+  const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool on = hovered && *hovered == GizmoPart{GizmoPart::Kind::Arrow, axis};
+    if (const float alpha = arrow_alpha(gizmo, view, axis); alpha > 0)
+      painter.arrow(gizmo.centre, gizmo.axes[axis], with_alpha(theme.axis[axis], alpha * (on ? 1 : 0.85f)), kArrowBegin,
+                    kArrowEnd, on ? 3.5f : 2.5f, gizmo.tool == Tool::Scale);
+    if (gizmo.tool == Tool::Scale || steepness(gizmo, view, axis) < kEdgeOn) continue;
+    painter.square(
+        middle_of_square(gizmo, axis, unit), gizmo.axes[(axis + 1) % 3] * (kSquare / 2 * unit),
+        gizmo.axes[(axis + 2) % 3] * (kSquare / 2 * unit),
+        with_alpha(theme.axis[axis], hovered && *hovered == GizmoPart{GizmoPart::Kind::Plane, axis} ? 1 : 0.6f));
+  }
+  painter.circle(gizmo.centre,
+                 with_alpha(0xFFFFFFFF, hovered && *hovered == GizmoPart{GizmoPart::Kind::Centre} ? 1 : 0.85f), kCentre,
+                 1.6f);
+}
+
+struct BonePart {
+  int bone;
+  Handling::Part part;
+};
+
+// The joint nearest to the pointer, the active bone's before others'; else the bone under it.
+std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  const std::shared_ptr<const Armature> rig = shown_rig(editor);
+  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
+  std::optional<BonePart> found;
+  double nearest = kJointHit * editor.look.scale;
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
+    for (const bool tail : {false, true}) {
+      const glm::dvec3& place = place_of(*rig, {bone, tail});
+      const auto seen = view.shows(place) ? view.pixel_of(place) : std::nullopt;
+      // A tail before the heads that lie on it.
+      const double distance =
+          seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
+      if (distance > nearest) continue;
+      nearest = distance;
+      found = BonePart{bone, tail ? Handling::Part::Tail : Handling::Part::Head};
+    }
+  if (found || view.place.id != ViewId::Body) return found;
+  if (const auto bone =
+          body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low))))
+    return BonePart{*bone, Handling::Part::Whole};
+  return std::nullopt;
+}
+
+// Where the bones lie that slices show: posed in the Pose workspace.
+struct DrawnBone {
+  int bone;
+  glm::dvec3 head, tail;
+};
+
+std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
+  const bool posed = editor.workspace == Workspace::Pose;
+  const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
+  std::vector<DrawnBone> drawn;
+  if ((!posed && editor.workspace != Workspace::Rig) || !rig || !editor.views->bones) return drawn;
+  const std::vector<RigidTransform> moved =
+      posed ? posed_from_rest(*rig, seen_pose(editor)) : std::vector<RigidTransform>(rig->bones.size());
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
+    drawn.push_back({bone, moved[bone] * rig->bones[bone].head, moved[bone] * rig->bones[bone].tail});
+  return drawn;
+}
+
+// In slices as lines, fainter away from them; in the rig the chosen joint in every view.
+void draw_rig(Editor& editor, const SeenFrom& view) {
+  const GizmoPainter painter(editor, view);
+  const Theme& theme = editor.look.theme;
+  if (view.place.id != ViewId::Body)
+    for (const DrawnBone& bone : bones_in_slices(editor)) {
+      const bool chosen = editor.selection.bones.contains(bone.bone);
+      const float alpha = view.shows(bone.head) || view.shows(bone.tail) ? 0.9f : 0.25f;
+      const Colour colour = with_alpha(chosen ? theme.select : theme.view_text, alpha);
+      painter.line(bone.head, bone.tail, colour, 2);
+      for (const glm::dvec3& end : {bone.head, bone.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
+    }
+  const std::shared_ptr<const Armature> rig = shown_rig(editor);
+  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
+  const auto bone = editor.selection.bone;
+  if (editor.handling->part == Handling::Part::Whole || !bone || *bone >= std::ssize(rig->bones)) return;
+  const glm::dvec3& place = place_of(*rig, {*bone, editor.handling->part == Handling::Part::Tail});
+  if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
+}
+
+// Moves what is pressed, or draws a bone out of it.
+bool press_rig(Editor& editor, const SeenFrom& view) {
+  if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
+  const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
+  if (!part) return false;
+  choose_bone(editor, part->bone);
+  editor.handling->part = part->part;
+  begin_tool(editor,
+             begin_rig_change(
+                 editor, editor.tool == Tool::Move ? chosen_change(editor, RigChange::Kind::Move) : extrusion(editor),
+                 {.held = MouseButton::Left}));
+  return true;
+}
+
+// The end of a limb and its pole, posed.
+struct Pole {
+  int bone;
+  glm::dvec3 middle, point;
+};
+
+std::vector<Pole> poles_of(const Editor& editor) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
+  std::vector<Pole> poles;
+  const auto posed = posed_from_rest(*armature, seen_pose(editor));
+  const auto& shown = editor.handling->shown_pole;
+  for (const auto& [name, point] : anchors_of(editor.document()).poles)
+    if (const auto bone = armature->find(name))
+      poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, shown.bone == name ? shown.place : point});
+  return poles;
+}
+
+std::optional<int> pole_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+  for (const Pole& pole : poles_of(editor))
+    if (const auto seen = view.pixel_of(pole.point);
+        seen && glm::distance(*seen, pixel) <= kJointHit * editor.look.scale)
+      return pole.bone;
+  return std::nullopt;
+}
+
+// Pinned joints and poles.
+void draw_marks(Editor& editor, const SeenFrom& view) {
+  const std::shared_ptr<const Armature> armature = editor.document().armature;
+  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
+  const GizmoPainter painter(editor, view);
+  if (const Anchors& anchors = anchors_of(editor.document()); !anchors.pins.empty()) {
+    const auto posed = posed_from_rest(*armature, seen_pose(editor));
+    for (const std::string& name : anchors.pins)
+      if (const auto bone = armature->find(name))
+        painter.diamond(posed[*bone] * armature->bones[*bone].tail, kViewAccent, 12);
+  }
+  for (const Pole& pole : poles_of(editor)) {
+    painter.line(pole.middle, pole.point, kViewAccent, 1, true);
+    painter.dot(pole.point, kViewAccent, 0xFF1A1614, 5);
+  }
+}
+
+constexpr double kLimits = 58, kTwist = 18;  // pixels at scale 1
+
+// What the joint at the active bone's head allows: a hinge's fan, a ball's cone and range of twist. About the bone at
+// rest, and in the Pose workspace about where the bone above carries it, while limits are kept.
+void draw_limits(Editor& editor, const SeenFrom& view) {
+  const bool posed = editor.workspace == Workspace::Pose;
+  if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
+  const std::shared_ptr<const Armature> armature = posed ? editor.document().armature : shown_rig(editor);
+  const auto chosen = editor.selection.bone;
+  if (view.place.id != ViewId::Body || !armature || !chosen || *chosen >= std::ssize(armature->bones) ||
+      !editor.views->bones)
+    return;
+  const Bone& bone = armature->bones[*chosen];
+  RigidTransform carried;  // from rest
+  if (posed) {
+    const Pose pose = seen_pose(editor);
+    carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation}
+                              : posed_from_rest(*armature, pose)[bone.parent];
+  }
+  const JointLimits& limits = bone.limits;
+  const GizmoPainter painter(editor, view);
+  const Colour line = with_alpha(kViewWarn, posed ? 0.6f : 0.9f), area = with_alpha(kViewWarn, posed ? 0.09f : 0.16f);
+  const glm::dvec3 head = carried * bone.head, along = carried.rotation * (bone.tail - bone.head);
+  if (limits.type == JointLimits::Type::Hinge) {
+    const glm::dvec3 axis = carried.rotation * limits.axis, across = along - glm::dot(along, axis) * axis;
+    Ring fan = ring_of(view, editor.look.scale, head, axis, kLimits);
+    if (glm::length(across) < 1e-6) return;
+    fan.from = glm::normalize(across);
+    painter.sector(fan, limits.minimum, limits.maximum - limits.minimum, area);
+    painter.arc(fan, limits.minimum, limits.maximum, line, 2);
+    const double zero = hinge_angle_at_rest(*armature, *chosen, limits.axis);
+    Ring rim = fan;
+    rim.radius *= 1.25;
+    for (const double end : {limits.minimum, limits.maximum}) {
+      painter.line(fan.centre, fan.at(end), line, 1.4f);
+      painter.word(rim.at(end), std::to_string(std::lround(glm::degrees(end + zero))) + "\u00b0", line);
+    }
+  }
+  if (limits.type == JointLimits::Type::Ball) {
+    const glm::dvec3 axis = carried.rotation * twist_axis(bone);
+    Ring rim = ring_of(view, editor.look.scale, head, axis, kLimits);
+    const double reach = rim.radius;
+    rim.centre = head + axis * (reach * std::cos(limits.cone));
+    rim.radius = reach * std::sin(limits.cone);
+    painter.ring(rim, line, 2, GizmoPainter::Part::Whole);
+    for (int spoke = 0; spoke < 8; ++spoke)
+      painter.line(head, rim.at(spoke * glm::two_pi<double>() / 8), with_alpha(line, 0.4f), 1);
+    const Ring twist = ring_of(view, editor.look.scale, head, axis, kTwist);
+    painter.arc(twist, limits.twist_minimum, limits.twist_maximum, line, 2.5f);
+  }
+}
+
+}  // namespace
+
+std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
+  if (!editor.document().volume || !editor.views->bones) return std::nullopt;
+  const std::shared_ptr<const Armature> armature = shown_rig(editor);
+  const auto bone = editor.selection.bone;
+  if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
+  if (editor.workspace == Workspace::Rig &&
+      (editor.tool == Tool::Move || editor.tool == Tool::Rotate || editor.tool == Tool::Scale)) {
+    const glm::dvec3& place =
+        place_of(*armature, {*bone, editor.tool == Tool::Move && editor.handling->part == Handling::Part::Tail});
+    if (!view.shows(place)) return std::nullopt;
+    return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
+  }
+  if (editor.workspace != Workspace::Pose || (editor.tool != Tool::Rotate && editor.tool != Tool::Move))
+    return std::nullopt;
+  const Pose pose = seen_pose(editor);
+  const Bone& b = armature->bones[*bone];
+  const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
+  const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);
+  if (!view.shows(place)) return std::nullopt;
+  const Space space = editor.handling->space;
+  const bool rings = editor.tool == Tool::Rotate;
+  return Gizmo{editor.tool, place,
+               rings ? axes_of_rings(editor, space, *armature, pose, *bone, view)
+                     : axes_of(space, *armature, pose, *bone, view)};
+}
+
+std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel) {
+  const auto centre = view.pixel_of(gizmo.centre);
+  if (!centre) return std::nullopt;
+  return gizmo.tool == Tool::Rotate ? rotating_part(gizmo, view, scale, pixel, *centre)
+                                    : moving_part(gizmo, view, scale, pixel, *centre);
+}
+
+bool press_gizmo(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  if (!place || editor.input.down(Key::Alt)) return false;
+  const SeenFrom view(editor, *place);
+  if (const auto pole =
+          place->id == ViewId::Body ? pole_at(editor, view, glm::dvec2(editor.input.pointer)) : std::nullopt) {
+    choose_bone(editor, *pole);
+    begin_tool(editor, begin_dragging_pole(editor, {.held = MouseButton::Left}));
+    return true;
+  }
+  if (press_joint_handle(editor, view)) return true;
+  if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && editor.document().armature)
+    return press_joint(editor, view);
+  const auto gizmo = gizmo_in(editor, view);
+  const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
+  // The ball of the rings hides no bone here.
+  if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
+    return press_rig(editor, view);
+  if (!part) return false;
+  const Grip grip{.lock = {part->axis, editor.handling->space, part->kind == GizmoPart::Kind::Plane},
+                  .held = MouseButton::Left,
+                  .trackball = part->kind == GizmoPart::Kind::Trackball};
+  if (editor.workspace == Workspace::Rig) {
+    const RigChange::Kind kind = gizmo->tool == Tool::Rotate  ? RigChange::Kind::Turn
+                                 : gizmo->tool == Tool::Scale ? RigChange::Kind::Scale
+                                                              : RigChange::Kind::Move;
+    begin_tool(editor, begin_rig_change(editor, chosen_change(editor, kind), grip));
+    return true;
+  }
+  begin_tool(editor, gizmo->tool == Tool::Rotate ? begin_turning(editor, grip) : begin_dragging(editor, grip));
+  return true;
+}
+
+void choose_bone(Editor& editor, int bone) {
+  editor.selection = {};
+  editor.selection.bone = bone;
+  editor.selection.bones = {bone};
+}
+
+std::optional<int> bone_at_pointer(const Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  if (!editor.document().armature || !place) return std::nullopt;
+  if (place->id == ViewId::Body)
+    return body_at_pointer(editor, *place).pick_bone(glm::ivec2(editor.input.pointer - place->rect.low));
+  // In a slice those that lie in it; in the rig its joints alone are taken hold of.
+  if (editor.workspace != Workspace::Pose) return std::nullopt;
+  const auto below = bones_below(editor);
+  const auto nearest = std::min_element(below.begin(), below.end());
+  return nearest == below.end() ? std::nullopt : std::optional(nearest->second);
+}
+
+std::vector<std::pair<double, int>> bones_below(const Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  std::vector<std::pair<double, int>> found;
+  if (!place || !editor.views->scene.armature) return found;
+  const SeenFrom view(editor, *place);
+  const glm::dvec2 pixel(editor.input.pointer);
+  if (place->id == ViewId::Body) {
+    for (const render::BoneHit& hit :
+         body_at_pointer(editor, *place).pick_bones(glm::ivec2(pixel - glm::dvec2(place->rect.low))))
+      found.push_back({hit.depth, hit.bone});
+    return found;
+  }
+  for (const DrawnBone& bone : bones_in_slices(editor)) {
+    const auto head = view.pixel_of(bone.head), tail = view.pixel_of(bone.tail);
+    double share = 0;
+    if (!head || !tail || distance_to_segment(pixel, *head, *tail, share) > kHit * editor.look.scale) continue;
+    const glm::dvec3 at = glm::mix(bone.head, bone.tail, share);
+    if (view.shows(at)) found.push_back({std::abs(glm::dot(at - view.slice.centre, view.towards_eye)), bone.bone});
+  }
+  return found;
+}
+
+bool pick_bone_part(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  const auto part =
+      place ? bone_part_at(editor, SeenFrom(editor, *place), glm::dvec2(editor.input.pointer)) : std::nullopt;
+  if (!part) return false;
+  choose_bone(editor, part->bone);
+  editor.handling->part = part->part;
+  return true;
+}
+
+void draw_gizmo(Editor& editor, const ViewPlace& place) {
+  const SeenFrom view(editor, place);
+  draw_rig(editor, view);
+  draw_bone_labels(editor, view);
+  draw_rig_check(editor, view);
+  draw_marks(editor, view);
+  draw_limits(editor, view);
+  if (!editor.modal) draw_joint_handles(editor, view);
+  if (editor.modal) return editor.modal->draw(editor, place);
+  const auto gizmo = gizmo_in(editor, view);
+  if (!gizmo) return;
+  const GizmoPainter painter(editor, view);
+  const ViewPlace* under = editor.drag || editor.dialog ? nullptr : hovered_view(editor);
+  std::optional<GizmoPart> hovered;
+  if (under && under->id == place.id)
+    hovered = part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer));
+  if (gizmo->tool == Tool::Rotate) draw_rotating(*gizmo, view, editor, painter, hovered);
+  else draw_moving(*gizmo, view, editor, painter, hovered);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/shown/fem_live_view.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+void SolveFeed::tell(const WorkerProgress& progress) {
+  const std::lock_guard lock(mutex_);
+  seen_.progress = progress;
+}
+
+void SolveFeed::show(const std::shared_ptr<const FemMesh>& rest, FemStep step) {
+  auto posed = std::make_shared<const Eigen::MatrixX3d>(std::move(step.V));
+  const std::lock_guard lock(mutex_);
+  seen_.rest = rest;
+  seen_.mesh = {std::shared_ptr<const TetMesh>(rest, &rest->tets), std::move(posed)};
+  seen_.motions = std::move(step.motions);
+  seen_.reached = step.reached;
+}
+
+SolveFeed::Seen SolveFeed::seen() const {
+  const std::lock_guard lock(mutex_);
+  return seen_;
+}
+
+const Solve* watched_solve(const Editor& editor) {
+  if (editor.workspace != Workspace::Resample) return nullptr;
+  const auto found = editor.fem->solves.find(editor.fem->watched);
+  if (found == editor.fem->solves.end()) return nullptr;
+  const Solve& solve = found->second;
+  return solve.from.volume == editor.document().volume && solve.feed->seen().mesh.posed ? &solve : nullptr;
+}
+
+std::string progress_text(const Solve& solve) {
+  const WorkerProgress progress = solve.feed->seen().progress;
+  if (!progress.iteration || !progress.angle_degrees || !progress.residual_mm) return "";
+  char text[96];
+  std::snprintf(text, sizeof text, "%.1f of %.1f\u00b0, iteration %d, moving %.2f mm", *progress.angle_degrees,
+                solve.angle_degrees, *progress.iteration, *progress.residual_mm);
+  return text;
+}
+
+void watch(Editor& editor) {
+  if (!editor.fem->solves.empty()) editor.fem->watched = editor.fem->solves.rbegin()->first;
+  editor.touch();
+}
+
+void stop_watching(Editor& editor) { editor.fem->watched = 0; }
+
+}  // namespace limber::editor

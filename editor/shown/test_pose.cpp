@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/shown/test_pose.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/shown/shown_pose.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kStraight = 0.17;  // sine of 10 degrees: two bones that enclose less have no plane that they bend in
+
+// As flex_axis(); a straight joint without a hinge bends about the bone's own x.
+glm::dvec3 bend_axis(const Armature& armature, int index) {
+  const Bone& bone = armature.bones[static_cast<std::size_t>(index)];
+  if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;
+  const Bone& parent = armature.bones[static_cast<std::size_t>(bone.parent)];
+  const glm::dvec3 a = parent.tail - parent.head, b = bone.tail - bone.head, across = glm::cross(a, b);
+  const bool straight = glm::length(across) <= kStraight * glm::length(a) * glm::length(b);
+  return straight ? rest_axes(bone)[0] : glm::normalize(across);
+}
+
+}  // namespace
+
+bool shows_pose(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.armature) return false;
+  if (editor.workspace == Workspace::Pose) return true;
+  const TestPose& test = *editor.trial;
+  return editor.workspace == Workspace::Skin && document.weights &&
+         (test.posed || test.degrees != 0 || editor.views->preview_pose);
+}
+
+Pose test_pose(const Editor& editor) {
+  const TestPose& test = *editor.trial;
+  const Armature& armature = *editor.document().armature;
+  Pose pose = test.posed ? pose_of(editor.document()) : rest_pose(armature);
+  const auto bone = armature.find(test.bone);
+  if (test.degrees == 0 || !bone || armature.bones[static_cast<std::size_t>(*bone)].parent < 0) return pose;
+  glm::dquat& rotation = pose.rotation[static_cast<std::size_t>(*bone)];
+  rotation = glm::angleAxis(glm::radians(test.degrees), bend_axis(armature, *bone)) * rotation;
+  return pose;
+}
+
+std::optional<int> skin_bone(const Editor& editor) {
+  const auto& armature = editor.document().armature;
+  if (!armature || armature->bones.empty()) return std::nullopt;
+  return editor.selection.bone && *editor.selection.bone < std::ssize(armature->bones) ? *editor.selection.bone : 0;
+}
+
+std::string why_not_bend(const Editor& editor) {
+  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  const auto bone = skin_bone(editor);
+  if (!bone) return "Import a rig first";
+  if (!editor.document().weights) return "Compute the weights first";
+  return editor.document().armature->bones[static_cast<std::size_t>(*bone)].parent < 0
+             ? "No joint lies above this bone: choose one further down"
+             : "";
+}
+
+double bend(const Editor& editor) {
+  const TestPose& test = *editor.trial;
+  const auto bone = skin_bone(editor);
+  return bone && editor.document().armature->bones[static_cast<std::size_t>(*bone)].name == test.bone ? test.degrees
+                                                                                                      : 0;
+}
+
+void set_bend(Editor& editor, double degrees) {
+  TestPose& test = *editor.trial;
+  test.bone = editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name;
+  test.degrees = std::clamp(degrees, -TestPose::kMost, TestPose::kMost);
+  if (test.degrees == 0) test.before.degrees = 0;
+  editor.touch();
+}
+
+void clear_bend(Editor& editor) {
+  TestPose& test = *editor.trial;
+  test.degrees = test.before.degrees = 0;
+  editor.touch();
+}
+
+void toggle_test_pose(Editor& editor) {
+  TestPose& test = *editor.trial;
+  if (test.posed || test.degrees != 0) {
+    test.before = {test.posed, test.degrees};
+    test.posed = false;
+    test.degrees = 0;
+  } else {
+    test.degrees = test.before.degrees;
+    test.posed = test.before.posed || test.degrees == 0;
+  }
+  editor.touch();
+}
+
+}  // namespace limber::editor

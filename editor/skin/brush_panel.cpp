@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The Skin workspace's brush: how it fades, how its dabs follow one another, what it reaches.
+#include <algorithm>
+#include <cstdio>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/seams/seam_view.h"
+#include "editor/skin/paint_mode.h"
+#include "editor/skin/weight_display.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kCurveHeight = 56;
+constexpr int kCurvePoints = 48;
+constexpr int kMostPoints = 16;     // of a curve of the user's own
+constexpr double kPointGap = 0.02;  // between two of them, of the radius
+constexpr float kPointReach = 8;
+
+// How the brush fades from its middle, at the left, to its rim.
+void draw_curve(const Editor& editor, const Rect& rect, const Falloff& falloff) {
+  const Look& look = editor.look;
+  fill(rect, look.theme.field, look.px(4));
+  const Rect inside{rect.low + look.px(6), rect.high - look.px(6)};
+  std::vector<ImVec2> line;
+  for (int i = 0; i <= kCurvePoints; ++i) {
+    const float share = float(i) / kCurvePoints;
+    line.push_back(im(glm::vec2(glm::mix(inside.low.x, inside.high.x, share),
+                                glm::mix(inside.high.y, inside.low.y, std::clamp(falloff(share), 0.0f, 1.0f)))));
+  }
+  ImGui::GetWindowDrawList()->AddPolyline(line.data(), static_cast<int>(line.size()), look.theme.accent_text, 0,
+                                          1.5f * look.scale);
+}
+
+// Points of a curve of the user's own: dragged, added by a click beside them, taken away by the right button.
+void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
+  const Look& look = editor.look;
+  const Rect inside{rect.low + look.px(6), rect.high - look.px(6)};
+  std::vector<glm::dvec2>& points = painting.falloff_curve;
+  const auto pixel_of = [&](const glm::dvec2& point) {
+    return glm::vec2(glm::mix(inside.low.x, inside.high.x, float(point.x)),
+                     glm::mix(inside.high.y, inside.low.y, float(point.y)));
+  };
+  const glm::dvec2 at = glm::clamp(glm::dvec2((editor.input.pointer.x - inside.low.x) / inside.width(),
+                                              (inside.high.y - editor.input.pointer.y) / inside.height()),
+                                   0.0, 1.0);
+  const Pressed pressed = press_area(editor, "curve", rect);
+  int nearest = 0;
+  for (int i = 1; i < std::ssize(points); ++i)
+    if (glm::distance(pixel_of(points[i]), editor.input.pointer) <
+        glm::distance(pixel_of(points[nearest]), editor.input.pointer))
+      nearest = i;
+  const bool near = glm::distance(pixel_of(points[nearest]), editor.input.pointer) < look.px(kPointReach);
+  if (pressed.activated) {
+    const auto after = std::lower_bound(points.begin(), points.end(), at.x,
+                                        [](const glm::dvec2& point, double x) { return point.x < x; });
+    const bool room = (after == points.begin() || at.x - std::prev(after)->x >= kPointGap) &&
+                      (after == points.end() || after->x - at.x >= kPointGap);
+    if (!near && room && std::ssize(points) < kMostPoints)
+      nearest = static_cast<int>(points.insert(after, at) - points.begin());
+    editor.skin->painting->dragged_point = nearest;
+  }
+  const int dragged = painting.dragged_point;
+  if (pressed.held && dragged >= 0 && dragged < std::ssize(points)) {
+    const double low = dragged > 0 ? points[dragged - 1].x + kPointGap : 0,
+                 high = dragged + 1 < std::ssize(points) ? points[dragged + 1].x - kPointGap : 1;
+    points[dragged] = {std::clamp(at.x, std::min(low, high), std::max(low, high)), at.y};
+    editor.touch();
+  }
+  if (!pressed.held) painting.dragged_point = -1;
+  if (pressed.right_clicked && near && std::ssize(points) > 2) points.erase(points.begin() + nearest);
+  for (int i = 0; i < std::ssize(points); ++i)
+    ImGui::GetWindowDrawList()->AddCircleFilled(
+        im(pixel_of(points[i])),
+        look.px(i == painting.dragged_point || (pressed.hovered && near && i == nearest) ? 4.5f : 3.5f),
+        look.theme.text, 16);
+  if (pressed.hovered && !pressed.held) operator_tooltip(editor, *find_operator(editor, "skin.falloff_own"), rect);
+}
+
+// How far the active bone is bent on trial; that another one is, with the way back.
+void draw_test_pose(Editor& editor, Column& column) {
+  const TestPose& test = *editor.trial;
+  if (why_not_bend(editor).empty()) {
+    double degrees = bend(editor);
+    bool committed = false;
+    if (number_field(editor, "Test pose", column.property("Test pose"), degrees, -TestPose::kMost, TestPose::kMost,
+                     "%+.0f", "\u00b0", true, committed) ||
+        committed)
+      set_bend(editor, degrees);
+  }
+  if (test.degrees == 0 || bend(editor) != 0) return;
+  const Rect rect = column.property("");
+  char text[64];
+  std::snprintf(text, sizeof text, " bent by %+.0f\u00b0", test.degrees);
+  const float width = editor.look.px(70);
+  put_text(editor, editor.look.fonts.regular, editor.look.theme.text2,
+           Rect{rect.low, {rect.high.x - width - editor.look.px(6), rect.high.y}}, test.bone + text);
+  operator_button(editor, "skin.unbend", {{rect.high.x - width, rect.low.y}, rect.high}, "Unbend");
+}
+
+}  // namespace
+
+void draw_brush_section(Editor& editor, Column& column) {
+  if (!column.begin_section("Brush", editor.seams->brush ? "Seam" : name_of(editor.skin->painting->kind)))
+    return column.end_section();
+  column.space(6);
+  Painting& painting = *editor.skin->painting;
+  bool committed = false;
+  const auto number = [&](const char* label, double& value, double low, double high, const char* format,
+                          const char* unit) {
+    number_field(editor, label, column.property(label), value, low, high, format, unit, true, committed);
+  };
+  constexpr int kOwn = 6;
+  int shape = painting.falloff_curve.empty() ? static_cast<int>(painting.falloff) : kOwn;
+  const Rect choice = column.property("Falloff");
+  push_path(editor, "Falloff");
+  if (choice_field(editor, choice, {"Smooth", "Sphere", "Root", "Sharp", "Linear", "Constant", "Own curve"}, shape)) {
+    if (shape == kOwn) {
+      begin_falloff_curve(painting);
+    } else {
+      painting.falloff = static_cast<FalloffShape>(shape);
+      painting.falloff_curve.clear();
+    }
+  }
+  pop_path(editor);
+  Rect curve = column.row(kCurveHeight + 6);
+  curve.low.x = choice.low.x;
+  curve.high = {choice.high.x, curve.low.y + editor.look.px(kCurveHeight)};
+  draw_curve(editor, curve, falloff_of(painting));
+  if (!painting.falloff_curve.empty()) edit_curve(editor, curve, painting);
+  double spacing = 100 * painting.spacing;
+  number("Spacing", spacing, 5, 200, "%.0f", "%");
+  painting.spacing = spacing / 100;
+  if (painting.depth == BrushDepth::ToDepth) number("Depth", painting.depth_mm, 0.5, 200, "%.1f", "mm");
+  if (painting.kind == BrushKind::JointCapsule) number("Blend", painting.blend_mm, 1, 300, "%.1f", "mm");
+  int normalize = static_cast<int>(normalize_of(editor));
+  constexpr const char* kNormalize[] = {"skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off"};
+  const Rect room = column.property("Normalize");
+  push_path(editor, "Normalize");
+  if (choice_field(editor, room, {"Unlocked", "All", "Off"}, normalize)) run(editor, kNormalize[normalize]);
+  if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, kNormalize[normalize]), room);
+  pop_path(editor);
+  checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
+  draw_test_pose(editor, column);
+  checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
+  checkbox(editor, "Relative to locks", column.property(""), "Relative to locks", painting.relative_to_locks);
+  column.space(6);
+  column.end_section();
+}
+
+}  // namespace limber::editor

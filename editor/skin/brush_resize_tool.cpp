@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "editor/skin/brush_tools.h"
+#include "editor/skin/painting.h"
+#include "editor/skin/weight_display.h"
+#include "editor/ui/draw.h"
+#include "editor/viewport/gizmo_draw.h"
+#include "editor/viewport/numeric_input.h"
+#include "editor/viewport/transform_tool.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kWhole = 120;  // pixels at scale 1, of a strength or value of one
+constexpr float kSlow = 0.1f;   // with Shift
+
+class BrushNumberTool final : public Modal {
+ public:
+  BrushNumberTool(Editor& editor, BrushNumber which)
+      : which_(which),
+        view_(editor, place_of_tool(editor)),
+        before_(number(editor)) {
+    const Painting& painting = *editor.skin->painting;
+    const glm::dvec3 near = painting.place                   ? painting.place->seen
+                            : view_.place.id == ViewId::Body ? editor.views->body.camera.centre
+                                                             : editor.views->cross_hair;
+    per_pixel_ = which == BrushNumber::Radius ? view_.millimetres_per_pixel(near) : 1 / (kWhole * editor.look.scale);
+    pointer_ = glm::dvec2(editor.input.pointer);
+    centre_ = pointer_ - glm::dvec2(before_ / per_pixel_, 0);
+  }
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    pointer_ += glm::dvec2(pixels) * double(editor.input.down(Key::Shift) ? kSlow : 1.0f);
+    show(editor);
+    return true;
+  }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (!event.down) return true;
+    if (event.button == MouseButton::Right) cancel(editor);
+    return event.button == MouseButton::Middle;
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    if (event.key == Key::Return || event.key == Key::NumEnter) return false;
+    if (event.key == Key::Escape) {
+      cancel(editor);
+      return false;
+    }
+    if (typed_.key(event.key)) show(editor);
+    return true;
+  }
+  void cancel(Editor& editor) override { number(editor) = before_; }
+
+  std::string title() const override {
+    constexpr const char* kNames[] = {"Radius", "Strength", "Value"};
+    return std::string(kNames[static_cast<int>(which_)]) + " " +
+           (typed_.typed() ? typed_.text() : text_of_number(which_ == BrushNumber::Radius ? "%.1f" : "%.2f", now_)) +
+           (which_ == BrushNumber::Radius ? " mm" : "");
+  }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"LMB"}, "Keep"}, {{"0-9"}, "Number"}, {{"Shift"}, "Slowly"}, {{"Esc"}, "Back"}};
+  }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (place.id != view_.place.id) return;
+    now_ = number(editor);
+    const float scale = editor.look.scale, radius = static_cast<float>(now_ / per_pixel_);
+    const ImVec2 centre = im(glm::vec2(centre_));
+    ImDrawList& canvas = *ImGui::GetWindowDrawList();
+    if (which_ != BrushNumber::Radius) {
+      canvas.AddCircle(centre, float(kWhole) * scale, with_alpha(0xFFFFFFFF, 0.5f), 64, 1.5f * scale);
+      canvas.AddCircleFilled(centre, radius, with_alpha(0xFFFFFFFF, 0.25f * static_cast<float>(now_)), 64);
+    }
+    canvas.AddCircle(centre, radius, with_alpha(0xFF000000, 0.55f), 64, 3.6f * scale);
+    canvas.AddCircle(centre, radius, 0xFFFFFFFF, 64, 2 * scale);
+    const Rect words{glm::vec2(centre_) - glm::vec2(editor.look.px(60), editor.look.px(10)),
+                     glm::vec2(centre_) + glm::vec2(editor.look.px(60), editor.look.px(10))};
+    put_text(editor, editor.look.fonts.mono, 0xFFFFFFFF, words,
+             typed_.typed() ? typed_.text() : text_of_number(which_ == BrushNumber::Radius ? "%.1f mm" : "%.2f", now_),
+             Align::Centre);
+  }
+
+ private:
+  double& number(Editor& editor) const {
+    Painting& painting = *editor.skin->painting;
+    return which_ == BrushNumber::Radius     ? painting.radius
+           : which_ == BrushNumber::Strength ? painting.strength
+                                             : painting.value;
+  }
+  void show(Editor& editor) {
+    const double wished = typed_.typed() ? typed_.value() : glm::distance(pointer_, centre_) * per_pixel_;
+    number(editor) = which_ == BrushNumber::Radius ? std::clamp(wished, Painting::kLeastRadius, Painting::kMostRadius)
+                                                   : std::clamp(wished, 0.0, 1.0);
+    editor.touch();
+  }
+
+  BrushNumber which_;
+  SeenFrom view_;
+  const double before_;
+  double per_pixel_ = 1, now_ = 0;
+  glm::dvec2 centre_{0}, pointer_{0};
+  TypedNumber typed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which) {
+  return std::make_unique<BrushNumberTool>(editor, which);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/compute_weights.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/binding/geodesic.h"
+#include "core/binding/rigid.h"
+#include "core/bones/bone_parts.h"
+#include "core/skin/merge_recomputed.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/seams/seam_view.h"
+#include "editor/skin/painting.h"
+#include "editor/skin/weight_display.h"
+#include "editor/skin/weight_layers.h"
+#include "editor/volume/body_seams.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string label_of(BindingMethod method) {
+  return method == BindingMethod::Heat       ? "Heat diffusion"
+         : method == BindingMethod::Geodesic ? "Geodesic weights"
+                                             : "Rigid weights";
+}
+
+bool of_rig(const Document& document) {
+  if (!document.weights || !document.armature) return false;
+  const auto& names = document.weights->bones();
+  const auto& bones = document.armature->bones;
+  return std::equal(names.begin(), names.end(), bones.begin(), bones.end(),
+                    [](const std::string& name, const Bone& bone) { return name == bone.name; });
+}
+
+// The bones and the tissue that a computation in part is about.
+struct Part {
+  LayerToEdit edited;
+  std::vector<int> bones;
+  EditScope scope{.rigid_bone_tissue = false};
+  std::vector<std::uint8_t> labels;  // empty: all
+  std::vector<int> regions;          // of these bones; empty: everywhere
+};
+
+std::vector<int> chosen_of(const Editor& editor) {
+  std::vector<int> chosen(editor.selection.bones.begin(), editor.selection.bones.end());
+  if (chosen.empty()) chosen.push_back(*skin_bone(editor));
+  return chosen;
+}
+
+Part part_of(Editor& editor, const Computation& computation) {
+  Part part{.edited = layer_to_edit(editor)};
+  const Document& document = editor.document();
+  if (computation.bones == Computation::Bones::Chosen) part.bones = chosen_of(editor);
+  if (computation.bones == Computation::Bones::Unlocked)
+    for (const Bone& bone : document.armature->bones) part.scope.locked.push_back(is_locked(document, bone.name));
+  if (computation.where == Computation::Where::ChosenBones) part.regions = chosen_of(editor);
+  if (computation.where == Computation::Where::ChosenTissue) {
+    part.labels.assign(65536, 0);
+    for (const Label label : editor.selection.tissues) part.labels[label] = 1;
+  }
+  return part;
+}
+
+TissueRegion region_of(const Part& part, const LabelVolume& volume, const TissueVoxels& tissue) {
+  if (part.labels.empty() && part.regions.empty()) return {};
+  return region_where(tissue, [&](std::int64_t place, const glm::ivec3& voxel) {
+    if (!part.labels.empty() && !part.labels[volume.at(voxel)]) return false;
+    if (part.regions.empty()) return true;
+    const int brick = tissue.brick_at(voxel);
+    const Influence& influence = part.edited.weights->chunk(brick)[place - tissue.bricks()[brick].first];
+    return std::find(part.regions.begin(), part.regions.end(), influence.bone[0]) != part.regions.end();
+  });
+}
+
+SkinWeights computed(const Document& from, TissueVoxels tissue, const Computation& computation, Progress& progress,
+                     WeightsReport& report) {
+  const LabelVolume& volume = *from.volume;
+  const BoneParts parts =
+      split_bones(volume, tissue, *from.tissues, *from.armature, progress, usable_bone_map(seam_source(from)));
+  tissue.set_seams(body_seams().of(seam_source(from), progress));
+  switch (computation.method) {
+    case BindingMethod::Rigid: return bind_rigid(volume, tissue, *from.armature, parts, progress, &report);
+    case BindingMethod::Geodesic:
+      return bind_geodesic(volume, tissue, *from.armature, parts, {.stiffness = computation.stiffness}, progress,
+                           &report);
+    case BindingMethod::Heat: break;
+  }
+  return diffuse_heat(volume, tissue, *from.tissues, *from.armature, parts, {.stiffness = computation.stiffness},
+                      progress, &report);
+}
+
+void require_same(const Document& now, const Document& from) {
+  if (now.volume != from.volume) throw Error("the volume was changed meanwhile", "computing weights", "start it again");
+  if (now.armature != from.armature)
+    throw Error("the rig was changed meanwhile", "computing weights", "start it again");
+}
+
+}  // namespace
+
+void start_binding(Editor& editor, const Computation& computation) {
+  const Document from = editor.document();
+  auto report = std::make_shared<WeightsReport>();
+  auto changed = std::make_shared<std::int64_t>(0);
+  const std::string label = label_of(computation.method);
+  const std::optional<Part> part = computation.in_part() ? std::optional(part_of(editor, computation)) : std::nullopt;
+  const int id = editor.jobs.start(label, [from, computation, report, changed, part](Progress& progress) -> Edit {
+    const TissueVoxels tissue(*from.volume);
+    auto weights = std::make_shared<const SkinWeights>(computed(from, tissue, computation, progress, *report));
+    if (!part) {
+      Document made = from;
+      set_weights(made, weights);
+      return [from, made, weights](const Document& now) {
+        require_same(now, from);
+        Document next = now;
+        if (now.layers != from.layers) set_weights(next, weights);
+        else next.weights = made.weights, next.layers = made.layers;
+        return next;
+      };
+    }
+    EditScope scope = part->scope;
+    scope.region = region_of(*part, *from.volume, tissue);
+    const WeightEdit edit = recomputed({*from.volume, tissue, *from.tissues, *from.armature}, *part->edited.weights,
+                                       *weights, part->bones, scope);
+    *changed = edit.changed;
+    const EditedLayers made = edited_layers(part->edited, std::make_shared<const SkinWeights>(edit.weights));
+    return [from, made, edited = part->edited, changed](const Document& now) {
+      require_same(now, from);
+      return *changed ? with_edited(now, edited, made) : now;
+    };
+  });
+  editor.step_of_job[id] = StepOfWork::Skin;
+  editor.after_job[id] = [label, report, changed, in_part = part.has_value(), source = seam_source(from)](
+                             Editor& e, const JobStatus& job) {
+    if (job.state != JobState::Done || !e.document().weights) return;
+    if (!in_part) e.seams->weights_from = source;
+    if (in_part)
+      e.messages.ok(label, *changed ? grouped(*changed) + " voxels were computed anew" : "Nothing is different there");
+    else
+      e.messages.ok(label, grouped(e.document().weights->size()) + " voxels follow " +
+                               std::to_string(e.document().armature->bones.size()) + " bones");
+    for (const std::string& warning : report->warnings) e.messages.warn(label, warning);
+  };
+  editor.touch();
+}
+
+void ask_computation(Editor& editor) {
+  enum Field { Method, Bones, Where, Skin, Fat, Muscle, Other };
+  constexpr double kSoftest = 0.1, kStiffest = 10;
+  const auto stiffness = [&](const char* name) {
+    return number_of(name,
+                     "Of the blend between bones in it: 2 halves the way over which one bone gives over to the next.",
+                     1, kSoftest, kStiffest, "%.2f", "\u00d7");
+  };
+  const auto asked = [](const Editor& e, const std::vector<FormField>& fields) {
+    Computation computation{static_cast<BindingMethod>(fields[Method].chosen),
+                            static_cast<Computation::Bones>(fields[Bones].chosen),
+                            static_cast<Computation::Where>(fields[Where].chosen),
+                            {}};
+    for (const Tissue& tissue : e.document().tissues->tissues) {
+      if (is_bone(tissue.kind)) continue;
+      const Field of = tissue.kind == TissueKind::Skin     ? Skin
+                       : tissue.kind == TissueKind::Fat    ? Fat
+                       : tissue.kind == TissueKind::Muscle ? Muscle
+                                                           : Other;
+      if (fields[of].value != 1) computation.stiffness[tissue.label] = fields[of].value;
+    }
+    return computation;
+  };
+  const auto outcome = [asked](const Editor& e, const std::vector<FormField>& fields) -> std::string {
+    const Computation computation = asked(e, fields);
+    if (!computation.in_part())
+      return e.document().layers ? "All weights anew, below the layers." : "All weights anew.";
+    if (!of_rig(e.document()))
+      throw Error("there are no weights of this rig yet", "computing them in part", "compute all of them first");
+    if (computation.where == Computation::Where::ChosenTissue && e.selection.tissues.empty())
+      throw NotYet{"Choose tissues in the list first"};
+    const std::string what = computation.bones == Computation::Bones::Chosen
+                                 ? "Only the chosen bones; the others share the rest as they did."
+                             : computation.bones == Computation::Bones::Unlocked
+                                 ? "All bones but the locked ones."
+                                 : "All bones, in that part of the body alone.";
+    return what;
+  };
+  editor.open_dialog(
+      make_form({"Compute weights",
+                 "What is left out stays as it was. Numbers are stiffness: the higher, the narrower a tissue blends.",
+                 "Compute",
+                 {choice_of("Method", "Heat is the smoothest, geodesic is quicker, rigid gives each voxel to one bone.",
+                            {"Heat", "Geodesic", "Rigid"}),
+                  choice_of("Bones", "Whose weights are computed anew.", {"All", "Chosen", "Unlocked"}),
+                  choice_of("Where",
+                            "In which part of the body: in the tissues chosen in the list, or where the chosen bones "
+                            "have most of the weight.",
+                            {"Everywhere", "Chosen tissue", "Chosen bones"}),
+                  stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
+                 outcome,
+                 [asked](Editor& e, const std::vector<FormField>& fields) { start_binding(e, asked(e, fields)); }}));
+}
+
+}  // namespace limber::editor

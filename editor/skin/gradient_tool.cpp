@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/brush_tools.h"
+#include "editor/skin/weight_display.h"
+#include "editor/skin/weight_edits.h"
+#include "editor/viewport/gizmo_draw.h"
+#include "editor/viewport/transform_tool.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kLeast = 3;  // pixels: less is a slip of the hand
+
+using Fields = std::vector<FormField>;
+
+class GradientTool final : public Modal {
+ public:
+  explicit GradientTool(Editor& editor) : pointer_(editor.input.pointer) {}
+
+  bool moved(Editor& editor, const glm::vec2&) override {
+    pointer_ = editor.input.pointer;
+    if (view_) to_ = at_pointer();
+    editor.touch();
+    return true;
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    if (event.key == Key::R) radial_ = !radial_;
+    editor.touch();
+    return event.key != Key::Escape;
+  }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (event.button == MouseButton::Right && event.down) return false;
+    if (event.button != MouseButton::Left) return true;
+    if (event.down) {
+      const ViewPlace* place = editor.layout.view_at(pointer_);
+      if (!place) return false;
+      view_.emplace(editor, *place);
+      // On the body, or else as far away as its middle.
+      const auto body = brush_place(editor, *place, pointer_);
+      from_ = body                        ? body->seen
+              : place->id == ViewId::Body ? editor.views->body.camera.centre
+                                          : editor.views->cross_hair;
+      from_ = to_ = at_pointer();
+      begun_ = pointer_;
+      return true;
+    }
+    if (!view_) return true;
+    if (glm::distance(begun_, pointer_) >= kLeast * editor.look.scale) keep(editor);
+    return false;
+  }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (!view_ || place.id != view_->place.id) return;
+    const GizmoPainter painter(editor, *view_);
+    const double length = glm::distance(from_, to_);
+    const Colour dark = with_alpha(0xFF000000, 0.55f);
+    if (radial_ && length > 0)
+      for (const double share : {0.5, 1.0}) {
+        const Ring ring{from_, view_->towards_eye, view_->right, length * share};
+        painter.ring(ring, dark, 3.6f, GizmoPainter::Part::Whole);
+        painter.ring(ring, share == 1 ? 0xFFFFFFFF : with_alpha(0xFFFFFFFF, 0.5f), 1.5f, GizmoPainter::Part::Whole);
+      }
+    painter.line(from_, to_, dark, 4);
+    painter.line(from_, to_, 0xFFFFFFFF, 2);
+    painter.dot(from_, 0xFFD9F4FF, dark, 5);  // the ends in the colours of exact 1 and 0
+    painter.dot((from_ + to_) / 2.0, 0xFFFFFFFF, dark, 2.5f);
+    painter.dot(to_, 0xFF69625E, 0xFFFFFFFF, 5);
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"LMB"}, "Draw from full to none"},
+            {{"R"}, radial_ ? "Along the line" : "Around its beginning"},
+            {{"Esc"}, "Back"}};
+  }
+  std::string title() const override {
+    return std::string(radial_ ? "Gradient around a point" : "Gradient along a line") +
+           (view_ ? ", " + text_of_number("%.1f", glm::distance(from_, to_)) + " mm" : "");
+  }
+
+ private:
+  glm::dvec3 at_pointer() const { return view_->in_plane(pointer_, from_, view_->towards_eye).value_or(from_); }
+
+  void keep(Editor& editor) {
+    const Painting& painting = *editor.skin->painting;
+    edit_weights(editor,
+                 {choice_of("Way", "Along the line, or around its beginning.", {"Linear", "Radial"}, radial_ ? 1 : 0),
+                  number_of("Begin", "The weight where the line begins.", painting.value, 0, 1, "%.2f"),
+                  number_of("End", "The weight where it ends.", 0, 0, 1, "%.2f"),
+                  choice_of("Falloff", "How it goes from one to the other.",
+                            {"Smooth", "Sphere", "Root", "Sharp", "Linear"}, static_cast<int>(FalloffShape::Linear)),
+                  number_of("Amount", "How much of it is done.", 1, 0, 1, "%.2f")},
+                 [from = from_, to = to_](const Editor& e, const Fields& fields) {
+                   Gradient gradient{from,
+                                     to,
+                                     fields[0].chosen == 1,
+                                     fields[1].value,
+                                     fields[2].value,
+                                     static_cast<FalloffShape>(fields[3].chosen)};
+                   return WeightOperation{
+                       .label = "Gradient of " + painted_name(e),
+                       .work = [gradient, amount = fields[4].value](const WeightsToEdit& what,
+                                                                    const EditScope& scope) -> EditedWeights {
+                         return {with_gradient(what.body(), *what.document.weights, what.settings.bones, gradient,
+                                               amount, scope),
+                                 ""};
+                       }};
+                 });
+  }
+
+  glm::vec2 pointer_, begun_{0};
+  std::optional<SeenFrom> view_;  // once the button is down
+  glm::dvec3 from_{0}, to_{0};    // world, mm
+  bool radial_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Modal> begin_gradient(Editor& editor) { return std::make_unique<GradientTool>(editor); }
+
+}  // namespace limber::editor

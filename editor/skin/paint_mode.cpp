@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/paint_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/rig/mirror.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/editor.h"
+#include "editor/context/pointer_context.h"
+#include "editor/context/transform_settings.h"
+#include "editor/skin/brush_cursor.h"
+#include "editor/skin/seam_brush.h"
+#include "editor/skin/weight_display.h"
+#include "editor/skin/weight_layers.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kRingPoints = 64;
+constexpr double kStepOfRadius = 0.5;  // of the radius as it is seen, that the pointer is followed by
+constexpr int kMostSteps = 24;         // of one movement
+
+// The same place on the other side; where the stroke dabs too.
+glm::dvec3 mirrored(const Armature& armature, const glm::dvec3& point) { return mirror_plane(armature).place(point); }
+
+// The vertical extent of a ring on the screen stays readable when it is seen from its edge.
+Ring ring_at(const BrushPlace& place, const glm::dvec3& centre, double radius) {
+  const glm::dvec3 axis = glm::normalize(place.normal),
+                   other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  return {centre, axis, glm::normalize(glm::cross(axis, other)), radius};
+}
+
+}  // namespace
+
+struct Painting::Running {
+  // What the stroke refers to.
+  Document document;
+  std::shared_ptr<const TissueVoxels> tissue;
+  LayerToEdit edited;
+  // Of the layer: its canvas, or what stands for its mask or for what its bones share with what lies below, and the
+  // bones of that.
+  enum class Of { Canvas, Mask, Shares } of = Of::Canvas;
+  std::shared_ptr<const SkinWeights> before;
+  Armature bones;
+  std::optional<SkinWeights> shown;  // what comes out of the layers as the stroke goes on
+  std::unique_ptr<Stroke> stroke;
+  ViewPlace view;
+  std::string label;
+  glm::vec2 pixel{0};  // where the pointer was
+};
+
+namespace {
+
+void show_stroke(Editor& editor, Painting::Running& running) {
+  const std::vector<int> dirty = running.stroke->take_dirty();
+  if (dirty.empty()) return;
+  if (const WeightLayers* layers = running.edited.layers.get()) {
+    for (const int brick : dirty) {
+      const SkinWeights::Influences is = running.stroke->chunk(brick);
+      const auto& layer = running.edited.layer;
+      const auto came_out = [&] {
+        if (!layer) return composed_over_base(*layers, brick, is);
+        if (running.of == Painting::Running::Of::Mask) return composed_while_masked(*layers, *layer, brick, is);
+        const SkinWeights::Influences was = running.before->chunk(brick);
+        return running.of == Painting::Running::Of::Shares ? composed_while_shared(*layers, *layer, brick, was, is)
+                                                           : composed_while_painted(*layers, *layer, brick, was, is);
+      };
+      running.shown->set_chunk(brick, came_out());
+    }
+    editor.views->preview_weights = std::make_shared<const SkinWeights>(*running.shown);
+  } else {
+    editor.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
+  }
+  editor.touch();
+}
+
+void drop_stroke(Editor& editor) {
+  editor.skin->painting->running.reset();
+  editor.views->preview_weights.reset();
+  editor.touch();
+}
+
+// Dabs at what lies under the pixels on the pointer's way.
+void paint_to(Editor& editor, const glm::vec2& pixel) {
+  Painting& painting = *editor.skin->painting;
+  Painting::Running& running = *painting.running;
+  const SeenFrom seen(editor, running.view);
+  const glm::dvec3 reference = painting.place ? painting.place->seen : editor.views->cross_hair;
+  const double radius_seen = painting.radius / std::max(seen.millimetres_per_pixel(reference), 1e-6);
+  const int steps = std::clamp(
+      static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / std::max(kStepOfRadius * radius_seen, 1.0))), 1,
+      kMostSteps);
+  for (int step = 1; step <= steps; ++step) {
+    const auto place = brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
+    painting.place = place;
+    if (place) running.stroke->to(place->rest);
+    else running.stroke->lift();
+  }
+  running.pixel = pixel;
+  show_stroke(editor, running);
+}
+
+void end_stroke(Editor& editor) {
+  const std::shared_ptr<Painting::Running> running = editor.skin->painting->running;
+  Stroke& stroke = *running->stroke;
+  const bool empty = stroke.empty();
+  const int lock = stroke.blocked_count() > 0 ? stroke.blocked_by() : -1;
+  if (!empty) {
+    const SkinWeights after = stroke.finish();
+    if (running->of == Painting::Running::Of::Canvas) {
+      commit_weights(editor, running->label, running->edited,
+                     edited_layers(running->edited, std::make_shared<const SkinWeights>(after)));
+    } else {
+      WeightLayers next = *running->edited.layers;
+      auto& layer = next.layers[*running->edited.layer];
+      layer = std::make_shared<const WeightLayer>(
+          running->of == Painting::Running::Of::Mask
+              ? mask_painted_on(next, *running->edited.layer, *running->before, after)
+              : shares_painted_on(*layer, *running->before, after));
+      commit_layers(editor, running->label, std::move(next));
+    }
+  }
+  drop_stroke(editor);
+  if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
+  if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
+    editor.messages.toast_error("The layer is full here",
+                                "Its other bones keep what they have while normalizing is left to the composition",
+                                "skin.normalize_unlocked");
+  } else {
+    editor.messages.toast_error(lock_message(running->bones, lock), "Nothing else can take or give the weight here",
+                                "skin.unlock_all");
+  }
+}
+
+// What lies below takes the place before all bones; of these only the painted ones may change.
+void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
+  BoneSet kept(settings.locked.size() + 1, 1);
+  kept[kBelow] = 0;
+  const std::vector<int> pairs = mirror_pairs(armature);
+  const auto may_change = [&](int bone) { kept[bone + 1] = settings.locked[bone]; };
+  for (const int bone : settings.bones) {
+    may_change(bone);
+    if (settings.mirror) may_change(pairs[bone]);
+    if (settings.brush.kind == BrushKind::JointCapsule && armature.bones[bone].parent >= 0)
+      may_change(armature.bones[bone].parent);
+  }
+  settings.locked = std::move(kept);
+  for (int& bone : settings.bones) ++bone;
+  settings.relative_to_locks = false;
+}
+
+}  // namespace
+
+void begin_stroke(Editor& editor, BrushKind kind) {
+  const ViewPlace* view = hovered_view(editor);
+  if (!view || !why_not_paint(editor).empty()) return;
+  if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule)
+    return editor.messages.info("Paint", "A joint capsule paints bones: choose another brush for the mask");
+  auto running = std::make_shared<Painting::Running>();
+  running->document = editor.document();
+  running->tissue = parted_tissue(editor);
+  running->view = *view;
+  running->pixel = editor.input.pointer;
+  const Document& document = running->document;
+  const int bone = *skin_bone(editor);
+  running->edited = layer_to_edit(editor);
+  running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
+  StrokeSettings settings = stroke_settings(editor, kind);
+  running->before = running->edited.weights;
+  running->bones = *document.armature;
+  if (running->edited.layers) running->shown = *document.weights;
+  if (editor.skin->painting->mask && running->edited.layer) {
+    const WeightLayer& layer = *running->edited.layers->layers[*running->edited.layer];
+    running->label = std::string(name_of(kind)) + " mask of " + layer.name;
+    running->of = Painting::Running::Of::Mask;
+    running->before = std::make_shared<const SkinWeights>(mask_as_weights(layer));
+    running->bones.bones.clear();
+    for (const std::string& name : running->before->bones())
+      running->bones.bones.push_back({.name = name, .tail = {0, 0, 1}});
+    settings.bones = {kCovering};
+    settings.locked.clear();
+    settings.rigid_bone_tissue = false;
+    settings.relative_to_locks = false;
+  } else if (settings.normalize == Normalize::WhenComposed) {
+    running->of = Painting::Running::Of::Shares;
+    running->before =
+        std::make_shared<const SkinWeights>(shares_as_weights(*running->edited.layers->layers[*running->edited.layer]));
+    running->bones = with_below(*document.armature);
+    keep_other_bones(*document.armature, settings);
+  }
+  running->stroke = std::make_unique<Stroke>(
+      WeightedBody{*document.volume, *running->tissue, *document.tissues, running->bones}, running->before, settings);
+  editor.skin->painting->running = running;
+  paint_to(editor, editor.input.pointer);
+  editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke,
+                     drop_stroke};
+}
+
+int dabs_of_stroke(const Editor& editor) {
+  const auto& running = editor.skin->painting->running;
+  return running ? running->stroke->dab_count() : 0;
+}
+
+void follow_brush(Editor& editor) {
+  Painting& painting = *editor.skin->painting;
+  editor.skin->ring = 0;
+  if (!painting.running) {
+    painting.place.reset();
+    const ViewPlace* view = hovered_view(editor);
+    const bool works = editor.seams->brush ? why_not_cut(editor).empty() : why_not_paint(editor).empty();
+    if (editor.workspace != Workspace::Skin || !view || (editor.drag && !editor.seams->running) || editor.dialog ||
+        !works)
+      return;
+    painting.place = brush_place(editor, *view, editor.input.pointer);
+  }
+  if (!painting.place) return;
+  for (const ViewPlace& view : editor.layout.view_places)
+    if (view.id == painting.place->view)
+      editor.skin->ring =
+          static_cast<float>(painting.radius / SeenFrom(editor, view).millimetres_per_pixel(painting.place->seen));
+}
+
+void draw_brush(Editor& editor, const ViewPlace& view) {
+  const Painting& painting = *editor.skin->painting;
+  if (!painting.place || painting.place->view != view.id || editor.modal) return;
+  const SeenFrom seen(editor, view);
+  const GizmoPainter painter(editor, seen);
+  const BrushPlace& place = *painting.place;
+  // Upon the body, where the part that finds none of it is faint; in a slice a circle.
+  const auto line = [&](const std::vector<RingPoint>& points, float alpha, float width, bool dashed) {
+    for (const bool under : {true, false})
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const RingPoint &from = points[i], &to = points[(i + 1) % points.size()];
+        const float seen_so = alpha * (from.on_body && to.on_body ? 1.0f : 0.4f);
+        if (dashed && (under || i % 4 >= 2)) continue;
+        painter.line(from.at, to.at, under ? with_alpha(0xFF000000, 0.55f * seen_so) : with_alpha(0xFFFFFFFF, seen_so),
+                     under ? width + 1.6f : width);
+      }
+  };
+  const auto ring = [&](const glm::dvec3& centre, float alpha) {
+    if (view.id == ViewId::Body) {
+      BrushPlace there = place;
+      if (centre != place.seen) there.normal = mirror_plane(*editor.document().armature).direction(place.normal);
+      there.seen = centre;
+      line(ring_on_body(editor, there, painting.radius, kRingPoints), alpha, 2, false);
+      line(ring_on_body(editor, there, painting.radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
+      return;
+    }
+    const Ring rim = ring_at(place, centre, painting.radius), half = ring_at(place, centre, painting.radius / 2);
+    painter.ring(rim, with_alpha(0xFF000000, 0.55f * alpha), 3.6f, GizmoPainter::Part::Whole);
+    painter.ring(rim, with_alpha(0xFFFFFFFF, alpha), 2, GizmoPainter::Part::Whole);
+    for (int i = 0; i < kRingPoints; i += 4)
+      painter.arc(half, i * 2 * M_PI / kRingPoints, 2 * 2 * M_PI / kRingPoints, with_alpha(0xFFFFFFFF, 0.7f * alpha),
+                  1.2f);
+  };
+  ring(place.seen, 1);
+  painter.dot(place.seen, 0xFFFFFFFF, with_alpha(0xFF000000, 0.55f), 2.5f);
+  if (view.id == ViewId::Body)
+    painter.line(place.seen,
+                 place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)),
+                 with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
+  if (editor.handling->x_mirror && !editor.views->scene.pose && !editor.seams->brush) {
+    const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
+    if (seen.shows(other)) ring(other, 0.5f);
+  }
+}
+
+}  // namespace limber::editor

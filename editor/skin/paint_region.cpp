@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/paint_region.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "editor/skin/painting.h"
+#include "editor/skin/weight_display.h"
+#include "editor/skin/weight_edits.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::int64_t count(const TissueRegion& region) {
+  return std::accumulate(region.begin(), region.end(), std::int64_t{0},
+                         [](std::int64_t sum, std::uint8_t one) { return sum + (one != 0); });
+}
+
+TissueRegion together(const TissueRegion* old, TissueRegion made, RegionChange change) {
+  if (change == RegionChange::Replace) return made;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const bool before = old ? (*old)[i] != 0 : change != RegionChange::Add;  // without a region all is in it
+    made[i] = change == RegionChange::Add       ? before || made[i]
+              : change == RegionChange::TakeOut ? before && !made[i]
+                                                : before && made[i];
+  }
+  return made;
+}
+
+}  // namespace
+
+void change_region(Editor& editor, const std::string& label, RegionChange change, const WhereOfRegion& where) {
+  const WeightsToEdit what = weights_to_edit(editor);
+  const auto old = painted_region(editor);
+  const auto make = [=] { return together(old.get(), where(what), change); };
+  const auto keep = [volume = what.document.volume, label](Editor& e, TissueRegion made) {
+    const std::int64_t voxels = count(made);
+    if (e.document().volume != volume) return;
+    if (voxels == 0) return e.messages.warn(label, "No tissue lies in it");
+    e.skin->painting->region = {volume, std::make_shared<const TissueRegion>(std::move(made)), voxels};
+    e.messages.info(label, grouped(voxels) + " voxels can be changed");
+    e.touch();
+  };
+  if (what.tissue->size() <= editor.skin->painting->edited_at_once) return keep(editor, make());
+  start_task(editor, label, [make, keep](Progress& progress) -> Finish {
+    progress.update("where", 0);
+    auto made = std::make_shared<TissueRegion>(make());
+    return [made, keep](Editor& e) { keep(e, std::move(*made)); };
+  });
+}
+
+void clear_region(Editor& editor) {
+  editor.skin->painting->region = {};
+  editor.touch();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The region that brushes and edits of weights keep to.
+#include "editor/context/operator.h"
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/paint_region.h"
+#include "editor/skin/weight_display.h"
+#include "editor/skin/weight_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_paint(const Editor& editor) {
+  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  return why_not_paint(editor);
+}
+std::string needs_rest(const Editor& editor) {
+  const std::string why = needs_paint(editor);
+  return why.empty() && editor.views->scene.pose ? "Bring the body to rest first: a region is drawn on it there" : why;
+}
+std::string needs_region(const Editor& editor) { return painted_region(editor) ? "" : "No region is set"; }
+std::string needs_unmatched(const Editor& editor) {
+  return editor.skin->painting->unmatched.empty() ? "The last mirror found a match for every voxel"
+                                                  : needs_paint(editor);
+}
+
+void begin(Editor& editor, std::unique_ptr<Modal> (*tool)(Editor&)) {
+  editor.modal = tool(editor);
+  editor.modal_wrap = {};
+}
+
+// Where the chosen bones together have most of the weight.
+void region_of_bones(Editor& editor) {
+  change_region(editor, "Region of " + painted_name(editor), RegionChange::Replace, [](const WeightsToEdit& what) {
+    const SkinWeights& weights = *what.document.weights;
+    return region_where(*what.tissue, [&](std::int64_t place, const glm::ivec3& voxel) {
+      const int brick = what.tissue->brick_at(voxel);
+      return 2 * WeightRules::sum_of(weights.chunk(brick)[static_cast<std::size_t>(
+                                         place - what.tissue->bricks()[static_cast<std::size_t>(brick)].first)],
+                                     what.settings.bones) >
+             kFullWeight;
+    });
+  });
+}
+
+void invert_region(Editor& editor) {
+  change_region(editor, "Invert region", RegionChange::Replace, [old = painted_region(editor)](const WeightsToEdit&) {
+    TissueRegion other = *old;
+    for (std::uint8_t& one : other) one = !one;
+    return other;
+  });
+}
+
+void region_of_unmatched(Editor& editor) {
+  change_region(editor, "Region without a match", RegionChange::Replace,
+                [places = editor.skin->painting->unmatched](const WeightsToEdit& what) {
+                  TissueRegion region(static_cast<std::size_t>(what.tissue->size()), 0);
+                  for (const std::int64_t place : places)
+                    if (place < what.tissue->size()) region[static_cast<std::size_t>(place)] = 1;
+                  return region;
+                });
+}
+
+}  // namespace
+
+std::vector<Operator> region_operators() {
+  return {
+      {"skin.region_box", "Region by a box", icon::kRegion, "Weights",
+       "Brushes and edits keep to what lies in a box, from front to back; drawn in 3D or in a slice.",
+       [](Editor& e) { begin(e, begin_region_box); }, needs_rest},
+      {"skin.region_lasso", "Region by a lasso", icon::kRegion, "Weights",
+       "Brushes and edits keep to what is drawn around, from front to back; in 3D or in a slice.",
+       [](Editor& e) { begin(e, begin_region_lasso); }, needs_rest},
+      {"skin.region_bone", "Region of bone", icon::kRegion, "Weights",
+       "Brushes and edits keep to where the chosen bones have most of the weight.", region_of_bones, needs_paint},
+      {"skin.region_invert", "Invert region", "", "Weights",
+       "Brushes and edits keep to what lies outside of the region.", invert_region, needs_region},
+      {"skin.region_unmatched", "Region without a match", icon::kWarning, "Weights",
+       "Brushes and edits keep to where the last mirror found nothing on the other side.", region_of_unmatched,
+       needs_unmatched},
+      {"skin.region_clear", "Clear region", icon::kClose, "Weights", "Brushes and edits reach the whole body again.",
+       clear_region, needs_region},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/seam_brush.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/context/pointer_context.h"
+#include "editor/context/view_projection.h"
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/weight_display.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kPixelStep = 4;  // that a stroke is followed by, at scale 1
+
+// The knife's edge at a place: along the line of sight into the body, to both sides of a slice.
+Blade blade_at(const SeenFrom& seen, const BrushPlace& place, double radius, const Grid& grid) {
+  if (place.view != ViewId::Body)
+    return {place.rest + radius * seen.towards_eye, place.rest - radius * seen.towards_eye};
+  const glm::dvec3 to_eye = seen.direction_to_eye(place.seen);
+  return {place.rest + glm::length(grid.spacing) * to_eye, place.rest - radius * to_eye};
+}
+
+void change_at(SeamView::Running& running, const SeenFrom& seen, const BrushPlace& place, double radius) {
+  const Grid& grid = running.volume->grid;
+  if (running.stroke == SeamStroke::Join) {
+    running.faces += join_within(*running.seams, grid, place.rest, radius);
+    return;
+  }
+  const Blade blade = blade_at(seen, place, radius, grid);
+  if (running.blade) running.faces += cut_between(*running.seams, *running.volume, running.soft, *running.blade, blade);
+  running.blade = blade;
+}
+
+void stroke_to(Editor& editor, const glm::vec2& pixel) {
+  SeamView::Running& running = *editor.seams->running;
+  Painting& painting = *editor.skin->painting;
+  const SeenFrom seen(editor, running.view);
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / (kPixelStep * editor.look.scale))));
+  for (int step = 1; step <= steps; ++step) {
+    painting.place = brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
+    if (painting.place) change_at(running, seen, *painting.place, painting.radius);
+    else running.blade.reset();
+  }
+  running.pixel = pixel;
+  editor.touch();
+}
+
+void drop_stroke(Editor& editor) {
+  editor.seams->running.reset();
+  editor.touch();
+}
+
+void end_stroke(Editor& editor) {
+  const auto running = editor.seams->running;
+  drop_stroke(editor);
+  const bool cuts = running->stroke == SeamStroke::Cut;
+  if (running->faces == 0)
+    return editor.messages.info(
+        cuts ? "No seam was cut" : "No seam was erased",
+        cuts ? "Draw a line over soft tissue: the brush cuts along it" : "None lies within the brush");
+  Document next = editor.document();
+  if (next.volume != running->volume) return;
+  note_weights_source(editor);
+  next.seams = running->seams;
+  editor.history.commit(cuts ? "Cut seam" : "Erase seam", std::move(next));
+}
+
+}  // namespace
+
+std::string why_not_cut(const Editor& editor) {
+  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  const Document& document = editor.document();
+  if (!document.volume || !document.tissues) return "Open a volume first";
+  if (editor.views->scene.pose) return "Show the body at rest first";
+  return shown_seams(editor) ? "" : "Find the seams first";
+}
+
+void begin_seam_stroke(Editor& editor, SeamStroke stroke) {
+  const ViewPlace* view = hovered_view(editor);
+  const auto before = shown_seams(editor);
+  if (!view || !before || !why_not_cut(editor).empty()) return;
+  const Document& document = editor.document();
+  auto running = std::make_shared<SeamView::Running>();
+  running->volume = document.volume;
+  running->soft = soft_labels(*document.tissues);
+  running->seams = *before ? std::make_shared<Seams>(**before) : std::make_shared<Seams>(document.volume->grid.size);
+  running->stroke = stroke;
+  running->view = *view;
+  running->pixel = editor.input.pointer;
+  editor.seams->running = running;
+  stroke_to(editor, editor.input.pointer);
+  editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { stroke_to(e, e.input.pointer); }, end_stroke,
+                     drop_stroke};
+}
+
+}  // namespace limber::editor

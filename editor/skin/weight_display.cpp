@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/weight_display.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "editor/context/document_edits.h"
+#include "editor/skin/painted_region.h"
+#include "editor/skin/painting.h"
+#include "render/scene/weight_colormap.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kCountedAtOnce = 1'500'000;  // voxels: some milliseconds
+
+void add(const SkinWeights::Chunk& chunk, std::vector<std::int64_t>& sums, int sign) {
+  for (const Influence& influence : chunk)
+    for (int i = 0; i < 4; ++i) sums[influence.bone[i]] += sign * std::int64_t{influence.weight[i]};
+}
+
+std::shared_ptr<const LabelVolume> without_regions(const LabelVolume& volume, const TissueVoxels& tissue,
+                                                   const SkinWeights& weights, const std::set<std::string>& hidden) {
+  std::vector<std::uint8_t> is_hidden;
+  for (const std::string& bone : weights.bones()) is_hidden.push_back(hidden.contains(bone));
+  auto rest = std::make_shared<LabelVolume>(volume);
+  parallel_for(std::ssize(tissue.bricks()), 64, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t b = begin; b < end; ++b) {
+      const SkinWeights::Chunk& chunk = weights.chunk(b);
+      tissue.for_each(b, b + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
+        if (is_hidden[chunk[place - tissue.bricks()[b].first].bone[0]]) rest->at(voxel) = 0;
+      });
+    }
+  });
+  return rest;
+}
+
+// In the order of the weights' bones.
+const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Editor& editor, const SkinWeights& weights) {
+  auto& known = editor.skin->swatches;
+  const auto& armature = editor.document().armature;
+  if (known.colours && known.armature == armature && known.bones == weights.bones()) return known.colours;
+  const std::vector<glm::vec3> of_rig = render::bone_swatches(*armature);
+  std::vector<glm::vec3> colours;
+  for (const std::string& name : weights.bones()) {
+    const auto bone = armature->find(name);
+    colours.push_back(bone ? of_rig[*bone] : render::kExactZero);
+  }
+  known = {armature, weights.bones(), std::make_shared<const std::vector<glm::vec3>>(std::move(colours))};
+  return known.colours;
+}
+
+void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weights) {
+  SkinDisplay& skin = *editor.skin;
+  render::Scene& scene = editor.views->scene;
+  auto& region = skin.region;
+  if (skin.hidden.empty()) return void(region = {});
+  const auto volume = scene.volume;
+  // As the document's weights are: what a stroke paints stays in sight until it ends.
+  const bool stale = region.from != volume || region.hidden != skin.hidden || region.weights != weights;
+  if (stale && !(skin.region_task && editor.tasks.contains(*skin.region_task))) {
+    const auto make = [volume, weights, hidden = skin.hidden, tissue = tissue_voxels(*editor.views, editor.document()),
+                       old = region.from == volume ? region.volume : nullptr] {
+      auto made = without_regions(*volume, *tissue, *weights, hidden);
+      return old && old->voxels == made->voxels ? old : made;  // the same need not be uploaded again
+    };
+    const auto keep = [volume, weights, hidden = skin.hidden](Editor& e, std::shared_ptr<const LabelVolume> made) {
+      if (!e.skin->hidden.empty()) e.skin->region = {volume, std::move(made), weights, hidden};
+      e.touch();
+    };
+    if (weights->size() <= skin.painting->edited_at_once) keep(editor, make());
+    else
+      skin.region_task = start_task(editor, "", [make, keep](Progress&) -> Finish {
+        return [keep, made = make()](Editor& e) { keep(e, made); };
+      });
+  }
+  if (region.from == volume) scene.volume = region.volume;
+}
+
+}  // namespace
+
+SkinDisplay::SkinDisplay() : painting(std::make_unique<Painting>()) {}
+SkinDisplay::~SkinDisplay() = default;
+
+WeightShares::Counted WeightShares::count(const std::shared_ptr<const SkinWeights>& weights) {
+  constexpr std::int64_t kGrain = 512;  // bricks
+  const std::int64_t blocks = (weights->chunk_count() + kGrain - 1) / kGrain;
+  std::vector<std::vector<std::int64_t>> sums(static_cast<std::size_t>(blocks));
+  parallel_for(weights->chunk_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    auto& sum = sums[static_cast<std::size_t>(begin / kGrain)];
+    sum.assign(weights->bones().size(), 0);
+    for (std::int64_t brick = begin; brick < end; ++brick) add(weights->chunk(brick), sum, 1);
+  });
+  Counted counted{weights, std::vector<std::int64_t>(weights->bones().size())};
+  for (const auto& sum : sums)
+    for (std::size_t bone = 0; bone < sum.size(); ++bone) counted.sums[bone] += sum[bone];
+  return counted;
+}
+
+void WeightShares::update(const std::shared_ptr<const SkinWeights>& weights, const std::function<void()>& wake) {
+  if (counting_.valid()) {
+    if (counting_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    counted_ = counting_.get();
+  }
+  if (counted_.weights == weights) return;
+  if (!weights) return void(counted_ = {});
+  const bool same_body = counted_.weights && counted_.weights->size() == weights->size() &&
+                         counted_.weights->chunk_count() == weights->chunk_count() &&
+                         counted_.weights->bones().size() == weights->bones().size();
+  std::int64_t other = 0;
+  for (std::int64_t brick = 0; same_body && brick < weights->chunk_count(); ++brick)
+    if (weights->shared_chunk(brick) != counted_.weights->shared_chunk(brick))
+      other += std::ssize(weights->chunk(brick));
+  if (same_body && other < kCountedAtOnce) {
+    for (std::int64_t brick = 0; brick < weights->chunk_count(); ++brick) {
+      if (weights->shared_chunk(brick) == counted_.weights->shared_chunk(brick)) continue;
+      add(counted_.weights->chunk(brick), counted_.sums, -1);
+      add(weights->chunk(brick), counted_.sums, 1);
+    }
+    counted_.weights = weights;
+  } else if (weights->size() < kCountedAtOnce) {
+    counted_ = count(weights);
+  } else {
+    counted_ = {};
+    counting_ = std::async(std::launch::async, [weights, wake] {
+      Counted counted = count(weights);
+      wake();
+      return counted;
+    });
+  }
+}
+
+std::optional<double> WeightShares::of(int bone) const {
+  if (!counted_.weights || bone < 0 || bone >= std::ssize(counted_.sums) || counted_.weights->size() == 0)
+    return std::nullopt;
+  return static_cast<double>(counted_.sums[static_cast<std::size_t>(bone)]) /
+         (static_cast<double>(counted_.weights->size()) * kFullWeight);
+}
+
+std::shared_ptr<const SkinWeights> seen_weights(const Editor& editor) {
+  const Document& document = editor.document();
+  const auto& weights = editor.views->preview_weights ? editor.views->preview_weights : document.weights;
+  return document.volume && document.armature ? weights : nullptr;
+}
+
+int weights_bone(const SkinWeights& weights, const std::string& name) {
+  const auto found = std::find(weights.bones().begin(), weights.bones().end(), name);
+  return found == weights.bones().end() ? -1 : static_cast<int>(found - weights.bones().begin());
+}
+
+Colour swatch_of(Editor& editor, int bone) {
+  if (skin_bone(editor) == bone) return editor.look.theme.select;
+  const auto weights = seen_weights(editor);
+  const int place =
+      weights ? weights_bone(*weights, editor.document().armature->bones[static_cast<std::size_t>(bone)].name) : -1;
+  if (place < 0) return editor.look.theme.text3;
+  const glm::vec3 colour = (*swatches(editor, *weights))[static_cast<std::size_t>(place)];
+  return rgb(colour.r, colour.g, colour.b);
+}
+
+void show_weights(Editor& editor) {
+  render::Scene& scene = editor.views->scene;
+  scene.weights.reset();
+  if (editor.workspace != Workspace::Skin) return;
+  const auto bone = skin_bone(editor);
+  if (scene.armature) {
+    scene.bone_shape = render::BoneShape::Stick;
+    scene.bones_in_front = true;
+    if (bone && *bone < std::ssize(scene.bones))
+      scene.bones[static_cast<std::size_t>(*bone)].active = scene.bones[static_cast<std::size_t>(*bone)].selected =
+          true;
+  }
+  const auto weights = seen_weights(editor);
+  editor.skin->shares.update(weights, [&host = editor.host] { host.wake(); });
+  if (editor.skin->shares.busy()) editor.touch();
+  if (!weights || !bone || scene.volume != editor.document().volume) return;
+  if (tissue_voxels(*editor.views, editor.document())->size() != weights->size()) return;
+  if (editor.document().weights) show_regions(editor, editor.document().weights);
+  if (!editor.skin->display) return;
+  scene.outlined.reset();  // the weights are what is chosen here
+  scene.weights = render::ShownWeights{
+      .weights = weights,
+      .tissue = tissue_voxels(*editor.views, editor.document()),
+      .display = *editor.skin->display,
+      .bone = weights_bone(*weights, editor.document().armature->bones[static_cast<std::size_t>(*bone)].name),
+      .swatches = swatches(editor, *weights),
+      .region = painted_region(editor),
+      .contours = editor.skin->contours};
+}
+
+bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume) {
+  return volume && (volume == editor.document().volume ||
+                    (volume == editor.skin->region.volume && editor.skin->region.from == editor.document().volume));
+}
+
+double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
+  const Grid& grid = volume.grid;
+  const glm::dvec3 s = grid.spacing;
+  double nearest = 1e300;  // squared
+  // Outwards from the voxel along each axis, no further than what is known.
+  const auto within = [&](int off, int axis) { return (off * s[axis]) * (off * s[axis]) < nearest; };
+  for (int dz = 0; within(dz, 2); ++dz) {
+    bool any = false;
+    for (const int z : {voxel.z - dz, voxel.z + dz}) {
+      any |= z >= -1 && z <= grid.size.z;
+      if (z < -1 || z > grid.size.z) continue;
+      for (int dy = 0; within(dy, 1) && (dy * s.y) * (dy * s.y) + (dz * s.z) * (dz * s.z) < nearest; ++dy) {
+        if (voxel.y - dy < -1 && voxel.y + dy > grid.size.y) break;
+        for (const int y : {voxel.y - dy, voxel.y + dy}) {
+          if (y < -1 || y > grid.size.y) continue;
+          const double rest = (dy * s.y) * (dy * s.y) + (dz * s.z) * (dz * s.z);
+          for (int dx = 0; rest + (dx * s.x) * (dx * s.x) < nearest; ++dx)
+            if (volume.at_or_air({voxel.x - dx, y, z}) == 0 || volume.at_or_air({voxel.x + dx, y, z}) == 0)
+              nearest = rest + (dx * s.x) * (dx * s.x);
+        }
+      }
+    }
+    if (!any) break;
+  }
+  // From middle to middle, less the air voxel's half.
+  return std::max(0.0, std::sqrt(nearest) - std::min({s.x, s.y, s.z}) / 2);
+}
+
+bool is_locked(const Document& document, const std::string& bone) {
+  return document.locks && document.locks->bones.contains(bone);
+}
+
+void set_locks(Editor& editor, const std::string& label, std::set<std::string> bones) {
+  const std::set<std::string> before =
+      editor.document().locks ? editor.document().locks->bones : std::set<std::string>{};
+  if (bones == before) return;
+  Document next = editor.document();
+  next.locks = std::make_shared<const WeightLocks>(WeightLocks{std::move(bones)});
+  commit(editor, label, std::move(next));
+}
+
+void toggle_lock(Editor& editor, int bone) {
+  const std::string name = editor.document().armature->bones[static_cast<std::size_t>(bone)].name;
+  std::set<std::string> bones = editor.document().locks ? editor.document().locks->bones : std::set<std::string>{};
+  const bool locked = bones.erase(name) > 0;
+  if (!locked) bones.insert(name);
+  set_locks(editor, (locked ? "Unlock " : "Lock ") + name, std::move(bones));
+}
+
+void lock_all_but(Editor& editor, int bone) {
+  const Armature& armature = *editor.document().armature;
+  const std::string name = armature.bones[static_cast<std::size_t>(bone)].name;
+  std::set<std::string> others;
+  for (const Bone& other : armature.bones)
+    if (other.name != name) others.insert(other.name);
+  const bool so_already = editor.document().locks && editor.document().locks->bones == others;
+  set_locks(editor, so_already ? "Unlock all bones" : "Lock all but " + name,
+            so_already ? std::set<std::string>{} : others);
+}
+
+void hide_region(Editor& editor, const std::string& bone, bool hidden) {
+  if (hidden) editor.skin->hidden.insert(bone);
+  else editor.skin->hidden.erase(bone);
+  editor.touch();
+}
+
+void isolate_regions(Editor& editor, const std::set<std::string>& bones) {
+  std::set<std::string> others;
+  for (const Bone& bone : editor.document().armature->bones)
+    if (!bones.contains(bone.name)) others.insert(bone.name);
+  editor.skin->hidden = editor.skin->hidden == others ? std::set<std::string>{} : others;
+  editor.touch();
+}
+
+const char* name_of(const std::optional<render::WeightDisplay>& display) {
+  if (!display) return "Tissues";
+  switch (*display) {
+    case render::WeightDisplay::Active: return "Active bone weight";
+    case render::WeightDisplay::Dominant: return "Dominant bones";
+    case render::WeightDisplay::Mixed: return "All influences";
+    case render::WeightDisplay::Count:
+    case render::WeightDisplay::Field: break;
+  }
+  return "Number of influences";
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/weight_edits.h"
+#include "editor/seams/seam_view.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "editor/context/document_edits.h"
+#include "editor/skin/brush_settings.h"
+#include "editor/skin/weight_display.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Fields = std::vector<FormField>;
+
+// Where a reach and an operation's own place let it edit; empty for everywhere.
+TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operation) {
+  TissueRegion own;
+  if (operation.where) own = operation.where(what);
+  const BrushFilter& filter = what.settings.filter;
+  const bool by_label = operation.reach == EditReach::AsBrush && !filter.labels.empty();
+  if (!by_label && !filter.box && !filter.plane && !filter.allows) return own;
+  const LabelVolume& volume = *what.document.volume;
+  const AffineTransform world = world_from_voxel(volume.grid);
+  return region_where(*what.tissue, [&](std::int64_t place, const glm::ivec3& voxel) {
+    if (!own.empty() && !own[static_cast<std::size_t>(place)]) return false;
+    if (by_label && !filter.labels[volume.at(voxel)]) return false;
+    if (filter.box && !(glm::all(glm::greaterThanEqual(glm::dvec3(voxel), filter.box->low)) &&
+                        glm::all(glm::lessThanEqual(glm::dvec3(voxel), filter.box->high))))
+      return false;
+    if (filter.plane && glm::dot(world * glm::dvec3(voxel) - filter.plane->point, filter.plane->normal) > 0)
+      return false;
+    return !filter.allows || filter.allows(place, voxel);
+  });
+}
+
+struct Done {
+  EditedWeights edited;
+  std::optional<EditedLayers> made;  // where something changed
+};
+
+Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {
+  progress.update("where", 0);
+  EditScope scope;
+  scope.locked = what.settings.locked;
+  scope.normalize = what.settings.normalize;
+  scope.rigid_bone_tissue = !operation.edits_bone_tissue;
+  scope.region = region_of(what, operation);
+  scope.progress = &progress;
+  Done result{operation.work(what, scope), {}};
+  if (result.edited.edit.changed > 0)
+    result.made = edited_layers(what.layer, std::make_shared<const SkinWeights>(result.edited.edit.weights));
+  return result;
+}
+
+// What came of it, in words; true when it became an edit.
+bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
+  EditedWeights& outcome = result.edited;
+  const WeightEdit& edit = outcome.edit;
+  const Document& now = editor.document();
+  const bool others = now.layers != what.layer.layers || now.weights != what.layer.came_out;
+  if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
+    editor.messages.warn(operation.label, "The weights were changed meanwhile: it was dropped");
+    return false;
+  }
+  const std::string lock = edit.blocked > 0 && edit.blocked_by >= 0 ? lock_message(*now.armature, edit.blocked_by) : "";
+  editor.skin->painting->unmatched = std::move(outcome.unmatched);
+  if (edit.changed == 0) {
+    if (!lock.empty())
+      editor.messages.toast_error(lock, "Nothing else can take or give the weight here", "skin.unlock_all");
+    else if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
+    else editor.messages.info(operation.label, "All is so already");
+    return false;
+  }
+  commit_weights(editor, operation.label, what.layer, *result.made);
+  const bool was_off = what.settings.normalize == Normalize::WhenComposed;
+  const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels") +
+                              (was_off ? ", normalized: only strokes leave that to the layers" : "");
+  if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
+  else if (!lock.empty())
+    editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " kept: " + lock);
+  else editor.messages.ok(operation.label, changed);
+  return true;
+}
+
+void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& make) {
+  Painting& painting = *editor.skin->painting;
+  if (painting.edit_job) editor.jobs.cancel(*painting.edit_job);
+  painting.edit_job.reset();
+  const WeightOperation operation = make(editor, fields);
+  const WeightsToEdit what = weights_to_edit(editor);
+  if (what.tissue->size() <= painting.edited_at_once && !operation.reads_file) {
+    keep(editor, what, operation, done(what, operation, no_progress()));
+    return;
+  }
+  const Selection selection = editor.selection;
+  painting.edit_job = start_task(editor, operation.label, [=](Progress& progress) -> Finish {
+    auto outcome = std::make_shared<Done>(done(what, operation, progress));
+    return [=](Editor& e) {
+      e.skin->painting->edit_job.reset();
+      if (!keep(e, what, operation, std::move(*outcome)) || fields.empty()) return;
+      *e.last_operation = {.label = operation.label,
+                           .fields = fields,
+                           .shown = fields,
+                           .act = weight_act(make),
+                           .revision = e.history.revision(),
+                           .selection = selection,
+                           .part = e.handling->part,
+                           .unfolded = e.last_operation->unfolded};
+    };
+  });
+}
+
+}  // namespace
+
+WeightsToEdit weights_to_edit(Editor& editor) {
+  WeightsToEdit what{editor.document(), parted_tissue(editor), stroke_settings(editor, BrushKind::Set),
+                     layer_to_edit(editor)};
+  what.document.weights = what.layer.weights;
+  return what;
+}
+
+ActWith weight_act(const MakeWeightOperation& make) {
+  return [make](Editor& editor, const Fields& fields) { perform(editor, fields, make); };
+}
+
+void edit_weights(Editor& editor, const Fields& fields, const MakeWeightOperation& make) {
+  act_adjustably(editor, fields, weight_act(make));
+}
+
+std::vector<int> painted_bones(const Editor& editor) { return stroke_settings(editor, BrushKind::Set).bones; }
+
+std::string painted_name(const Editor& editor) {
+  const std::vector<int> bones = painted_bones(editor);
+  return bones.size() == 1 ? editor.document().weights->bones()[static_cast<std::size_t>(bones[0])]
+                           : std::to_string(bones.size()) + " bones";
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Over the views of the Skin workspace: what the colours of weights mean, and the weights under the pointer.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/context/pointer_context.h"
+#include "editor/skin/weight_display.h"
+#include "editor/volume/tissue_edits.h"
+#include "render/scene/weight_colormap.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8,
+                kNeeded = 460;  // narrow: a ramp in a small view
+
+Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
+
+// Exact 0, the ramp, exact 1.
+void draw_ramp(Editor& editor, const Rect& box) {
+  const Look& look = editor.look;
+  const float top = box.low.y + look.px(26), bottom = top + look.px(12), cap = look.px(22), gap = look.px(4);
+  const Rect zero{{box.low.x + look.px(10), top}, {box.low.x + look.px(10) + cap, bottom}},
+      one{{box.high.x - look.px(10) - cap, top}, {box.high.x - look.px(10), bottom}};
+  const Rect ramp{{zero.high.x + gap, top}, {one.low.x - gap, bottom}};
+  fill(zero, colour_of(render::kExactZero), look.px(2));
+  fill(one, colour_of(render::kExactOne), look.px(2));
+  constexpr int kSteps = static_cast<int>(render::kWeightRamp.size()) - 1;
+  for (int step = 0; step < kSteps; ++step) {
+    const Colour left = colour_of(render::kWeightRamp[static_cast<std::size_t>(step)]),
+                 right = colour_of(render::kWeightRamp[static_cast<std::size_t>(step) + 1]);
+    const float from = ramp.low.x + ramp.width() * static_cast<float>(step) / kSteps,
+                to = ramp.low.x + ramp.width() * static_cast<float>(step + 1) / kSteps;
+    ImGui::GetWindowDrawList()->AddRectFilledMultiColor({from, top}, {to, bottom}, left, right, right, left);
+  }
+  for (const float level : {0.25f, 0.5f, 0.75f}) {
+    const float x = std::round(ramp.low.x + ramp.width() * level);
+    if (editor.skin->contours) fill({{x, top}, {x + look.line(), bottom}}, with_alpha(0xFF000000, 0.45f));
+  }
+  const Rect labels{{zero.low.x, bottom + look.px(1)}, {one.high.x, box.high.y - look.px(2)}};
+  put_text(editor, look.fonts.small, look.theme.view_text2, labels, "exact 0");
+  put_text(editor, look.fonts.small, look.theme.view_text2,
+           Rect{{ramp.low.x, labels.low.y}, {ramp.high.x, labels.high.y}}, "0.5", Align::Centre);
+  put_text(editor, look.fonts.small, look.theme.view_text2, labels, "exact 1", Align::Right);
+}
+
+// Swatches with words, as many as fit.
+void draw_chips(Editor& editor, const Rect& box, const std::vector<std::pair<Colour, std::string>>& chips) {
+  const Look& look = editor.look;
+  float x = box.low.x + look.px(10);
+  const float y = box.low.y + look.px(28);
+  for (const auto& [colour, words] : chips) {
+    const float width = text_size(look.fonts.small, words).x;
+    if (x + look.px(18) + width > box.high.x - look.px(10)) break;
+    fill({{x, y}, {x + look.px(12), y + look.px(12)}}, colour, look.px(3));
+    x += look.px(18);
+    put_text(editor, look.fonts.small, look.theme.view_text2,
+             Rect{{x, y - look.px(2)}, {x + width + 1, y + look.px(14)}}, words);
+    x += width + look.px(12);
+  }
+}
+
+// Those with the largest shares first.
+std::vector<std::pair<Colour, std::string>> bones_by_share(Editor& editor, const SkinWeights& weights) {
+  const auto& bones = editor.document().armature->bones;
+  std::vector<std::pair<double, int>> order;
+  for (int bone = 0; bone < std::ssize(bones); ++bone)
+    order.push_back(
+        {-editor.skin->shares.of(weights_bone(weights, bones[static_cast<std::size_t>(bone)].name)).value_or(0) -
+             (skin_bone(editor) == bone ? 2 : 0),
+         bone});
+  std::sort(order.begin(), order.end());
+  std::vector<std::pair<Colour, std::string>> chips;
+  for (const auto& [share, bone] : order)
+    if (share < 0) chips.push_back({swatch_of(editor, bone), bones[static_cast<std::size_t>(bone)].name});
+  return chips;
+}
+
+std::string three_digits(double value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
+std::string tissue_and_depth(const Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  const LabelVolume& volume = *editor.document().volume;
+  const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
+  const double depth = depth_of(volume, hover.voxel);
+  const glm::dvec3& spacing = volume.grid.spacing;
+  const std::string words =
+      (tissue ? shown_name(*tissue) : std::string("Label")) + " \u00b7 " + std::to_string(hover.label) + ", ";
+  return words + (depth <= std::max({spacing.x, spacing.y, spacing.z})
+                      ? std::string("surface")
+                      : std::to_string(static_cast<int>(std::lround(depth))) + " mm deep");
+}
+
+}  // namespace
+
+bool draw_weight_legend(Editor& editor, const Rect& view) {
+  if (!editor.views->scene.weights || !editor.views->scene.weights->weights || view.width() < editor.look.px(kNeeded) ||
+      view.height() < editor.look.px(200))
+    return false;
+  const Look& look = editor.look;
+  const auto weights = editor.views->scene.weights->weights;
+  const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + kHeight)};
+  const render::WeightDisplay display = editor.views->scene.weights->display;
+  const float narrowest = look.px(display == render::WeightDisplay::Active ? kNarrow : kWidth);
+  const Rect box{low, low + glm::vec2(std::clamp(0.4f * view.width(), narrowest, look.px(kWidth)), look.px(kHeight))};
+  fill(box, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
+  const Pressed pressed = press_area(editor, "legend", box);
+  if (pressed.hovered) operator_tooltip(editor, *find_operator(editor, "skin.display_pie"), box);
+  if (pressed.clicked) run(editor, "skin.display_pie");
+  const std::string title =
+      display == render::WeightDisplay::Active
+          ? "Weight of " + editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name
+      : display == render::WeightDisplay::Count ? std::string("Bones that a place follows")
+                                                : std::string(name_of(editor.skin->display));
+  put_text(editor, look.fonts.regular, look.theme.view_text,
+           Rect{{box.low.x + look.px(10), box.low.y + look.px(3)}, {box.high.x - look.px(10), box.low.y + look.px(23)}},
+           title);
+  if (display == render::WeightDisplay::Active) draw_ramp(editor, box);
+  else if (display != render::WeightDisplay::Count) draw_chips(editor, box, bones_by_share(editor, *weights));
+  else {
+    std::vector<std::pair<Colour, std::string>> counts;
+    for (int count = 1; count <= 4; ++count)
+      counts.push_back({colour_of(render::count_colour(count)), std::to_string(count)});
+    draw_chips(editor, box, counts);
+  }
+  return true;
+}
+
+void draw_weights_at_pointer(Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  const InputState& input = editor.input;
+  if (editor.workspace != Workspace::Skin || hover.weights.empty() || !hover.inside || editor.drag || editor.modal ||
+      input.down(MouseButton::Left))
+    return;
+  const ViewPlace* place = hovered_view(editor);
+  if (!place || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;
+  const Look& look = editor.look;
+  const float row = look.px(20), width = look.px(176),
+              height = row * static_cast<float>(hover.weights.size()) + look.px(8 + 6 + 20 + 20);
+  const float off = look.px(22) + editor.skin->ring;
+  glm::vec2 low{input.pointer.x + off, input.pointer.y - look.px(20)};
+  // Beside the pointer within its view, or where that is narrow within all views.
+  const Rect& all = editor.layout.views;
+  const float edge = look.px(4);
+  if (low.x + width > place->rect.high.x - edge && input.pointer.x - off - width >= place->rect.low.x)
+    low.x = input.pointer.x - off - width;
+  if (low.x + width > all.high.x - edge) low.x = input.pointer.x - off - width;
+  low.y = std::clamp(low.y, all.low.y + edge, std::max(all.low.y + edge, all.high.y - height - edge));
+  const Rect box{glm::round(low), glm::round(low) + glm::vec2(width, height)};
+  fill(box, with_alpha(look.theme.view_plate, 0.92f), look.px(5));
+  const Colour ground = look.theme.view_text2;
+  float y = box.low.y + look.px(6), sum = 0;
+  for (const BoneWeight& weight : hover.weights) {
+    const auto bone = editor.document().armature ? editor.document().armature->find(weight.bone) : std::nullopt;
+    const float swatch = look.px(8), at = std::round(y + (row - swatch) / 2);
+    fill({{box.low.x + look.px(12), at}, {box.low.x + look.px(12) + swatch, at + swatch}},
+         bone ? swatch_of(editor, *bone) : ground, look.line());
+    put_text(editor, look.fonts.regular, look.theme.view_text,
+             Rect{{box.low.x + look.px(28), y}, {box.high.x - look.px(58), y + row}}, weight.bone);
+    put_text(editor, look.fonts.mono, look.theme.view_text,
+             Rect{{box.high.x - look.px(62), y}, {box.high.x - look.px(12), y + row}}, three_digits(weight.value),
+             Align::Right);
+    y += row;
+    sum += static_cast<float>(weight.value);
+  }
+  y += look.px(3);
+  fill({{box.low.x + look.px(12), y}, {box.high.x - look.px(12), y + look.line()}}, with_alpha(ground, 0.35f));
+  y += look.px(3);
+  const bool whole = std::abs(sum - 1) < 0.5f / kFullWeight;
+  put_text(editor, look.fonts.regular, ground, Rect{{box.low.x + look.px(12), y}, {box.high.x - look.px(62), y + row}},
+           "Sum");
+  put_text(editor, look.fonts.mono, whole ? look.theme.ok : look.theme.error,
+           Rect{{box.high.x - look.px(62), y}, {box.high.x - look.px(12), y + row}}, three_digits(sum), Align::Right);
+  y += row - look.px(2);
+  put_text(editor, look.fonts.small, ground, Rect{{box.low.x + look.px(12), y}, {box.high.x - look.px(8), y + row}},
+           tissue_and_depth(editor));
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/ui/tooltip.h"
+
+#include <utility>
+
+#include <imgui_internal.h>
+
+#include "editor/ui/draw.h"
+
+namespace limber::editor {
+
+void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& sentence,
+             const std::optional<Chord>& chord) {
+  auto& tip = ui.tip;
+  if (tip.widget != title || tip.rect != rect) {
+    tip.widget = title;
+    tip.rect = rect;
+    tip.since = ui.now;
+  }
+  tip.title = title;
+  tip.sentence = sentence;
+  tip.chord = chord;
+  tip.asked = true;
+}
+
+void draw_tooltip(Ui& ui) {
+  auto& tip = ui.tip;
+  // While a number is typed a tip would hide the fields below it.
+  const ImGuiID active = ImGui::GetActiveID();
+  const bool typing = active != 0 && ImGui::TempInputIsActive(active);
+  if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();
+  if (ui.input.down(MouseButton::Left)) return;
+  if (ui.now - tip.since < ui.tooltip_delay) return ui.wake_at(tip.since + ui.tooltip_delay);
+
+  const Look& look = ui.look;
+  const float padding = look.px(10), widest = look.px(320);
+  const std::vector<std::string> caps = tip.chord ? key_caps(*tip.chord) : std::vector<std::string>{};
+  const float caps_width = caps.empty() ? 0 : look.px(12) + width_of_key_caps(ui, caps);
+  const ImFont* font = look.fonts.regular;
+  const glm::vec2 body =
+      tip.sentence.empty()
+          ? glm::vec2(0)
+          : from_im(look.fonts.small->CalcTextSizeA(look.fonts.small->FontSize, FLT_MAX, widest, tip.sentence.c_str()));
+  const glm::vec2 title = tip.title.empty()
+                              ? glm::vec2(0)
+                              : from_im(font->CalcTextSizeA(font->FontSize, FLT_MAX, widest, tip.title.c_str()));
+  const float gap = tip.title.empty() || tip.sentence.empty() ? 0 : look.px(4);
+  const glm::vec2 size{std::max(title.x + caps_width, body.x) + 2 * padding, title.y + gap + body.y + 2 * look.px(7)};
+  glm::vec2 corner{tip.rect.low.x, tip.rect.high.y + look.px(6)};
+  if (corner.y + size.y > ui.window.high.y) corner.y = tip.rect.low.y - look.px(6) - size.y;
+  corner.x = std::clamp(corner.x, look.px(4), std::max(look.px(4), ui.window.high.x - size.x - look.px(4)));
+
+  ImGui::SetNextWindowPos(im(corner));
+  ImGui::SetNextWindowSize(im(size));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, 0);
+  ImGui::Begin("##tooltip", nullptr,
+               ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoSavedSettings);
+  const Rect rect{corner, corner + size};
+  fill(rect, look.theme.panel, look.px(5));
+  outline(rect, look.theme.line2, look.px(5), look.line());
+  const glm::vec2 text = corner + glm::vec2(padding, look.px(7));
+  if (!tip.title.empty()) put_wrapped(ui, look.fonts.regular, look.theme.text, text, widest, tip.title);
+  put_key_caps(ui, rect.high.x - padding - caps_width + (caps.empty() ? 0 : look.px(12)), text.y + font->FontSize / 2,
+               caps);
+  if (!tip.sentence.empty())
+    ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize,
+                                        im(text + glm::vec2(0, title.y + gap)), look.theme.text2, tip.sentence.c_str(),
+                                        nullptr, widest);
+  ImGui::End();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/viewport/clipping_gizmo.h"
+
+#include "editor/context/document_edits.h"
+#include "editor/ui/widgets.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kThinnest = 1;  // voxels between two faces of the box
+constexpr double kSnap = 10;     // mm of the world that Ctrl goes by
+
+const Visibility& shown(const Editor& editor) {
+  const auto& preview = editor.views->preview_visibility;
+  return preview ? *preview : *editor.document().visibility;
+}
+
+class Painter {
+ public:
+  Painter(Editor& editor, const Rect& rect) : editor_(editor), rect_(rect), size_(rect.size()) {}
+
+  bool pixel_of(const glm::dvec3& world, glm::vec2& pixel) const {
+    glm::dvec2 in_view;
+    if (!render::project(editor_.views->body.camera, world, size_, in_view)) return false;
+    pixel = rect_.low + glm::vec2(in_view);
+    return true;
+  }
+
+  void line(const glm::dvec3& from, const glm::dvec3& to) const {
+    glm::vec2 a, b;
+    if (pixel_of(from, a) && pixel_of(to, b))
+      ImGui::GetWindowDrawList()->AddLine(im(a), im(b), with_alpha(0xFFFFFFFF, 0.6f), editor_.look.line());
+  }
+
+  // A square of 9 pixels; returns what the pointer does with it.
+  Pressed handle(const std::string& name, const glm::dvec3& world, Colour colour, const std::string& sentence) const {
+    glm::vec2 at;
+    if (!pixel_of(world, at)) return {};
+    at = glm::round(at);
+    const Look& look = editor_.look;
+    const float half = std::round(look.px(9) / 2);
+    const Pressed pressed = press_area(editor_, name, Rect{at - half, at + half}.grown(look.px(3)));
+    fill(Rect{at - half, at + half}.grown(1), 0xA0000000);
+    fill({at - half, at + half}, pressed.hovered || pressed.held ? 0xFFFFFFFF : colour);
+    if (pressed.hovered && !pressed.held) tooltip(editor_, {at - half, at + half}, name, sentence);
+    return pressed;
+  }
+
+  // The change of the handle that is held, in multiples of `direction`, since it was pressed.
+  double dragged(const glm::dvec3& world, const glm::dvec3& direction) const {
+    return along(editor_.views->body.camera, size_, world, direction,
+                 glm::dvec2(editor_.input.pointer - editor_.views->handle_from));
+  }
+
+ private:
+  Editor& editor_;
+  const Rect rect_;
+  glm::ivec2 size_;
+};
+
+void begin_preview(Editor& editor) {
+  editor.views->preview_visibility = editor.document().visibility;
+  editor.views->handle_from = editor.input.pointer;
+}
+
+// The last preview becomes the document.
+void end_preview(Editor& editor, const std::string& label) {
+  const auto preview = editor.views->preview_visibility;
+  editor.views->preview_visibility.reset();
+  if (!preview || *preview == *editor.document().visibility) return;
+  Document next = editor.document();
+  next.visibility = preview;
+  commit(editor, label, std::move(next));
+}
+
+void commit_clip(Editor& editor, const std::string& label, Visibility visibility) {
+  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  end_preview(editor, label);
+}
+
+double snapped(double millimetres) { return std::round(millimetres / kSnap) * kSnap; }
+
+void draw_box(Editor& editor, const Painter& painter) {
+  const auto volume = editor.document().volume;
+  const Grid& grid = volume->grid;
+  const AffineTransform world = world_from_voxel(grid);
+  const ClipBox box = shown(editor).clip_box;
+  for (int corner = 0; corner < 8; ++corner)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (corner >> axis & 1) continue;
+      glm::dvec3 from, to;
+      for (int k = 0; k < 3; ++k) from[k] = to[k] = corner >> k & 1 ? box.high[k] : box.low[k];
+      to[axis] = box.high[axis];
+      painter.line(world * from, world * to);
+    }
+
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true}) {
+      const auto face_centre = [&](const ClipBox& b) {
+        glm::dvec3 p = (b.low + b.high) * 0.5;
+        p[axis] = high ? b.high[axis] : b.low[axis];
+        return world * p;
+      };
+      const glm::dvec3 normal(grid.direction[axis]), size = glm::abs(normal);
+      const int world_axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
+      const std::string name = std::string("Clip face ") + "xyz"[axis] + (high ? "+" : "-");
+      const Pressed pressed = painter.handle(name, face_centre(box), editor.look.theme.axis[world_axis],
+                                             "Drag to move this face of the clip box, with Ctrl by 10 mm. A double "
+                                             "click brings it back to the volume's end.");
+      if (pressed.double_clicked) {
+        Visibility next = *editor.document().visibility;
+        move_face(next.clip_box, grid, axis, high, high ? grid.size[axis] - 0.5 : -0.5);
+        commit_clip(editor, "Reset clip face", std::move(next));
+        continue;
+      }
+      if (pressed.activated) begin_preview(editor);
+      if (pressed.held && editor.views->preview_visibility) {
+        Visibility next = *editor.document().visibility;
+        const ClipBox& start = editor.document().visibility->clip_box;
+        double place =
+            (high ? start.high : start.low)[axis] + std::round(painter.dragged(face_centre(start), world.linear[axis]));
+        if (editor.input.modifiers().ctrl) {
+          // Whole centimetres of the world's axis that the face moves along.
+          const double step = world.linear[axis][world_axis],
+                       first = face_centre(start)[world_axis] - step * (high ? start.high : start.low)[axis];
+          place = (snapped(first + step * place) - first) / step;
+        }
+        move_face(next.clip_box, grid, axis, high, place);
+        editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
+        editor.touch();
+      }
+      if (ImGui::IsItemDeactivated()) end_preview(editor, "Move clip box");
+    }
+}
+
+void draw_plane(Editor& editor, const Painter& painter) {
+  const ClipPlane plane = shown(editor).clip_plane;
+  const glm::dvec3 normal = plane.normal;
+  const glm::dvec3 other = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 right = glm::normalize(glm::cross(other, normal)), up = glm::cross(normal, right);
+  const double half = editor.views->body.camera.distance * 0.09;
+  const glm::dvec3 corners[] = {plane.point + half * (right + up), plane.point + half * (up - right),
+                                plane.point - half * (right + up), plane.point + half * (right - up)};
+  for (int i = 0; i < 4; ++i) painter.line(corners[i], corners[(i + 1) % 4]);
+  painter.line(plane.point, plane.point + half * normal);
+  const Pressed pressed = painter.handle(
+      "Clip plane", plane.point + half * normal, kViewAccent,
+      "Drag to move the clip plane along its normal, with Ctrl by 10 mm. A double click brings it to the cross-hair.");
+  if (pressed.double_clicked) {
+    Visibility next = *editor.document().visibility;
+    next.clip_plane.point = editor.views->cross_hair;
+    return commit_clip(editor, "Reset clip plane", std::move(next));
+  }
+  if (pressed.activated) begin_preview(editor);
+  if (pressed.held && editor.views->preview_visibility) {
+    Visibility next = *editor.document().visibility;
+    const double by = painter.dragged(next.clip_plane.point + half * normal, normal);
+    next.clip_plane.point += normal * (editor.input.modifiers().ctrl ? snapped(by) : by);
+    editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
+    editor.touch();
+  }
+  if (ImGui::IsItemDeactivated()) end_preview(editor, "Move clip plane");
+}
+
+}  // namespace
+
+void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel) {
+  if (high)
+    box.high[axis] =
+        std::clamp(voxel, box.low[axis] + kThinnest, std::max(grid.size[axis] - 0.5, box.low[axis] + kThinnest));
+  else box.low[axis] = std::clamp(voxel, std::min(-0.5, box.high[axis] - kThinnest), box.high[axis] - kThinnest);
+}
+
+double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction,
+             const glm::dvec2& pixels) {
+  glm::dvec2 from, to;
+  // A short step, since perspective bends long ones.
+  const double step = camera.distance * 1e-3 / std::max(glm::length(direction), 1e-12);
+  if (!render::project(camera, point, size, from) || !render::project(camera, point + direction * step, size, to))
+    return 0;
+  const glm::dvec2 seen = (to - from) / step;
+  const double squared = glm::dot(seen, seen);
+  return squared < 1e-6 ? 0 : glm::dot(pixels, seen) / squared;
+}
+
+void draw_clip_handles(Editor& editor, const Rect& rect) {
+  const auto visibility = editor.document().visibility;  // kept, since a release commits
+  if (!editor.document().volume || !visibility) return;
+  const Painter painter(editor, rect);
+  if (visibility->clip_box.enabled) draw_box(editor, painter);
+  if (visibility->clip_plane.enabled) draw_plane(editor, painter);
+}
+
+}  // namespace limber::editor

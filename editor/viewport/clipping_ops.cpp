@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Clip box and clip plane: edits of what is shown, undone like any other.
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_polls.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+Visibility visibility_of(const Document& document) { return document.visibility ? *document.visibility : Visibility{}; }
+
+bool box_on(const Editor& editor) {
+  return editor.document().visibility && editor.document().visibility->clip_box.enabled;
+}
+bool plane_on(const Editor& editor) {
+  return editor.document().visibility && editor.document().visibility->clip_plane.enabled;
+}
+
+void commit_visibility(Editor& editor, const std::string& label, Visibility visibility) {
+  Document next = editor.document();
+  next.visibility = std::make_shared<const Visibility>(std::move(visibility));
+  commit(editor, label, std::move(next));
+}
+
+void toggle_box(Editor& editor) {
+  Visibility visibility = visibility_of(editor.document());
+  ClipBox& box = visibility.clip_box;
+  box.enabled = !box.enabled;
+  // The first time: the front half is cut away, so that the inside shows.
+  if (box.low == box.high) {
+    const glm::dvec3 size(editor.document().volume->grid.size);
+    box.low = glm::dvec3(-0.5);
+    box.high = size - 0.5;
+    const AffineTransform voxel = voxel_from_world(editor.document().volume->grid);
+    const glm::dvec3 front = voxel.linear * glm::dvec3(0, -1, 0), weight = glm::abs(front);
+    const int axis = weight.x > weight.y && weight.x > weight.z ? 0 : weight.y > weight.z ? 1 : 2;
+    (front[axis] > 0 ? box.high : box.low)[axis] = std::round(size[axis] / 2) - 0.5;
+  }
+  commit_visibility(editor, box.enabled ? "Clip box on" : "Clip box off", visibility);
+}
+
+void toggle_plane(Editor& editor) {
+  Visibility visibility = visibility_of(editor.document());
+  ClipPlane& plane = visibility.clip_plane;
+  plane.enabled = !plane.enabled;
+  if (plane.enabled) {
+    plane.point = editor.views->cross_hair;
+    plane.normal = glm::normalize(render::eye_of(editor.views->body.camera) - editor.views->body.camera.centre);
+  }
+  commit_visibility(editor, plane.enabled ? "Clip plane on" : "Clip plane off", visibility);
+}
+
+void reset_clips(Editor& editor) {
+  Visibility visibility = visibility_of(editor.document());
+  visibility.clip_box = {};
+  visibility.clip_plane = {};
+  commit_visibility(editor, "Reset clipping", visibility);
+}
+
+}  // namespace
+
+std::vector<Operator> clip_operators() {
+  return {
+      {"view.clip_box", "Clip box", icon::kClip, "View",
+       "Cuts the volume open by a box; drag the squares on its faces.", toggle_box, needs_volume, box_on},
+      {"view.clip_plane", "Clip plane", icon::kCut, "View",
+       "Cuts the volume open at the cross-hair, across the line of sight.", toggle_plane, needs_volume, plane_on},
+      {"view.reset_clipping", "Reset clipping", "", "View", "Shows the whole volume again.", reset_clips,
+       [](const Editor& e) { return box_on(e) || plane_on(e) ? std::string() : std::string("Nothing is clipped"); }},
+  };
+}
+
+}  // namespace limber::editor

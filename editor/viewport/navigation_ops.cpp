@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Turning, shifting and zooming the 3D view, with Blender's keys.
+#include <cmath>
+#include <numbers>
+
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_polls.h"
+#include "editor/context/pointer_context.h"
+#include "editor/shown/frame_all.h"
+#include "editor/shown/shown_result.h"
+#include "editor/ui/icons.h"
+#include "editor/viewport/walk_navigation.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kWheelStep = 1.2;                             // closer by that factor, as in Blender
+constexpr double kZoomPerPixel = 0.006;                        // e-folds
+constexpr double kKeyOrbit = 15 * std::numbers::pi / 180;      // radians for one press
+constexpr double kOrbitPixels = 180 / std::numbers::pi / 0.4;  // pixels for a radian: 0.4 degrees a pixel
+
+glm::ivec2 view_size(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  return place ? glm::ivec2(place->size()) : glm::ivec2(1);
+}
+
+PointerWrap wrap_in_view(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  return place ? PointerWrap(*place, editor.look.px(2)) : PointerWrap();
+}
+
+// Escape brings the camera back.
+void start_drag(Editor& editor, MouseButton button, std::function<void(Editor&, const glm::vec2&)> moved) {
+  BodyView& body = editor.views->body;
+  body.move.reset();
+  const auto back = [camera = body.camera, name = body.name](Editor& e) {
+    e.views->body.camera = camera;
+    e.views->body.name = name;
+  };
+  editor.drag = Drag{button, std::move(moved), {}, back, wrap_in_view(editor)};
+}
+
+// The button that began it: middle, or left together with Alt.
+MouseButton pressed_button(const Editor& editor) {
+  return editor.input.down(MouseButton::Middle) ? MouseButton::Middle : MouseButton::Left;
+}
+
+void orbit(Editor& editor) {
+  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
+    e.views->body.camera = render::orbited(e.views->body.camera, glm::dvec2(by) / static_cast<double>(e.look.scale));
+    e.views->body.name.clear();
+  });
+}
+
+void pan(Editor& editor) {
+  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
+    e.views->body.camera = render::panned(e.views->body.camera, glm::dvec2(by), view_size(e));
+  });
+}
+
+void zoom(Editor& editor) {
+  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
+    e.views->body.camera = render::zoomed(e.views->body.camera, std::exp(kZoomPerPixel * by.y / e.look.scale));
+  });
+}
+
+// What the pointer is on stays there.
+void zoom_about_pointer(Editor& editor, double factor) {
+  BodyView& body = editor.views->body;
+  body.move.reset();
+  const Rect* place = editor.layout.place_of(ViewId::Body);
+  const glm::vec2 pointer = editor.input.pointer;
+  body.camera = place && place->contains(pointer)
+                    ? render::zoomed(body.camera, factor, pointer - place->low, glm::ivec2(place->size()))
+                    : render::zoomed(body.camera, factor);
+}
+
+// The view under the pointer, by the wheel or a pad.
+void pan_step(Editor& editor, const glm::vec2& steps) {
+  constexpr float kStep = 40;
+  const glm::vec2 pixels = steps * editor.look.px(kStep);
+  const ViewPlace* place = hovered_view(editor);
+  if (place && place->id != ViewId::Body) {
+    shift(slice_of(*editor.views, place->id), glm::dvec2(pixels));
+    return;
+  }
+  editor.views->body.move.reset();
+  editor.views->body.camera = render::panned(editor.views->body.camera, glm::dvec2(pixels), view_size(editor));
+}
+
+void walk(Editor& editor) {
+  editor.modal = begin_walk(editor);
+  editor.modal_wrap = wrap_in_view(editor);
+}
+
+void go_to(Editor& editor, const render::Camera& camera) {
+  BodyView& body = editor.views->body;
+  if (editor.preferences.reduce_motion) body.camera = camera;
+  else body.move = CameraMove{body.camera, camera, editor.now};
+}
+
+const render::Camera& goal(const Editor& editor) {
+  const BodyView& body = editor.views->body;
+  return body.move ? body.move->to : body.camera;
+}
+
+Operator standard_view(const char* id, const char* label, render::StandardView side, const char* sentence) {
+  return {id, label, icon::kCamera, "View", sentence, [label, side](Editor& e) {
+            go_to(e, render::looking_from(side, goal(e)));
+            e.views->body.name = label;
+          }};
+}
+
+Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
+  return {id, label, "", "View", "Turns the view by 15 degrees.", [direction](Editor& e) {
+            // orbited() turns by pixels; as many as make the step.
+            go_to(e, render::orbited(goal(e), direction * kKeyOrbit * kOrbitPixels));
+            e.views->body.name.clear();
+          }};
+}
+
+std::optional<Box> box_of_selection(Editor& editor) {
+  std::optional<Box> all;
+  const auto add = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    all = all ? Box{glm::min(all->low, low), glm::max(all->high, high)} : Box{low, high};
+  };
+  const Document shown = shown_document(editor);
+  for (const Label tissue : editor.selection.tissues) {
+    const Box box = tissue_box(*editor.views, shown, tissue);
+    add(box.low, box.high);
+  }
+  if (const auto& armature = editor.document().armature)
+    for (const int b : editor.selection.bones) {
+      if (b >= std::ssize(armature->bones)) continue;
+      const Bone& bone = armature->bones[b];
+      const double thickness = glm::distance(bone.head, bone.tail) * 0.1;
+      add(glm::min(bone.head, bone.tail) - thickness, glm::max(bone.head, bone.tail) + thickness);
+    }
+  return all;
+}
+
+std::string needs_aim(const Editor& editor) {
+  if (!editor.document().volume) return "Open a volume first";
+  const bool aim = !editor.selection.tissues.empty() || !editor.selection.bones.empty() || editor.views->hover.inside;
+  return aim ? "" : "Choose a tissue, or point at one";
+}
+
+// What is chosen fills the view; where nothing is, the point under the pointer becomes its middle.
+void frame_selected(Editor& editor) {
+  const auto chosen = box_of_selection(editor);
+  if (!chosen) return run(editor, "view.centre_on_pick");
+  const Box box = *chosen;
+  const glm::vec2 size(view_size(editor));
+  go_to(editor, render::framing(goal(editor), box.low, box.high, size.x / std::max(1.0f, size.y)));
+}
+
+void toggle_projection(Editor& editor) {
+  auto& projection = editor.views->body.camera.projection;
+  editor.views->body.move.reset();
+  projection = projection == render::Projection::Perspective ? render::Projection::Orthographic
+                                                             : render::Projection::Perspective;
+}
+
+void opposite(Editor& editor) {
+  render::Camera camera = goal(editor);
+  camera.world_from_view = glm::angleAxis(std::numbers::pi, glm::dvec3(0, 0, 1)) * camera.world_from_view;
+  go_to(editor, camera);
+  editor.views->body.name.clear();
+}
+
+void centre_on_pick(Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  if (!hover.inside) return;
+  render::Camera camera = goal(editor);
+  camera.centre = hover.point;
+  go_to(editor, camera);
+}
+
+}  // namespace
+
+std::vector<Operator> navigation_operators() {
+  using render::StandardView;
+  return {
+      {"view.orbit", "Turn view", "", "View", "Drag to turn the view about its centre.", orbit},
+      {"view.pan", "Shift view", "", "View", "Drag to shift the view.", pan},
+      {"view.zoom", "Zoom view", "", "View", "Drag up or down to come closer or go back.", zoom},
+      {"view.zoom_step", "Zoom by wheel", "", "View", "Comes closer or goes back by a step.",
+       [](Editor& e) {
+         e.views->body.move.reset();
+         zoom_about_pointer(e, std::pow(kWheelStep, -e.input.wheel));
+       }},
+      {"view.zoom_in", "Zoom in", "", "View", "Comes closer.",
+       [](Editor& e) { zoom_about_pointer(e, 1 / kWheelStep); }},
+      {"view.zoom_out", "Zoom out", "", "View", "Goes back.", [](Editor& e) { zoom_about_pointer(e, kWheelStep); }},
+      {"view.pan_step", "Shift by wheel", "", "View", "Shifts the view up or down.",
+       [](Editor& e) {
+         pan_step(e, {0, e.input.wheel});
+       }},
+      {"view.pan_sideways_step", "Shift sideways by wheel", "", "View", "Shifts the view to the left or right.",
+       [](Editor& e) {
+         pan_step(e, {e.input.wheel_sideways != 0 ? e.input.wheel_sideways : e.input.wheel, 0});
+       }},
+      {"view.walk", "Walk", "", "View", "Goes through the view with W A S D; the mouse looks round.", walk,
+       needs_volume},
+      {"view.centre_on_pick", "Centre on point", icon::kCrossHair, "View",
+       "Turns about the point of the body under the pointer from now on.", centre_on_pick, needs_volume},
+      standard_view("view.front", "Front", StandardView::Front, "Looks at the body from the front."),
+      standard_view("view.back", "Back", StandardView::Back, "Looks at the body from the back."),
+      standard_view("view.left", "Left", StandardView::Left, "Looks at the body's left side."),
+      standard_view("view.right", "Right", StandardView::Right, "Looks at the body's right side."),
+      standard_view("view.top", "Top", StandardView::Top, "Looks at the body from above."),
+      standard_view("view.bottom", "Bottom", StandardView::Bottom, "Looks at the body from below."),
+      {"view.ortho", "Perspective", icon::kCamera, "View", "Changes between perspective and parallel projection.",
+       toggle_projection, nullptr,
+       [](const Editor& e) { return e.views->body.camera.projection == render::Projection::Perspective; }},
+      orbit_step("view.orbit_down", "Turn down", {0, -1}),
+      orbit_step("view.orbit_up", "Turn up", {0, 1}),
+      orbit_step("view.orbit_left", "Turn left", {1, 0}),
+      orbit_step("view.orbit_right", "Turn right", {-1, 0}),
+      {"view.opposite", "Opposite side", icon::kCamera, "View", "Looks from the other side.", opposite},
+      {"view.frame_selected", "Frame selected", icon::kExpand, "View",
+       "Brings what is chosen to fill the view, or the point under the pointer to its middle.", frame_selected,
+       needs_aim},
+      {"view.frame_all", "Frame all", icon::kExpand, "View", "Brings all that is visible to fill the views.",
+       [](Editor& e) { frame_all(e, true); }},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/viewport/transform_tool.h"
+
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+#include "editor/context/pointer_context.h"
+#include "editor/dialogs/redo_last_operator.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kPrecise = 0.1;    // of the pointer's way, with Shift
+constexpr double kClickPixels = 4;  // at scale 1: a release within them is a click
+
+constexpr const char* kAxisNames[] = {"X", "Y", "Z"};
+constexpr double kFarthest = 10'000;  // mm
+
+int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key == Key::Z ? 2 : -1; }
+
+}  // namespace
+
+ViewPlace place_of_tool(const Editor& editor) {
+  if (const ViewPlace* hovered = hovered_view(editor)) return *hovered;
+  if (const Rect* body = editor.layout.place_of(ViewId::Body)) return {ViewId::Body, *body};
+  return editor.layout.view_places.empty() ? ViewPlace{ViewId::Body, {{0, 0}, {1, 1}}}
+                                           : editor.layout.view_places.front();
+}
+
+std::string text_of_number(const char* format, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+TransformTool::TransformTool(Editor& editor, const Grip& grip)
+    : view_(editor, place_of_tool(editor)),
+      lock_(grip.lock),
+      held_(grip.held),
+      pointer_(editor.input.pointer),
+      start_(pointer_) {}
+
+bool TransformTool::moved(Editor& editor, const glm::vec2& pixels) {
+  const glm::dvec2 from = pointer_;
+  pointer_ += glm::dvec2(pixels) * (editor.input.down(Key::Shift) ? kPrecise : 1.0);
+  travelled_ = std::max(travelled_, glm::distance(pointer_, start_));
+  follow(editor, from, pointer_);
+  show(editor);
+  return true;
+}
+
+// The axis that runs most nearly as the pointer went.
+void TransformTool::lock_to_way(Editor& editor) {
+  const Space space = editor.handling->space;
+  const glm::dmat3 all = axes(space);
+  const glm::dvec2 way = pointer_ - start_;
+  double best = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec2 seen(glm::dot(all[axis], view_.right), -glm::dot(all[axis], view_.up));
+    if (const double along = std::abs(glm::dot(seen, way)); along > best) {
+      best = along;
+      lock_ = {axis, space};
+    }
+  }
+  locked(editor);
+  show(editor);
+}
+
+bool TransformTool::button(Editor& editor, const ButtonChanged& event) {
+  if (event.down && event.button == MouseButton::Middle) {
+    lock_to_way(editor);
+    return true;
+  }
+  if (held_) {
+    if (event.down && event.button == MouseButton::Right) return drop(editor);
+    if (event.button != *held_ || event.down) return true;
+    if (travelled_ >= kClickPixels * editor.look.scale || number_.typed()) return confirm(editor);
+    drop(editor);
+    run(editor, editor.input.down(Key::Shift) ? "select.extend" : "select.pick");
+    return false;
+  }
+  if (!event.down) return true;
+  return event.button == MouseButton::Left ? confirm(editor) : drop(editor);
+}
+
+bool TransformTool::key(Editor& editor, const KeyChanged& event) {
+  if (!event.down) {
+    if (event.key == Key::Ctrl || event.key == Key::Shift) show(editor);
+    return true;
+  }
+  if (event.key == Key::Escape) return drop(editor);
+  if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
+  if (const int axis = axis_of_key(event.key); axis >= 0) {
+    // The chosen space's, the other one's, none.
+    const bool plane = editor.input.down(Key::Shift);
+    const Space first = editor.handling->space, second = first == Space::Global ? Space::Local : Space::Global;
+    if (lock_.axis != axis || lock_.plane != plane) lock_ = {axis, first, plane};
+    else if (lock_.space == first) lock_.space = second;
+    else lock_ = {};
+    locked(editor);
+  } else if (!number_.key(event.key) && !own_key(editor, event.key)) {
+    return true;
+  }
+  show(editor);
+  return true;
+}
+
+bool TransformTool::confirm(Editor& editor) {
+  const auto again = [self = shared_from_this()](Editor& e, const std::vector<FormField>& fields) {
+    self->set(fields);
+    self->keep(e);
+  };
+  act_adjustably(editor, parameters(), again, [this](Editor& e) { keep(e); });
+  return false;
+}
+
+std::vector<FormField> TransformTool::fields_of_way(const glm::dvec3& way) const {
+  const Space space = lock_.axis < 0 ? Space::Global : lock_.space;
+  const glm::dvec3 along = glm::transpose(axes(space)) * way;
+  std::vector<FormField> fields;
+  for (int axis = 0; axis < 3; ++axis)
+    fields.push_back(
+        number_of(kAxisNames[axis], "How far along this axis.", along[axis], -kFarthest, kFarthest, "%.2f", "mm"));
+  fields.push_back(
+      choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(space)));
+  return fields;
+}
+
+void TransformTool::set_way(const std::vector<FormField>& fields) {
+  way_ = axes(static_cast<Space>(fields[3].chosen)) * glm::dvec3(fields[0].value, fields[1].value, fields[2].value);
+}
+
+std::vector<FormField> TransformTool::fields_of_axis() const {
+  return {
+      choice_of("Axis", "The axis that it goes by; none is the line of sight, or all.", {"None", "X", "Y", "Z"},
+                lock_.axis + 1),
+      choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(lock_.space))};
+}
+
+void TransformTool::set_axis(const std::vector<FormField>& fields, std::size_t first) {
+  lock_.axis = fields[first].chosen - 1;
+  lock_.space = static_cast<Space>(fields[first + 1].chosen);
+}
+
+bool TransformTool::drop(Editor& editor) {
+  cancel(editor);
+  return false;
+}
+
+double TransformTool::snapped(const Editor& editor, double value, double step, double fine) const {
+  const double grid = editor.input.down(Key::Shift) ? fine : step;
+  if (grid <= 0 || editor.input.down(Key::Ctrl) == editor.handling->snapping) return value;
+  return std::round(value / grid) * grid;
+}
+
+glm::dvec3 TransformTool::lock_axis() const { return lock_.axis < 0 ? glm::dvec3(0) : axes(lock_.space)[lock_.axis]; }
+
+std::string TransformTool::lock_text(const char* word) const {
+  if (lock_.axis < 0) return "";
+  std::string space = lock_.space == Space::Global ? "world" : name_of(lock_.space);
+  space[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(space[0])));
+  return std::string(" ") + (lock_.plane ? "across" : word) + " " + space + " " + "XYZ"[lock_.axis];
+}
+
+std::vector<KeyHint> TransformTool::shared_hints() const {
+  return {{{"X", "Y", "Z"}, "Lock, again: local"},
+          {{"0-9"}, "Type"},
+          {{"Ctrl"}, "Snap"},
+          {{"Shift"}, "Slowly"},
+          {{"Enter"}, "Keep"},
+          {{"Esc"}, "Back"}};
+}
+
+glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const {
+  if (way_) return from + *way_;
+  const glm::dvec3 axis = lock_axis();
+  const bool free = axis == glm::dvec3(0), line = !free && !lock_.plane;
+  if (number_.typed())
+    return from + number_.value() * (line ? axis : lock_.plane ? axes(lock_.space)[(lock_.axis + 1) % 3] : view_.right);
+  const std::optional<glm::dvec2> seen = view_.pixel_of(from);
+  if (!seen) return from;
+  // What was taken hold of stays under the pointer; else the point itself goes as the pointer does.
+  const glm::dvec2 begin = held_ && !free ? start_ : *seen, end = begin + (pointer_ - start_);
+  if (line) {
+    const auto first = view_.along_line(begin, from, axis), last = view_.along_line(end, from, axis);
+    return first && last ? from + snapped(editor, *last - *first, step, fine) * axis : from;
+  }
+  const glm::dvec3 normal = free ? view_.towards_eye : axis;
+  const auto first = view_.in_plane(begin, from, normal), last = view_.in_plane(end, from, normal);
+  if (!first || !last) return from;
+  const glm::dvec3 by = *last - *first;
+  const double length = glm::length(by);
+  return length > 0 ? from + by * (snapped(editor, length, step, fine) / length) : from;
+}
+
+void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool) {
+  editor.modal_wrap = PointerWrap(tool->view().place.rect, editor.look.px(2));
+  editor.modal = std::move(tool);
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/viewport/walk_navigation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kSpeed = 0.4;                    // of the way to the centre, for a second
+constexpr double kFasterPerStep = 1.25;           // of the wheel
+constexpr double kSlowest = 0.1, kFastest = 1e5;  // mm/s
+constexpr double kHurry = 5, kCreep = 0.2;
+constexpr double kLookPerPixel = 0.35;  // of orbiting's: turning oneself goes faster than turning a thing
+
+class Walk final : public Modal {
+ public:
+  explicit Walk(Editor& editor)
+      : before_(editor.views->body.camera),
+        speed_(std::clamp(kSpeed * before_.distance, kSlowest, kFastest)) {
+    editor.views->body.move.reset();
+    editor.views->body.camera.projection = render::Projection::Perspective;  // going forward shows in no other
+    editor.views->body.name.clear();
+  }
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    render::Camera& camera = editor.views->body.camera;
+    camera = render::looked_round(camera, glm::dvec2(pixels) * (kLookPerPixel / editor.look.scale));
+    return true;
+  }
+
+  bool wheel(Editor&, float steps) override {
+    speed_ = std::clamp(speed_ * std::pow(kFasterPerStep, steps), kSlowest, kFastest);
+    return true;
+  }
+
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (!event.down || event.button == MouseButton::Middle) return true;
+    if (event.button == MouseButton::Right) cancel(editor);
+    return false;
+  }
+
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (const Way* way = way_of(event.key)) {
+      // A press within a frame counts as one frame's going.
+      if (event.down && !event.repeated) pressed_ += way->direction;
+      going_ = direction(editor) != glm::dvec3(0);
+      return true;
+    }
+    if (!event.down) return true;
+    if (event.key == Key::Escape) cancel(editor);
+    return event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter &&
+           event.key != Key::Space;
+  }
+
+  bool frame(Editor& editor, double seconds) override {
+    glm::dvec3 way = direction(editor);
+    going_ = way != glm::dvec3(0);
+    if (!going_) way = pressed_;
+    pressed_ = {};
+    if (way == glm::dvec3(0)) return true;
+    const double pace = editor.input.down(Key::Shift) ? kHurry : editor.input.down(Key::Alt) ? kCreep : 1;
+    render::Camera& camera = editor.views->body.camera;
+    camera.centre +=
+        (camera.world_from_view * glm::dvec3(way.x, 0, way.z) + glm::dvec3(0, 0, way.y)) * (speed_ * pace * seconds);
+    return true;
+  }
+
+  bool hides_pointer() const override { return true; }
+  bool moving() const override { return going_ || pressed_ != glm::dvec3(0); }
+  void cancel(Editor& editor) override { editor.views->body.camera = before_; }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{"W", "A", "S", "D"}, "Go"}, {{"E", "Q"}, "Rise, sink"}, {{"Wheel"}, "Speed"},
+            {{"Shift"}, "Hurry"},         {{"Enter"}, "Stay here"},   {{"Esc"}, "Return"}};
+  }
+
+  std::string title() const override {
+    char text[48];
+    std::snprintf(text, sizeof text, speed_ < 100 ? "Walking, %.1f mm/s" : "Walking, %.0f mm/s", speed_);
+    return text;
+  }
+
+ private:
+  struct Way {
+    Key key;
+    glm::dvec3 direction;  // right, up in the world, back
+  };
+
+  static const Way* way_of(Key key) {
+    static const Way kWays[] = {{Key::W, {0, 0, -1}},   {Key::S, {0, 0, 1}},    {Key::A, {-1, 0, 0}},
+                                {Key::D, {1, 0, 0}},    {Key::E, {0, 1, 0}},    {Key::Q, {0, -1, 0}},
+                                {Key::Up, {0, 0, -1}},  {Key::Down, {0, 0, 1}}, {Key::Left, {-1, 0, 0}},
+                                {Key::Right, {1, 0, 0}}};
+    for (const Way& way : kWays)
+      if (way.key == key) return &way;
+    return nullptr;
+  }
+
+  static glm::dvec3 direction(const Editor& editor) {
+    glm::dvec3 sum(0);
+    for (int key = 0; key < static_cast<int>(Key::Count); ++key)
+      if (const Way* way = way_of(static_cast<Key>(key)); way && editor.input.down(way->key)) sum += way->direction;
+    return sum;
+  }
+
+  render::Camera before_;
+  double speed_;  // mm/s
+  bool going_ = false;
+  glm::dvec3 pressed_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<Modal> begin_walk(Editor& editor) { return std::make_unique<Walk>(editor); }
+
+}  // namespace limber::editor

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/grey_image_panel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include <glm/gtc/constants.hpp>
+
+#include "editor/dialogs/dialog.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "render/view.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 980, kHeight = 690, kGap = 8;
+constexpr const char* kNames[] = {"Axial", "Coronal", "Sagittal", "Largest values, drag to turn"};
+constexpr int kProjection = 3;
+
+class GreyImageDialog final : public Dialog {
+ public:
+  explicit GreyImageDialog(ShownImage shown) : shown_(std::move(shown)), window_(usual_window(*shown_.image)) {
+    const Grid& grid = shown_.image->grid;
+    middle_ = world_from_voxel(grid) * (0.5 * (glm::dvec3(grid.size) - 1.0));
+    cross_ = middle_;
+    for (int axis = 0; axis < 3; ++axis)
+      sides_ += glm::abs(world_from_voxel(grid).linear[axis]) * double(grid.size[axis]);
+    const auto [low, high] = std::minmax_element(shown_.image->voxels.begin(), shown_.image->voxels.end());
+    if (low != shown_.image->voxels.end()) least_ = *low, most_ = *high;
+  }
+
+  void draw(Editor& editor) override {
+    const Look& look = editor.look;
+    const Rect rect = begin_dialog(editor, shown_.name + " is a grey image", kWidth, kHeight);
+    const std::string words = "A grey image, not labels: " + shown_.doubt +
+                              ". It can be looked at here, and nothing that is open changes. Rigs, weights and poses "
+                              "need the label volume that was drawn from it; limber resample --with moves the image "
+                              "along with a pose.";
+    const float text = put_wrapped(editor, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
+    const float foot = rect.high.y - look.px(28), top = rect.low.y + text + look.px(10);
+    const float gap = look.px(kGap);
+    const glm::vec2 pane{std::floor((rect.width() - gap) / 2), std::floor((foot - look.px(12) - top - gap) / 2)};
+    for (int p = 0; p < 4; ++p) {
+      const glm::vec2 low = glm::round(glm::vec2(rect.low.x, top) + glm::vec2(p % 2, p / 2) * (pane + gap));
+      draw_pane(editor, p, {low, low + pane});
+    }
+    draw_foot(editor, {{rect.low.x, foot}, rect.high});
+    end_dialog(editor);
+  }
+
+ private:
+  // What a pane's texture was made for.
+  struct Pane {
+    PictureFrame frame;
+    GreyWindow window;
+    std::vector<float> values;
+    bool made = false;
+  };
+
+  PictureFrame frame_of_pane(int p, const glm::vec2& size) const {
+    PictureFrame frame;
+    if (p == kProjection) {
+      frame.right = {std::cos(turn_), std::sin(turn_), 0};
+      frame.down = {0, 0, -1};
+    } else {
+      const render::SliceFrame axes = render::frame_of(kAxes[p]);
+      frame.right = axes.right;
+      frame.down = axes.down;
+    }
+    // Rays cost more than slices: half as many pixels either way.
+    const int coarser = p == kProjection ? 2 : 1;
+    frame.size = glm::max(glm::ivec2(size) / coarser, 1);
+    const double wide = p == kProjection ? std::hypot(sides_.x, sides_.y) : glm::dot(glm::abs(frame.right), sides_);
+    const double high = glm::dot(glm::abs(frame.down), sides_);
+    frame.millimetres_per_pixel = std::max({wide / frame.size.x, high / frame.size.y, 1e-6});
+    const glm::dvec3 normal = glm::cross(frame.right, frame.down);
+    frame.middle = middle_ + (p == kProjection ? glm::dvec3(0) : normal * glm::dot(cross_ - middle_, normal));
+    return frame;
+  }
+
+  static bool same(const PictureFrame& a, const PictureFrame& b) {
+    return a.middle == b.middle && a.right == b.right && a.down == b.down && a.size == b.size &&
+           a.millimetres_per_pixel == b.millimetres_per_pixel;
+  }
+
+  unsigned texture_of(Editor& editor, int p, const PictureFrame& frame) {
+    Pane& pane = panes_[static_cast<std::size_t>(p)];
+    const std::string name = "grey image " + std::to_string(p);
+    const bool moved = !pane.made || !same(pane.frame, frame);
+    const GreyVolume& image = *shown_.image;
+    if (moved) pane.values = p == kProjection ? grey_projection(image, frame) : grey_slice(image, frame);
+    if (moved || pane.window != window_) editor.pictures.forget(name);
+    pane.frame = frame;
+    pane.window = window_;
+    pane.made = true;
+    return editor.pictures.texture(name, [&] {
+      render::Image picture{frame.size, {}};
+      picture.rgba.reserve(4 * pane.values.size());
+      for (const float value : pane.values) {
+        const std::uint8_t grey = grey_of(value, window_);
+        picture.rgba.insert(picture.rgba.end(), {grey, grey, grey, 255});
+      }
+      return picture;
+    });
+  }
+
+  void draw_pane(Editor& editor, int p, const Rect& rect) {
+    const Look& look = editor.look;
+    const Pressed pressed = press_area(editor, kNames[p], rect);
+    const PictureFrame before = frame_of_pane(p, rect.size());
+    move(editor, p, rect, before, pressed);
+    const PictureFrame frame = frame_of_pane(p, rect.size());
+    fill(rect, 0xFF000000);
+    if (const unsigned texture = texture_of(editor, p, frame))
+      ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
+                                           im(rect.low), im(rect.high));
+    if (p != kProjection) draw_cross(editor, rect, frame);
+    outline(rect, look.theme.line2, 0, look.line());
+    put_text(editor, look.fonts.small, 0xFFFFFFFF, rect.low + look.px(6), kNames[p]);
+  }
+
+  // The pointer in a slice puts the cross, the wheel goes through the slices; a drag turns the projection.
+  void move(Editor& editor, int p, const Rect& rect, const PictureFrame& frame, const Pressed& pressed) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (p == kProjection) {
+      if (!pressed.held || io.MouseDelta.x == 0) return;
+      turn_ += double(io.MouseDelta.x) / double(rect.width()) * glm::pi<double>();
+      return editor.touch();
+    }
+    const glm::dvec3 normal = glm::cross(frame.right, frame.down);
+    if (pressed.held) {
+      const glm::dvec2 at = glm::dvec2(from_im(io.MousePos) - rect.centre()) * frame.millimetres_per_pixel;
+      put_cross(editor, frame.middle + frame.right * at.x + frame.down * at.y);
+    } else if (pressed.hovered && io.MouseWheel != 0) {
+      const glm::dvec3 across = glm::abs(voxel_from_world(shown_.image->grid).linear * normal);
+      put_cross(editor, cross_ + normal * (double(io.MouseWheel) / std::max({across.x, across.y, across.z})));
+    }
+  }
+
+  // Within the volume.
+  void put_cross(Editor& editor, const glm::dvec3& world) {
+    const Grid& grid = shown_.image->grid;
+    const glm::dvec3 voxel = voxel_from_world(grid) * world;
+    const glm::dvec3 next = world_from_voxel(grid) * glm::clamp(voxel, glm::dvec3(0), glm::dvec3(grid.size - 1));
+    if (glm::distance(next, cross_) < 1e-9) return;
+    cross_ = next;
+    editor.touch();
+  }
+
+  void draw_cross(Editor& editor, const Rect& rect, const PictureFrame& frame) {
+    const glm::dvec3 off = (cross_ - frame.middle) / frame.millimetres_per_pixel;
+    const glm::vec2 at = rect.centre() + glm::vec2(glm::dot(off, frame.right), glm::dot(off, frame.down));
+    ImDrawList& canvas = *ImGui::GetWindowDrawList();
+    const Colour colour = with_alpha(editor.look.theme.accent, 0.6f);
+    canvas.AddLine(im({rect.low.x, at.y}), im({rect.high.x, at.y}), colour);
+    canvas.AddLine(im({at.x, rect.low.y}), im({at.x, rect.high.y}), colour);
+  }
+
+  std::string value_at_cross() const {
+    const Grid& grid = shown_.image->grid;
+    const glm::ivec3 voxel(glm::floor(voxel_from_world(grid) * cross_ + 0.5));
+    if (!grid.contains(voxel)) return "";
+    char text[120];
+    std::snprintf(text, sizeof text, "%.1f, %.1f, %.1f mm: %g", cross_.x, cross_.y, cross_.z,
+                  double(shown_.image->voxels[static_cast<std::size_t>(grid.index(voxel))]));
+    return text;
+  }
+
+  void draw_foot(Editor& editor, const Rect& rect) {
+    const Look& look = editor.look;
+    bool committed = false;
+    float x = rect.low.x;
+    const auto number = [&](const char* name, double& value, double low, double high) {
+      const Rect label{{x, rect.low.y}, {x + look.px(46), rect.high.y}};
+      put_text(editor, look.fonts.regular, look.theme.text2, label, name);
+      const Rect field{{x + look.px(48), rect.low.y + look.px(3)}, {x + look.px(138), rect.high.y - look.px(3)}};
+      if (number_field(editor, name, field, value, low, high, "%.4g", "", false, committed)) editor.touch();
+      x = field.high.x + look.px(14);
+    };
+    const double range = std::max(most_ - least_, 1e-3);
+    number("Level", window_.level, least_ - range, most_ + range);
+    number("Width", window_.width, 1e-3 * range, 2 * range);
+    const ButtonLook close{"", "Close", ButtonStyle::Primary}, labels{"", shown_.answer, ButtonStyle::Plain};
+    float right = rect.high.x;
+    const auto press = [&](const std::string& name, const ButtonLook& face) {
+      const float width = std::max(width_of_button(editor, face) + look.px(8), look.px(80));
+      const Rect place{{right - width, rect.low.y}, {right, rect.high.y}};
+      right = place.low.x - look.px(8);
+      return button(editor, name, place, face);
+    };
+    const bool closes = press("Close image", close);
+    const bool takes = !shown_.answer.empty() && press(shown_.answer, labels);
+    put_text(editor, look.fonts.mono, look.theme.text2, Rect{{x, rect.low.y}, {right, rect.high.y}}, value_at_cross());
+    if (!closes && !takes) return;
+    const auto act = shown_.as_labels;
+    editor.close_dialog();
+    editor.touch();
+    if (takes && act) attempt(editor, shown_.name, act);
+  }
+
+  static constexpr render::SliceAxis kAxes[] = {render::SliceAxis::Axial, render::SliceAxis::Coronal,
+                                                render::SliceAxis::Sagittal};
+  ShownImage shown_;
+  GreyWindow window_;
+  glm::dvec3 middle_{0}, cross_{0};  // world, mm
+  glm::dvec3 sides_{0};              // of the volume's box in the world, mm
+  double least_ = 0, most_ = 1, turn_ = 0;
+  std::array<Pane, 4> panes_;
+};
+
+}  // namespace
+
+void show_grey_image(Editor& editor, ShownImage shown) {
+  editor.open_dialog(std::make_unique<GreyImageDialog>(std::move(shown)));
+  editor.touch();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/statistics_dialog.h"
+
+#include <cstdio>
+
+#include "core/prepare/prepare.h"
+#include "editor/dialogs/dialog.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/section.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+// What the job counts; the dialog may be closed before it ends.
+struct Counted {
+  std::shared_ptr<const LabelVolume> volume;
+  std::shared_ptr<const TissueTable> tissues;
+  std::vector<LabelStatistics> rows;
+  bool done = false;
+  std::string problem;
+};
+
+class StatisticsDialog final : public Dialog {
+ public:
+  StatisticsDialog(std::shared_ptr<Counted> counted, int job) : counted_(std::move(counted)), job_(job) {}
+
+  void draw(Editor& editor) override;
+  void escape(Editor& editor) override {
+    editor.jobs.cancel(job_);
+    editor.close_dialog();
+  }
+
+ private:
+  void draw_table(Editor& editor, const Rect& rect);
+  void draw_foot(Editor& editor, const Rect& rect);
+
+  std::shared_ptr<Counted> counted_;
+  int job_;
+};
+
+constexpr float kSwatch = 14;
+
+// The table stays behind it, and is there again afterwards.
+void browse_csv(Editor& editor, const std::shared_ptr<Counted>& counted) {
+  const auto back = [counted](Editor& e) { e.open_dialog(std::make_unique<StatisticsDialog>(counted, 0)); };
+  browse(editor,
+         {.purpose = "statistics",
+          .title = "Export statistics",
+          .action = "Export",
+          .kind = FileRequest::Kind::Save,
+          .filters = {{"Tables", {".csv"}}},
+          .name = (editor.name.empty() ? std::string("volume") : Path(editor.name).stem().string()) + "-statistics.csv",
+          .folder = editor.project_path.parent_path(),
+          .chosen =
+              [counted, back](Editor& e, const Path& path) {
+                back(e);
+                write_file_atomically(path, to_csv(counted->rows, *counted->tissues));
+                e.messages.ok("Statistics exported", path.string());
+              },
+          .left = back});
+}
+
+void put_row(Editor& editor, const Rect& row, Colour colour, const Theme& theme,
+             const std::array<std::string, 5>& words, ImFont* digits) {
+  const Look& look = editor.look;
+  const float right = row.high.x - look.px(12);
+  const float columns[] = {right - look.px(380), right - look.px(250), right - look.px(110), right};
+  put_text(editor, look.fonts.regular, colour,
+           Rect{{row.low.x + look.px(40), row.low.y}, {columns[0] - look.px(60), row.high.y}}, words[0]);
+  for (int i = 0; i < 4; ++i)
+    put_text(editor, digits, i == 0 ? theme.text2 : colour,
+             Rect{{columns[i] - look.px(110), row.low.y}, {columns[i], row.high.y}}, words[i + 1], Align::Right);
+}
+
+void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(26)}};
+  fill(head, look.theme.head);
+  put_row(editor, head, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
+          look.fonts.regular);
+  if (!counted_->done) {
+    put_text(editor, look.fonts.regular, look.theme.text2,
+             Rect{{rect.low.x, head.high.y}, {rect.high.x, head.high.y + look.px(80)}},
+             counted_->problem.empty() ? "Counting" : counted_->problem, Align::Centre);
+    return;
+  }
+  Column column(editor, "table", {{rect.low.x, head.high.y}, rect.high});
+  int index = 0;
+  for (const LabelStatistics& one : counted_->rows) {
+    Rect row;
+    if (!column.list_row(row, index++, false)) continue;
+    const Tissue* tissue = counted_->tissues->find(one.label);
+    if (tissue) {
+      const float side = look.px(kSwatch), y = std::round(row.centre().y - side / 2), x = row.low.x + look.px(14);
+      fill({{x, y}, {x + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+    }
+    char volume[40];
+    std::snprintf(volume, sizeof volume, one.volume_mm3 < 1000 ? "%.1f" : "%.0f", one.volume_mm3);
+    put_row(editor, row, look.theme.text, look.theme,
+            {tissue ? tissue->name : "Unknown", std::to_string(one.label), grouped(one.voxels),
+             one.volume_mm3 < 1000 ? volume : grouped(std::llround(one.volume_mm3)), std::to_string(one.components)},
+            look.fonts.mono);
+  }
+}
+
+void StatisticsDialog::draw_foot(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  const ButtonLook export_face{icon::kExport, "Export CSV...", ButtonStyle::Primary, counted_->done},
+      copy_face{icon::kCopy, "Copy", ButtonStyle::Plain, counted_->done};
+  const float export_width = width_of_button(editor, export_face) + look.px(8),
+              copy_width = width_of_button(editor, copy_face);
+  const Rect write{{rect.high.x - export_width, rect.low.y}, rect.high},
+      copy{{write.low.x - look.px(8) - copy_width, rect.low.y}, {write.low.x - look.px(8), rect.high.y}};
+  if (button(editor, "Copy", copy, copy_face)) editor.host.set_clipboard(to_csv(counted_->rows, *counted_->tissues));
+  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the table on the clipboard, as CSV.");
+  const bool pressed = button(editor, "Export CSV", write, export_face);
+  if (ImGui::IsItemHovered())
+    tooltip(editor, write, "Export CSV", "Writes the table with mass, centre, box and surface of every tissue.");
+  if (pressed) browse_csv(editor, counted_);
+}
+
+void StatisticsDialog::draw(Editor& editor) {
+  const Look& look = editor.look;
+  const Rect rect = begin_dialog(editor, "Statistics", 760, 520);
+  const float foot = rect.high.y - look.px(28);
+  draw_table(editor, {{rect.low.x - look.px(18) + look.line(), rect.low.y - look.px(18)},
+                      {rect.high.x + look.px(18) - look.line(), foot - look.px(12)}});
+  draw_foot(editor, {{rect.low.x, foot}, rect.high});
+  end_dialog(editor);
+}
+
+}  // namespace
+
+std::unique_ptr<Dialog> open_statistics(Editor& editor) {
+  auto counted = std::make_shared<Counted>();
+  counted->volume = editor.document().volume;
+  counted->tissues = editor.document().tissues;
+  auto rows = std::make_shared<std::vector<LabelStatistics>>();
+  const int job = editor.jobs.start("Statistics", [volume = counted->volume, rows](Progress& progress) -> Edit {
+    progress.update("count", 0);
+    *rows = label_statistics(*volume);
+    return {};
+  });
+  editor.step_of_job[job] = StepOfWork::Prepare;
+  editor.after_job[job] = [counted, rows](Editor& e, const JobStatus& status) {
+    counted->done = status.state == JobState::Done;
+    counted->rows = std::move(*rows);
+    counted->problem = status.state == JobState::Done        ? ""
+                       : status.state == JobState::Cancelled ? "Cancelled"
+                                                             : status.message;
+    e.touch();
+  };
+  return std::make_unique<StatisticsDialog>(counted, job);
+}
+
+}  // namespace limber::editor

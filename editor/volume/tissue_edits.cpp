@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/tissue_edits.h"
+
+#include "editor/context/document_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string name_of(const Editor& editor, const std::set<Label>& tissues) {
+  if (tissues.size() != 1) return std::to_string(tissues.size()) + " tissues";
+  const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(*tissues.begin()) : nullptr;
+  return tissue ? shown_name(*tissue) : "label " + std::to_string(*tissues.begin());
+}
+
+void commit_looks(Editor& editor, const std::string& label,
+                  const std::function<void(std::map<Label, TissueLook>&)>& change) {
+  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+  const Visibility before = visibility;
+  change(visibility.looks);
+  if (visibility == before) return;
+  Document next = editor.document();
+  next.visibility = std::make_shared<const Visibility>(std::move(visibility));
+  commit(editor, label, std::move(next));
+}
+
+}  // namespace
+
+std::string shown_name(const Tissue& tissue) {
+  return capitalized(tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name);
+}
+
+std::string capitalized(std::string name) {
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return name;
+}
+
+TissueLook look_of(const Document& document, Label label) {
+  if (!document.visibility) return {};
+  const auto found = document.visibility->looks.find(label);
+  return found == document.visibility->looks.end() ? TissueLook{} : found->second;
+}
+
+void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look) {
+  editor.views->preview_visibility.reset();
+  commit_looks(editor, label, [&](auto& looks) { looks[tissue] = look; });
+}
+
+void preview_look(Editor& editor, Label tissue, const TissueLook& look) {
+  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+  visibility.looks[tissue] = look;
+  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  editor.touch();
+}
+
+void preview_tissue(Editor& editor, const Tissue& tissue) {
+  TissueTable table = *editor.document().tissues;
+  if (Tissue* place = table.find(tissue.label)) *place = tissue;
+  editor.views->preview_tissues = std::make_shared<const TissueTable>(std::move(table));
+  editor.touch();
+}
+
+void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible) {
+  commit_looks(editor, (visible ? "Show " : "Hide ") + name_of(editor, tissues), [&](auto& looks) {
+    for (const Label label : tissues) looks[label].visible = visible;
+  });
+}
+
+void solo_tissues(Editor& editor, const std::set<Label>& tissues) {
+  bool alone = true;
+  for (const Tissue& tissue : editor.document().tissues->tissues)
+    if (look_of(editor.document(), tissue.label).visible != tissues.contains(tissue.label)) alone = false;
+  if (alone) return reveal_tissues(editor);
+  commit_looks(editor, "Show only " + name_of(editor, tissues), [&](auto& looks) {
+    for (const Tissue& tissue : editor.document().tissues->tissues)
+      looks[tissue.label].visible = tissues.contains(tissue.label);
+  });
+}
+
+void reveal_tissues(Editor& editor) {
+  commit_looks(editor, "Reveal all", [](auto& looks) {
+    for (auto& [label, look] : looks) look.visible = true;
+  });
+}
+
+void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
+  editor.views->preview_tissues.reset();
+  TissueTable table = *editor.document().tissues;
+  Tissue* place = table.find(tissue.label);
+  if (!place) return;
+  *place = tissue;
+  Document next = editor.document();
+  next.tissues = std::make_shared<const TissueTable>(std::move(table));
+  commit(editor, what, std::move(next));
+}
+
+void rename_tissue(Editor& editor, Label label, const std::string& name) {
+  Tissue tissue = *editor.document().tissues->find(label);
+  if (name.empty() || name == tissue.name) return;
+  const std::string before = shown_name(tissue);
+  tissue.name = name;
+  set_tissue(editor, "Rename " + before, tissue);
+}
+
+void select_tissue(Editor& editor, Label label, bool extended) {
+  Selection& selection = editor.selection;
+  if (!extended) {
+    selection.tissues = {label};
+    selection.tissue = label;
+    return;
+  }
+  if (selection.tissues.erase(label) == 0) {
+    selection.tissues.insert(label);
+    selection.tissue = label;
+  } else if (selection.tissue == label) {
+    selection.tissue.reset();
+    if (!selection.tissues.empty()) selection.tissue = *selection.tissues.begin();
+  }
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The chosen tissue: name, colour, opacity, material.
+#include <cstdio>
+
+#include "core/tissue/tissue_rows.h"
+#include "editor/context/panels.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/tooltip.h"
+#include "editor/volume/tissue_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Whether a number is the usual one of the tissue's kind, and where that comes from.
+std::string where_from(const Tissue& tissue, double Tissue::*member, const char* format, const char* unit,
+                       std::string_view source) {
+  Tissue usual;
+  usual.name = tissue.name;
+  usual.kind = tissue.kind;
+  apply_kind_defaults(usual);
+  const std::string kind(tissue.name.empty() ? to_string(tissue.kind) : tissue.name),
+      from = " (" + std::string(source) + ").";
+  if (tissue.*member == usual.*member) return "As usual for " + kind + from;
+  char number[40];
+  std::snprintf(number, sizeof number, format, usual.*member);
+  return "From this body's table or by hand; usual for " + kind + " is " + number + (*unit ? " " : "") + unit + from;
+}
+
+// One number of the tissue. The document changes once, when the drag or typing ends.
+void draw_number(Editor& editor, Column& column, const Tissue& tissue, const char* label, double Tissue::*member,
+                 double low, double high, const char* format, const char* unit, std::string_view source) {
+  const Rect rect = column.property(label);
+  auto& edited = editor.edited_number;
+  double value = edited.name == label ? edited.value : tissue.*member;
+  bool committed = false;
+  if (number_field(editor, label, rect, value, low, high, format, unit, false, committed)) edited = {label, value};
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, where_from(tissue, member, format, unit, source));
+  if (!committed || edited.name != label) return;
+  Tissue next = tissue;
+  next.*member = edited.value;
+  edited = {};
+  set_tissue(editor, std::string(label) + " of " + shown_name(tissue), next);
+}
+
+void draw_opacity(Editor& editor, Column& column, const Tissue& tissue) {
+  const Rect rect = column.property("Opacity");
+  const TissueLook shown = look_of(editor.document(), tissue.label);
+  auto& edited = editor.edited_number;
+  double percent = edited.name == "Opacity" ? edited.value : shown.opacity * 100.0;
+  bool committed = false;
+  if (number_field(editor, "Opacity", rect, percent, 0, 100, "%.0f", "%", true, committed)) {
+    edited = {"Opacity", percent};
+    preview_look(editor, tissue.label, {shown.visible, static_cast<float>(percent / 100)});
+  }
+  if (!committed || edited.name != "Opacity") return;
+  const auto opacity = static_cast<float>(edited.value / 100);
+  edited = {};
+  set_look(editor, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, opacity});
+}
+
+void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
+  const Look& look = editor.look;
+  const Rect rect = column.property("Colour");
+  const glm::vec3 colour = editor.edited_colour.value_or(tissue.colour);
+  const Rect swatch{rect.low, {rect.high.x - look.px(56), rect.high.y}};
+  if (press_area(editor, "Colour", swatch).clicked) ImGui::OpenPopup("colour");
+  fill(swatch, rgb(colour.r, colour.g, colour.b), look.px(4));
+  char hex[8];
+  std::snprintf(hex, sizeof hex, "%02X%02X%02X", static_cast<int>(colour.r * 255 + 0.5f),
+                static_cast<int>(colour.g * 255 + 0.5f), static_cast<int>(colour.b * 255 + 0.5f));
+  put_text(editor, look.fonts.mono, look.theme.text2, Rect{{swatch.high.x, rect.low.y}, rect.high}, hex, Align::Right);
+  if (ImGui::BeginPopup("colour")) {
+    float picked[3] = {colour.r, colour.g, colour.b};
+    if (ImGui::ColorPicker3("##picker", picked,
+                            ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoSmallPreview)) {
+      Tissue next = tissue;
+      next.colour = {picked[0], picked[1], picked[2]};
+      editor.edited_colour = next.colour;
+      preview_tissue(editor, next);
+    }
+    ImGui::EndPopup();
+  } else if (editor.edited_colour) {
+    Tissue next = tissue;
+    next.colour = *editor.edited_colour;
+    editor.edited_colour.reset();
+    set_tissue(editor, "Colour of " + shown_name(tissue), next);
+  }
+}
+
+// Four rows always, so that nothing below moves with the pointer.
+void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>& weights) {
+  const Look& look = editor.look;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Rect row = column.row(22);
+    const float left = row.low.x + look.px(10), bar = row.high.x - look.px(130), right = row.high.x - look.px(10);
+    if (i >= weights.size()) {
+      if (i == 0)
+        put_text(editor, look.fonts.regular, look.theme.text3, Rect{{left, row.low.y}, row.high}, "No weights here");
+      continue;
+    }
+    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left, row.low.y}, {bar - look.px(8), row.high.y}},
+             weights[i].bone);
+    const float y = std::round(row.centre().y - look.px(3)), length = look.px(64);
+    fill({{bar, y}, {bar + length, y + look.px(6)}}, look.theme.field, look.px(3));
+    fill({{bar, y}, {bar + std::max(look.px(2), length * static_cast<float>(weights[i].value)), y + look.px(6)}},
+         look.theme.accent_text, look.px(3));
+    char text[16];
+    std::snprintf(text, sizeof text, "%.3f", weights[i].value);
+    put_text(editor, look.fonts.mono, look.theme.text, Rect{row.low, {right, row.high.y}}, text, Align::Right);
+  }
+}
+
+}  // namespace
+
+void draw_tissue(Editor& editor, Column& column) {
+  const Document& document = editor.document();
+  const Tissue* found =
+      document.tissues && editor.selection.tissue ? document.tissues->find(*editor.selection.tissue) : nullptr;
+  if (!found) return;
+  const Tissue tissue = *found;
+  if (column.begin_section("Tissue", shown_name(tissue))) {
+    column.space(6);
+    std::string name = tissue.name;
+    if (text_field(editor, "Name", column.property("Name"), name)) rename_tissue(editor, tissue.label, name);
+    const Rect kind = column.property("Kind");
+    put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
+    draw_colour(editor, column, tissue);
+    draw_opacity(editor, column, tissue);
+    const MaterialSources sources = material_sources(tissue.kind);
+    draw_number(editor, column, tissue, "Density", &Tissue::density, 0.001, 25, "%.3f", "g/cm\u00b3",
+                usual_density(tissue).source);
+    draw_number(editor, column, tissue, "Stiffness", &Tissue::young_modulus, 0.01, 1e6, "%.1f", "kPa",
+                sources.stiffness);
+    draw_number(editor, column, tissue, "Poisson ratio", &Tissue::poisson_ratio, 0, 0.4999, "%.4f", "",
+                sources.poisson);
+    column.space(6);
+  }
+  column.end_section();
+}
+
+void draw_under_cursor(Editor& editor, Column& column) {
+  if (!editor.document().volume) return;
+  const Look& look = editor.look;
+  if (column.begin_section("Under the cursor")) {
+    column.space(4);
+    const Hover& hover = editor.views->hover;
+    const Tissue* tissue =
+        hover.inside && editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
+    const Rect rect = column.row(24);
+    if (tissue) {
+      const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
+      fill({{rect.low.x + look.px(10), y}, {rect.low.x + look.px(10) + side, y + side}},
+           rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+      put_text(editor, look.fonts.regular, look.theme.text,
+               Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(60), rect.high.y}},
+               shown_name(*tissue));
+      put_text(editor, look.fonts.mono, look.theme.text2, Rect{rect.low, {rect.high.x - look.px(10), rect.high.y}},
+               std::to_string(tissue->label), Align::Right);
+    } else {
+      put_text(editor, look.fonts.regular, look.theme.text3, Rect{{rect.low.x + look.px(10), rect.low.y}, rect.high},
+               "Outside");
+    }
+    char text[80] = "-";
+    const Rect position = column.property("Position");
+    if (hover.inside)
+      std::snprintf(text, sizeof text, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+    put_text(editor, look.fonts.mono, look.theme.text, position, text, Align::Right);
+    std::snprintf(text, sizeof text, "-");
+    const Rect voxel = column.property("Voxel");
+    if (hover.inside) std::snprintf(text, sizeof text, "%d %d %d", hover.voxel.x, hover.voxel.y, hover.voxel.z);
+    put_text(editor, look.fonts.mono, look.theme.text, voxel, text, Align::Right);
+    if (editor.document().weights) draw_weights(editor, column, hover.weights);
+    column.space(4);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

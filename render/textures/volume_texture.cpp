@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/textures/volume_texture.h"
+
+#include <algorithm>
+
+#include <epoxy/gl.h>
+
+#include "core/base/error.h"
+
+namespace limber::render {
+
+namespace {
+
+constexpr int kBlockShift = 5;
+
+constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
+constexpr int kMostHalvings = 3;
+
+// The labels of a slot, its apron included; air outside the grid.
+void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Label>& slot) {
+  const glm::ivec3 low = block * kBlock - kApron - kPad, size = volume.grid.size;
+  slot.assign(static_cast<size_t>(kSlot) * kSlot * kSlot, 0);
+  const int from = std::max(low.x, 0), to = std::min(low.x + kSlot, size.x);
+  if (from >= to) return;
+  for (int z = std::max(low.z, 0); z < std::min(low.z + kSlot, size.z); ++z)
+    for (int y = std::max(low.y, 0); y < std::min(low.y + kSlot, size.y); ++y) {
+      const Label* row = volume.voxels.data() + volume.grid.index({0, y, z});
+      std::copy(row + from, row + to, slot.data() + ((z - low.z) * kSlot + (y - low.y)) * kSlot + (from - low.x));
+    }
+}
+
+// How much of each tissue touches air along the rows.
+class Exposure {
+ public:
+  void count(const std::vector<Label>& slot) {
+    for (size_t i = 0; i + 2 < slot.size(); i += 2) {
+      ++voxels_[slot[i + 1]];
+      touching_[slot[i + 1]] += slot[i] == 0 || slot[i + 2] == 0;
+    }
+  }
+  std::vector<float> shares() const {
+    std::vector<float> shares(voxels_.size());
+    for (size_t label = 1; label < shares.size(); ++label)
+      if (voxels_[label] > 0) shares[label] = float(touching_[label]) / float(voxels_[label]);
+    return shares;
+  }
+
+ private:
+  std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(65536), touching_ = std::vector<std::uint32_t>(65536);
+};
+
+std::string describe(const glm::ivec3& size) {
+  return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels";
+}
+
+}  // namespace
+
+bool allocate(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
+  glBindTexture(GL_TEXTURE_3D, texture.name());
+  glTexImage3D(GL_PROXY_TEXTURE_3D, 0, format.internal, size.x, size.y, size.z, 0, format.pixels, format.type, nullptr);
+  GLint width = 0;
+  glGetTexLevelParameteriv(GL_PROXY_TEXTURE_3D, 0, GL_TEXTURE_WIDTH, &width);
+  if (width == 0) return false;
+  gl::check_gl("before a volume is uploaded");
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage3D(GL_TEXTURE_3D, 0, format.internal, size.x, size.y, size.z, 0, format.pixels, format.type, texels);
+  if (glGetError() != GL_NO_ERROR) return false;
+  const GLint filter = format.linear ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, filter);
+  for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+  return true;
+}
+
+bool upload_index(const gl::Texture& texture, const BlockLayout& layout, const std::vector<std::uint8_t>& present) {
+  std::vector<glm::u8vec4> texels(layout.slot_of_block.size(), glm::u8vec4(0));
+  for (size_t s = 0; s < present.size(); ++s) {
+    if (!present[s]) continue;
+    const int slot = static_cast<int>(s);
+    texels[static_cast<size_t>(layout.block_index(layout.block_of_slot[s]))] =
+        glm::u8vec4(layout.place_of(slot), layout.atlas_of(slot) + 1);
+  }
+  return allocate(texture, layout.blocks, {GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE, false}, texels.data());
+}
+
+int bind_atlases(gl::Program& program, const std::string& name, const std::vector<gl::Texture>& atlases, int first) {
+  for (size_t a = 0; a < atlases.size(); ++a)
+    program.set_texture((name + std::to_string(a)).c_str(), first++, GL_TEXTURE_3D, atlases[a].name());
+  return first;
+}
+
+VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture)
+    : original_(volume),
+      largest_texture_(largest_texture) {
+  for (;;) {
+    const LabelVolume& drawn = coarse_ ? *coarse_ : *volume;
+    layout_ = block_layout(drawn);
+    if (place_slots(layout_, largest_texture) && upload(drawn)) break;
+    atlases_.clear();
+    if (halvings_ == kMostHalvings)
+      throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(volume->grid.size),
+                  "re-grid it with a larger spacing");
+    coarse_ = std::make_shared<const LabelVolume>(halved(drawn));
+    ++halvings_;
+  }
+  grid_ = coarse_ ? coarse_->grid : volume->grid;
+  if (halvings_ > 0)
+    note_ = "Shown at 1/" + std::to_string(1 << halvings_) +
+            " of its resolution: the graphics driver has no room for " + describe(volume->grid.size);
+}
+
+bool VolumeTexture::upload(const LabelVolume& volume) {
+  const glm::ivec3 size = layout_.slots * kSlot;
+  for (int a = 0; a < layout_.atlases; ++a) {
+    atlases_.push_back(gl::Texture::create());
+    if (!allocate(atlases_.back(), size, kLabels)) return false;
+  }
+  std::vector<Label> slot;
+  Exposure exposure;
+  for (size_t s = 0; s < layout_.block_of_slot.size(); ++s) {
+    gather(volume, layout_.block_of_slot[s], slot);
+    exposure.count(slot);
+    const glm::ivec3 at = layout_.place_of(static_cast<int>(s)) * kSlot;
+    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout_.atlas_of(static_cast<int>(s)))].name());
+    glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, slot.data());
+  }
+  exposure_ = exposure.shares();
+  if (!index_) index_ = gl::Texture::create();
+  return glGetError() == GL_NO_ERROR &&
+         upload_index(index_, layout_, std::vector<std::uint8_t>(layout_.block_of_slot.size(), 1));
+}
+
+int VolumeTexture::bind(gl::Program& program, int first) const {
+  return bind_atlases(program, "u_labels", atlases_, first);
+}
+
+std::string atlas_defines(int atlases) {
+  static_assert(kBlock == 1 << kBlockShift && kMostAtlases == 4);  // as shaders/atlases.glsl has it
+  return gl::define("ATLASES", atlases) + gl::define("SLOT", kSlot) + gl::define("APRON", kApron) +
+         gl::define("BLOCK", kBlock) + gl::define("BLOCK_SHIFT", kBlockShift);
+}
+
+}  // namespace limber::render

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Results beside the volume at rest: chosen, renamed, deleted, compared.
+#include "editor/resample/difference_overlay.h"
+#include "editor/resample/results.h"
+#include "editor/shown/compare_wipe.h"
+#include "editor/shown/fem_live_view.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+namespace {
+
+// A ball of another size stands for a posed one, in a grid of its own.
+std::shared_ptr<const Result> result(const Document& document, const std::string& name, double radius, double shift) {
+  auto volume = std::make_shared<LabelVolume>(*document.volume);
+  volume->grid.origin.z += shift;
+  const AffineTransform world = world_from_voxel(volume->grid);
+  for (int z = 0; z < volume->grid.size.z; ++z)
+    for (int y = 0; y < volume->grid.size.y; ++y)
+      for (int x = 0; x < volume->grid.size.x; ++x)
+        volume->at({x, y, z}) = glm::length(world * glm::dvec3(x, y, z)) < radius ? 17 : 0;
+  Result one;
+  one.name = name;
+  one.method = "dqs";
+  one.volume = volume;
+  one.from_volume = document.volume;
+  one.from_tissues = document.tissues;
+  one.from_armature = document.armature;
+  one.from_weights = document.weights;
+  return std::make_shared<const Result>(one);
+}
+
+struct Compared : LimbEditor {
+  Compared() {
+    Document next = editor->document();
+    next.results = {result(next, "One", 30, 0), result(next, "Two", 20, 6)};
+    editor->history.commit("Results", next);
+    play("key Ctrl+4");
+  }
+  const std::shared_ptr<const LabelVolume>& shown() const { return editor->views->scene.volume; }
+  const LabelVolume* volume(std::size_t result) const { return editor->document().results[result]->volume.get(); }
+};
+
+}  // namespace
+
+TEST_CASE("results: a click shows one, a second click the volume at rest, in the body and in slices") {
+  Compared test;
+  const LabelVolume* rest = test.editor->document().volume.get();
+  CHECK(test.shown().get() == rest);
+  test.play("click One/row");
+  CHECK(test.shown().get() == test.volume(0));
+  test.play("click Two/row");
+  CHECK(test.shown().get() == test.volume(1));
+
+  // Slices of the posed volume step through its own grid, 6 mm higher than the one at rest.
+  test.play("key Ctrl+Alt+Q\n move Axial/view\n expect text:posed");
+  for (int i = 0; i < 40; ++i) test.host->events.push(Wheeled{1});
+  test.player.settle();
+  const Grid& grid = test.volume(1)->grid;
+  CHECK(test.editor->views->cross_hair.z ==
+        doctest::Approx((world_from_voxel(grid) * glm::dvec3(0, 0, grid.size.z - 1)).z));
+  test.play("click Two/row");
+  CHECK(test.shown().get() == rest);
+  test.play("click One/row\n click \"At rest/row\"");
+  CHECK(test.shown().get() == rest);
+  run(*test.editor, "result.show_last");
+  test.player.settle();
+  CHECK(test.shown().get() == test.volume(1));
+  run(*test.editor, "result.toggle");
+  test.player.settle();
+  CHECK(test.shown().get() == rest);
+}
+
+TEST_CASE("results: A and B are shown in turn, held against one another, and wiped") {
+  Compared test;
+  test.play("click Two/row\n click One/row Shift\n move \"3D view/view\"\n key 1");
+  CHECK(test.shown().get() == test.volume(0));
+  test.play("key 2");
+  CHECK(test.shown().get() == test.volume(1));
+  test.play("key-down F");
+  CHECK(test.shown().get() == test.volume(0));
+  test.play("expect \"text:Let go\"\n key-up F");
+  CHECK(test.shown().get() == test.volume(1));
+
+  test.play("key 4\n expect \"text:A  One\"\n expect \"text:B  Two\"\n wait-idle");
+  REQUIRE(test.editor->views->other_scene);
+  CHECK(test.editor->views->other_scene->volume.get() == test.volume(0));
+  CHECK(test.shown().get() == test.volume(1));
+  // What lies left of the line is read from A, what lies right of it from B: 25 mm from the middle only A has tissue.
+  const Rect view = *test.editor->layout.place_of(ViewId::Body);
+  const glm::dvec3 right = test.editor->views->body.camera.world_from_view * glm::dvec3(1, 0, 0);
+  const auto hovered = [&](double millimetres) {
+    glm::dvec2 pixel;
+    REQUIRE(render::project(test.editor->views->body.camera, right * millimetres, glm::ivec2(view.size()), pixel));
+    test.host->events.push(PointerMoved{view.low + glm::vec2(pixel)});
+    test.player.settle();
+    return test.editor->views->hover.inside;
+  };
+  CHECK(hovered(-25));
+  CHECK_FALSE(hovered(25));
+  // So is what lies behind it: at rest there are four tissues, in Two there is one.
+  test.editor->comparison.a = "";
+  test.play("wait-idle");
+  const auto listed = [&](double millimetres) {
+    hovered(millimetres);
+    test.host->events.push(KeyChanged{Key::Alt, true});
+    for (const bool down : {true, false}) test.host->events.push(ButtonChanged{MouseButton::Left, down});
+    test.player.settle();
+    test.host->events.push(KeyChanged{Key::Alt, false});
+    test.player.settle();
+    const std::vector<Pickable> below = test.editor->pick_list;
+    test.play("key Escape");
+    return std::count(below.begin(), below.end(), Pickable{std::nullopt, 111});
+  };
+  CHECK(listed(-4) == 1);
+  CHECK(listed(4) == 0);
+  test.editor->comparison.a = "One";
+  test.play("wait-idle");
+  test.play("drag \"3D view/wipe\" 200 0\n wait-idle");
+  CHECK(test.editor->comparison.share > 0.6f);
+  CHECK(hovered(25));
+  test.play("double-click \"3D view/wipe\"");
+  CHECK(test.editor->comparison.share == 0.5f);
+  run(*test.editor, "compare.swap");
+  test.player.settle();
+  CHECK(test.shown().get() == test.volume(0));
+  test.play("key 4");
+  CHECK_FALSE(test.editor->views->other_scene);
+}
+
+TEST_CASE("results: A and B stand side by side, one camera sees both, and what the pointer is on belongs to its side") {
+  Compared test;
+  test.play(
+      "click Two/row\n click One/row Shift\n move \"3D view/view\"\n key 3\n wait-idle\n expect \"text:One\"\n expect "
+      "\"text:Two\"");
+  CHECK(side_by_side(*test.editor));
+  const Layout& layout = test.editor->layout;
+  REQUIRE(layout.view_places.size() == 2);
+  const Rect b = *layout.place_of(ViewId::Body), a = layout.view_places[1].rect;
+  CHECK(layout.view_places[1].side_a);
+  CHECK(a.high.x < b.low.x);
+  CHECK(a.size() == b.size());
+  // The smaller ball stands on the right; 25 mm off its middle only A has tissue.
+  const auto label_at = [&](const Rect& view, double millimetres) -> int {
+    const render::Camera& camera = test.editor->views->body.camera;
+    glm::dvec2 pixel;
+    REQUIRE(render::project(camera, camera.world_from_view * glm::dvec3(millimetres, 0, 0), glm::ivec2(view.size()),
+                            pixel));
+    test.host->events.push(PointerMoved{view.low + glm::vec2(pixel)});
+    test.player.settle();
+    return test.editor->views->hover.inside ? test.editor->views->hover.label : 0;
+  };
+  CHECK(label_at(a, 25) == 17);
+  CHECK(label_at(b, 25) == 0);
+  CHECK(label_at(b, 5) == 17);
+
+  const glm::dquat before = test.editor->views->body.camera.world_from_view;
+  test.play("drag \"3D view A/view\" 60 10 MMB\n wait-idle");
+  CHECK(test.editor->views->body.camera.world_from_view != before);
+  CHECK(label_at(a, 25) == 17);
+  CHECK(label_at(b, 25) == 0);
+
+  test.play("drag \"3D view/divider\" 120 0\n wait-idle");
+  CHECK(test.editor->comparison.share > 0.55f);
+  CHECK(layout.view_places[1].rect.width() > a.width() + 100);
+  test.play("drag \"3D view/divider\" 900 0\n wait-idle");
+  CHECK(layout.view_places[0].rect.width() > 0.19f * layout.views.width());
+  test.play("double-click \"3D view/divider\"");
+  CHECK(test.editor->comparison.share == 0.5f);
+
+  // Slices stand twice as well; a box cuts both.
+  test.play("key Ctrl+Alt+Q\n wait-idle");
+  CHECK(layout.view_places.size() == 8);
+  test.play("move \"Axial A/view\"");
+  CHECK(test.editor->views->hover.view == ViewId::Axial);
+  CHECK(scene_at_pointer(*test.editor, *layout.view_at(test.editor->input.pointer)).volume.get() == test.volume(0));
+  run(*test.editor, "view.one");
+  test.play("wait-idle\n move \"3D view/view\"\n key Alt+B\n wait-idle");
+  CHECK(test.editor->views->scene.clip.box);
+  CHECK(test.editor->views->other_scene->clip.box);
+  // Elsewhere there is one view, and here again two.
+  test.play("key Ctrl+3\n wait-idle");
+  CHECK(layout.view_places.size() == 1);
+  test.play("key Ctrl+4\n wait-idle\n move \"3D view/view\"");
+  CHECK(layout.view_places.size() == 2);
+  test.play("key 3\n wait-idle");
+  CHECK(layout.view_places.size() == 1);
+  CHECK_FALSE(test.editor->views->other_scene);
+  CHECK(test.shown().get() == test.volume(1));
+}
+
+TEST_CASE("results: where A and B differ is marked on both sides and counted by tissue") {
+  Compared test;
+  test.play("click Two/row\n move \"3D view/view\"\n key 3\n key D\n wait-idle\n expect \"text:Voxels that differ\"");
+  const ComparedVolumes* found = compared_volumes(*test.editor);
+  REQUIRE(found);
+  CHECK(found->a.volume == test.editor->document().volume);
+  CHECK(found->b.volume.get() == test.volume(1));
+  const LabelVolume &rest = *found->a.volume, &two = *found->b.volume;
+  // In whole voxels: Two lies two of them higher.
+  DifferingSide::Count skin, muscle;
+  for (int z = 0; z < rest.grid.size.z; ++z)
+    for (int y = 0; y < rest.grid.size.y; ++y)
+      for (int x = 0; x < rest.grid.size.x; ++x) {
+        const Label here = rest.at({x, y, z}), there = two.at_or_air({x, y, z - 2});
+        if (here == 143) ++(there == 0 ? skin.air : skin.other_tissue);
+        if (here == 17 && there == 0) ++muscle.air;
+      }
+  CHECK(found->a.differing.counts.at(143) == skin);
+  CHECK(found->a.differing.counts.at(17) == muscle);
+  CHECK(found->a.differing.counts.at(111).air == 0);
+  CHECK(found->b.differing.counts.at(17).air == 0);
+  const auto& views = *test.editor->views;
+  REQUIRE(views.scene.weights);
+  REQUIRE(views.other_scene->weights);
+  CHECK(views.scene.weights->field == found->b.field);
+  CHECK(views.other_scene->weights->field == found->a.field);
+
+  // What lies at the same place on the other side is told beside the pointer.
+  test.play("move \"3D view A/view\"\n wait-idle\n expect \"text:in B: \"\n expect \"text:Skin, A and B\"");
+  test.play("key 2\n wait-idle");  // B alone keeps its marks
+  CHECK(views.scene.weights->field == found->b.field);
+  test.play("key 1\n wait-idle");
+  CHECK(views.scene.weights->field == found->a.field);
+  run(*test.editor, "fem.show_tissues");
+  test.player.settle();
+  CHECK_FALSE(views.scene.weights);
+  CHECK_FALSE(shows_difference(*test.editor));
+}
+
+TEST_CASE("results: gates, changes and provenance are read from the report of the result that is shown") {
+  Compared test;
+  Document next = test.editor->document();
+  auto judged = std::make_shared<Result>(*next.results[0]);
+  judged->report =
+      R"({"version": "9.8", "settings": {"fit_joints": true, "quality": "fine", "method": "fem"},
+        "inputs": [{"path": "/tmp/x/rig.json", "sha256": "0123456789abcdef0123456789abcdef"}],
+    "seconds": {"solve": 3.25, "total": 4}, "peak_memory_mb": 123.4, "mesh": {"inverted": 3},
+      "bones": [{"name": "Fore", "rigid_residual_mm": 0.25}], "total": {"overlap_voxels": 7},
+    "tissues": [{"name": "Skin", "label": 143, "voxels_before": 6000, "mm3_before": 1000, "mm3_after": 900,
+      "volume_change_percent": -10}]})";
+  judged->from_pose = std::make_shared<const Pose>(rest_pose(*next.armature));
+  next.results[0] = judged;
+  test.editor->history.commit("Report", next);
+  test.editor->open_sections["Provenance"] = true;
+  for (const char* folded : {"Outliner", "Tissues", "Running", "Resample"}) test.editor->open_sections[folded] = false;
+  test.play("click One/row\n wait-idle");
+  for (const char* text : {"-10.00 %", "0.250 mm", "7 voxels", "not checked", "within", "9.8", "fine", "rig.json",
+                           "0123456789abcdef", "3.25 s", "123 MB"}) {
+    INFO(std::string(text));
+    CHECK(test.fact(std::string("text:") + text) == "shown");
+  }
+  test.play("click \"Bone parts rigid\"");
+  CHECK(test.editor->selection.bone == 1);
+  test.play("click \"Each tissue within 1 %\"");
+  CHECK(test.editor->selection.tissue == 143);
+  test.play("click \"Quality gates/fold\"\n wait-idle\n click rig.json");
+  CHECK(test.host->clipboard() == "0123456789abcdef0123456789abcdef");
+  const std::string text = text_of_report("One", *facts_of(*test.editor, test.editor->document().results[0]));
+  for (const char* part : {"FAILED   Each tissue within 1 %", "-10.00 %  Skin", "passed   Joint limits", "Quality",
+                           "0123456789abcdef0123456789abcdef"}) {
+    INFO(text);
+    CHECK(text.find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("results: without a choice the comparison is of the volume at rest and the last result") {
+  Compared test;
+  test.play("move \"3D view/view\"\n key 4");
+  REQUIRE(test.editor->views->other_scene);
+  CHECK(test.editor->views->other_scene->volume == test.editor->document().volume);
+  CHECK(test.shown().get() == test.volume(1));
+  test.play("key 1");
+  CHECK(test.shown() == test.editor->document().volume);
+}
+
+TEST_CASE("results: one is renamed in its row and deleted, and both are undone") {
+  Compared test;
+  test.play(R"(
+    click One/row
+    click result.rename
+    type "Elbow"
+    key Return
+    expect edit "Rename One"
+  )");
+  CHECK(test.editor->document().results[0]->name == "Elbow");
+  CHECK(test.shown().get() == test.volume(0));  // still shown
+  test.play("double-click Two/row\n type \"Elbow\"\n key Return\n expect edit \"Rename Two\"");
+  CHECK(test.editor->document().results[1]->name == "Elbow (2)");
+  test.play("double-click \"Elbow (2)/row\"\n type \"Other\"\n key Escape");
+  CHECK(test.editor->document().results[1]->name == "Elbow (2)");
+  test.play("move \"3D view/view\"\n key Delete\n expect edit \"Delete Elbow (2)\"");
+  CHECK(test.editor->document().results.size() == 1);
+  CHECK(test.shown() == test.editor->document().volume);
+  test.play("key Ctrl+Z\n key Ctrl+Z\n key Ctrl+Z");
+  CHECK(test.editor->document().results.size() == 2);
+  CHECK(test.editor->document().results[0]->name == "One");
+  CHECK(test.editor->document().results[1]->name == "Two");
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the pointer is over owns the keys; what it points at stays where it is.
+#include "editor/motion/timeline.h"
+#include "tests/editor/keyboard.h"
+#include "tests/editor/small_clip.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+namespace {
+
+glm::vec2 place_of(const Editor& editor, const std::string& name) {
+  const Widget* widget = editor.widgets.find(name);
+  REQUIRE(widget);
+  return widget->rect.low;
+}
+
+}  // namespace
+
+TEST_CASE("areas: a view's keys act over the view alone, those of the whole window everywhere") {
+  LimbEditor test;
+  test.play(R"(
+    move "3D view/view"
+    key Num1
+    expect view Front
+    move Outliner/volume/name
+    key Num3
+    expect view Front
+    key Ctrl+2
+    expect workspace skin
+    key Ctrl+3
+    move Motion/fold
+    key Num3
+    expect view Front
+    move "3D view/view"
+    key Num3
+    expect view Left
+  )");
+}
+
+TEST_CASE("areas: a click in a number field types there, Ctrl+A chooses its text, a drag changes it") {
+  LimbEditor test;
+  test.play("key Ctrl+3\nclick \"Outliner/bone Fore/name\"\nwait-idle");
+  test.editor->open_sections["Bone"] = true;
+  const Pose bent = [&] {
+    Pose pose = rest_pose(*test.editor->document().armature);
+    pose.rotation[1] = glm::angleAxis(glm::radians(40.0), glm::dvec3(1, 0, 0));
+    return pose;
+  }();
+  Document next = test.editor->document();
+  next.pose = std::make_shared<const Pose>(bent);
+  test.editor->history.commit("Bend", next);
+  const auto armature = test.editor->document().armature;
+  test.play("key Ctrl+1\nwait-idle\nclick \"Bone/Length\"");
+  test.host->events.push(KeyChanged{Key::Ctrl, true});
+  press_key(*test.host, Key::A);
+  test.host->events.push(KeyChanged{Key::Ctrl, false});
+  type_keys(*test.host, "42");
+  press_key(*test.host, Key::Return);
+  test.player.settle();
+  const Bone& fore = test.editor->document().armature->bones[1];
+  CHECK(glm::distance(fore.head, fore.tail) == doctest::Approx(42));
+  test.play("drag \"Bone/Length\" 20 0");
+  const Bone& longer = test.editor->document().armature->bones[1];
+  CHECK(glm::distance(longer.head, longer.tail) > 43);
+  CHECK_FALSE(test.editor->keyboard.typed);
+}
+
+TEST_CASE("areas: one Escape closes a menu, wherever it was opened") {
+  LimbEditor test;
+  for (const char* open : {"click top/File", "click top/Edit", "right-click \"Outliner/bone Fore/name\""}) {
+    INFO(open);
+    test.play(open);
+    CHECK(std::any_of(test.editor->widgets.widgets().begin(), test.editor->widgets.widgets().end(),
+                      [](const Widget& widget) { return widget.region == Region::Popup; }));
+    test.play("key Escape");
+    CHECK(std::none_of(test.editor->widgets.widgets().begin(), test.editor->widgets.widgets().end(),
+                       [](const Widget& widget) { return widget.region == Region::Popup; }));
+  }
+}
+
+TEST_CASE("areas: what is pointed at in the sidebar stays where it is when something above it grows or goes") {
+  LimbEditor test;
+  test.play("key Ctrl+1\nwait-idle\nmove Display/fold");
+  const glm::vec2 before = place_of(*test.editor, "Display/fold");
+  const float above = place_of(*test.editor, "Outliner/fold").y;
+  // A bone is chosen: its numbers come above.
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.player.step();
+  CHECK(test.editor->widgets.find("Bone/Length"));
+  CHECK(place_of(*test.editor, "Display/fold") == before);
+  test.editor->selection = {};
+  test.player.step();
+  CHECK(place_of(*test.editor, "Display/fold") == before);
+  CHECK(place_of(*test.editor, "Outliner/fold").y == above);
+  // Left alone, all is as if it had come at once.
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.play("move \"3D view/view\"");
+  CHECK(place_of(*test.editor, "Outliner/fold").y == above);
+}
+
+TEST_CASE("areas: each workspace's sidebar is scrolled by itself") {
+  LimbEditor test;
+  test.play("wait-idle\nmove Outliner/volume/name\nwheel Outliner/volume/name -20\nmove \"3D view/view\"");
+  const glm::vec2 scrolled = place_of(*test.editor, "History/fold");
+  test.play("key Ctrl+3\nwait-idle");
+  CHECK(test.editor->widgets.find("Steps/fold"));
+  test.play("key Ctrl+1\nwait-idle");
+  CHECK(place_of(*test.editor, "History/fold") == scrolled);
+}
+
+TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and those under the pointer stay") {
+  LimbEditor test;
+  test.play("key Ctrl+Alt+Q\nwait-idle");
+  for (int i = 0; i < 5; ++i) test.editor->messages.toast_error("It failed " + std::to_string(i));
+  test.player.settle();
+  const Rect body = *test.editor->layout.place_of(ViewId::Body);
+  int boxes = 0;
+  for (const Widget& widget : test.editor->widgets.widgets())
+    if (widget.region == Region::Toast) {
+      ++boxes;
+      CHECK(body.contains(widget.rect));
+    }
+  CHECK(boxes > 0);
+  test.play("move \"toast 0/box\"");
+  const glm::vec2 before = place_of(*test.editor, "toast 0/box");
+  test.editor->messages.toast_error("One more");
+  test.editor->messages.info(
+      "And a long one that takes more than a line of the box, and therefore another height than all of the others "
+      "have");
+  test.play("wait 10");
+  CHECK(place_of(*test.editor, "toast 0/box") == before);
+  CHECK(test.fact("text:One more") == "absent");
+  test.play("move \"Axial/view\"");
+  CHECK(test.fact("text:One more") == "shown");
+}
+
+TEST_CASE("areas: the status bar's hints are those of the timeline while the pointer is over it") {
+  LimbEditor test;
+  test.editor->history.reset(bending_limb(), "Open bending limb");
+  test.play("key Ctrl+3\nwait-idle\nmove \"3D view/view\"\nexpect text:Scrub absent");
+  const glm::vec2 over = test.editor->timeline_area.centre();
+  test.play("move " + std::to_string(over.x) + " " + std::to_string(over.y) + "\nexpect text:Scrub shown");
+}
+
+TEST_CASE("areas: a word in a section's head is whole where the title leaves room for it") {
+  const std::string name = "Left middle finger's end bone";
+  LimbEditor test;
+  Document next = test.editor->document();
+  Armature armature = *next.armature;
+  armature.bones[1].name = name;
+  next.armature = std::make_shared<const Armature>(armature);
+  test.editor->history.reset(next, "Open");
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.play("key Ctrl+1\nwait-idle");
+  const Widget* fold = test.editor->widgets.find("Bone/fold");
+  REQUIRE(fold);
+  // Pointing at a text that is cut shows it whole.
+  test.play("move " + std::to_string(fold->rect.high.x + 20) + " " + std::to_string(fold->rect.centre().y) +
+            "\nwait 2");
+  CHECK(test.editor->tip.title != name);
+}

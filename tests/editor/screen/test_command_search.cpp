@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/screen/command_search.h"
+
+#include "tests/editor/small_editor.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+TEST_CASE("search: a command is found by letters of its name and run with Return") {
+  SmallEditor test;
+  test.play(R"(
+    key F3
+    expect dialog yes
+    type "four"
+    key Return
+    expect dialog no
+    expect layout four
+    key Ctrl+Shift+P
+    type "one v"
+    key Return
+    expect layout one
+    click top/Search
+    expect dialog yes
+    key Escape
+    expect dialog no
+  )");
+}
+
+TEST_CASE("search: arrows choose, what cannot run now stands last and says why when it is chosen") {
+  SmallEditor test({1024, 640}, {}, false);
+  const auto found = find_commands(*test.editor, "fram");
+  REQUIRE(found.size() >= 2);
+  const auto cannot = std::find_if(found.begin(), found.end(), [](const FoundCommand& c) { return !c.reason.empty(); });
+  CHECK(std::all_of(cannot, found.end(), [](const FoundCommand& c) { return !c.reason.empty(); }));
+  test.play(R"(
+    key F3
+    type "re-g"
+    expect "text:Open a volume first" shown
+    key Down
+    key Up
+    key Return
+    expect dialog no
+    expect toast "Re-grid..."
+  )");
+}
+
+TEST_CASE("search: without a query it begins with the last five, then the most used") {
+  SmallEditor test;
+  for (const char* id :
+       {"view.xray", "view.xray", "view.xray", "view.one", "view.split", "view.four", "view.grid", "view.axes"})
+    run(*test.editor, id);
+  const auto found = find_commands(*test.editor, "");
+  REQUIRE(found.size() > 6);
+  const char* expected[] = {"view.axes", "view.grid", "view.four", "view.split", "view.one", "view.xray"};
+  for (int i = 0; i < 6; ++i) CHECK(found[i].op->id == expected[i]);
+  CHECK(static_cast<int>(found.size()) == count_commands(*test.editor));
+}
+
+TEST_CASE("search: every command can be found by its own name, first of all") {
+  SmallEditor test;
+  for (const FoundCommand& command : find_commands(*test.editor, "")) {
+    const auto found = find_commands(*test.editor, command.op->label);
+    REQUIRE_FALSE(found.empty());
+    if (command.reason.empty()) CHECK(found.front().op->label == command.op->label);
+  }
+}
+
+TEST_CASE("search: what is for the pointer alone is left out, Repeat does the last command again") {
+  SmallEditor test;
+  for (const FoundCommand& command : find_commands(*test.editor, "")) CHECK(command.op->id != "view.orbit");
+  test.play(R"(
+    key Alt+Z
+    expect display xray
+    key Shift+R
+    expect display solid
+  )");
+}

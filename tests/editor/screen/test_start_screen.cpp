@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
+
+#include "editor/files/tour.h"
+#include "tests/editor/sitting.h"
+
+using namespace limber;
+using namespace limber::test;
+
+TEST_CASE(
+    "start screen: it shows recent files with pictures, opens one, and keeps those that are gone with a way to find "
+    "them") {
+  const Home home;
+  { Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}); }
+  std::filesystem::copy_file(home / "scans/ball.nrrd", home / "other.nrrd");
+  {
+    Sitting sitting(home.folder.path(), {home / "other.nrrd"});
+    CHECK_FALSE(sitting.editor().start_screen);
+  }
+  std::filesystem::rename(home / "scans/ball.nrrd", home / "scans/moved.nrrd");
+  Sitting sitting(home.folder.path());
+  CHECK(sitting.editor().start_screen);
+  CHECK(sitting.editor().recent_facts.at(home / "other.nrrd").picture);
+  CHECK(sitting.editor().recent_facts.at(home / "scans/ball.nrrd").missing);
+  sitting.play(R"(
+    expect text:Samples
+    expect "text:moved or deleted"
+    click "recent ball"
+    expect dialog yes
+    type scans
+    key Return
+    key Return
+    wait-job
+    expect volume yes
+    expect name moved
+  )");
+  CHECK_FALSE(sitting.editor().start_screen);
+  CHECK(sitting.editor().remembered.recents.size() == 2);
+}
+
+TEST_CASE("start screen: arrows and Return choose a recent file, the menu lists them too") {
+  const Home home;
+  { Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}); }
+  {
+    Sitting sitting(home.folder.path());
+    sitting.play("key Down\n key Up\n key Return\n wait-job\n expect name ball");
+  }
+  Sitting sitting(home.folder.path());
+  sitting.play("click \"File/Open recent/ball.nrrd\"\n wait-job\n expect name ball");
+}
+
+TEST_CASE("start screen: a key that is a command closes it and runs, Escape closes it, it can be told to stay away") {
+  const Home home;
+  {
+    Sitting sitting(home.folder.path());
+    sitting.play("key Ctrl+3\n expect workspace pose");
+    CHECK_FALSE(sitting.editor().start_screen);
+    sitting.play("key Ctrl+Shift+O\n expect text:Samples\n key Escape\n expect text:Samples absent");
+    sitting.play("key Ctrl+Shift+O\n click \"Show at start\"");
+  }
+  Sitting sitting(home.folder.path());
+  CHECK_FALSE(sitting.editor().start_screen);
+}
+
+TEST_CASE("start screen: nothing covers anything, in a large window, a small one and at scale 2") {
+  const Home home;
+  { Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}); }
+  for (const glm::ivec2 size : {glm::ivec2(1600, 900), glm::ivec2(1024, 640), glm::ivec2(800, 520)}) {
+    Sitting sitting(home.folder.path(), {}, size);
+    sitting.play("wait-idle");
+    const auto& widgets = sitting.editor().widgets.widgets();
+    int found = 0;
+    for (std::size_t i = 0; i < widgets.size(); ++i) {
+      if (widgets[i].region != editor::Region::Start) continue;
+      ++found;
+      for (std::size_t j = i + 1; j < widgets.size(); ++j) {
+        if (widgets[j].region != editor::Region::Start) continue;
+        INFO(size.x, "x", size.y, ": ", widgets[i].name, " and ", widgets[j].name);
+        CHECK_FALSE(widgets[i].rect.overlaps(widgets[j].rect));
+      }
+    }
+    CHECK(found >= 9);
+  }
+}
+
+TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goes on where it was left") {
+  const Home home;
+  {
+    Sitting sitting(home.folder.path(), {}, {1280, 720});
+    sitting.play(R"(
+      click "Take the tour"
+      wait-job
+      expect volume yes
+      expect "text:Turn the view"
+      drag "3D view/view" 80 10 MMB
+      expect "text:Look inside"
+      click view.xray_display
+      expect "text:Cut it open"
+      click "Skip step"
+      expect "text:Hide a tissue"
+      click "End tour"
+      expect "text:Hide a tissue" absent
+    )");
+  }
+  Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
+  CHECK(sitting.editor().remembered.tour_step == 3);
+  sitting.play(R"(
+    click Help/Tour
+    expect "text:Hide a tissue"
+    click Muscle/17/eye
+    expect "text:Take it back"
+    key Ctrl+Z
+    expect "text:See slices"
+    click view.four
+    expect "text:Move the cross-hair"
+    click "Skip step"
+    expect "text:Count the tissue"
+    click Steps/Prepare/Statistics
+    wait-job
+    key Escape
+    expect "text:Let tissue follow the bones"
+    click "Skip step"
+    expect "text:Bend the elbow"
+    click "Skip step"
+    expect "text:Writes the posed arm"
+    click "Skip step"
+    expect "toast" "That was the tour"
+  )");
+  CHECK(sitting.editor().remembered.tour_step == 0);
+}

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/painting.h"
+
+#include <cmath>
+
+#include "core/rig/mirror.h"
+#include "editor/context/transform_settings.h"
+#include "editor/context/view_projection.h"
+#include "editor/skin/weight_display.h"
+#include "editor/volume/tissue_edits.h"
+#include "tests/editor/paint_editor.h"
+
+using namespace limber;
+using namespace limber::editor;
+using limber::test::PaintEditor;
+
+TEST_CASE("painting: a stroke lands where the pointer is, in both projections and at twice the size, and is one edit") {
+  for (const float scale : {1.0f, 2.0f})
+    for (const bool parallel : {false, true}) {
+      PaintEditor test(scale, parallel);
+      const auto before = test.editor->document().weights;
+      const int steps = test.steps();
+      const glm::dvec3 centre(0, -std::sqrt(1600 - 400), 20);
+      test.stroke(test.at(0, 20), test.at(0, 20));
+      INFO("scale ", scale, ", parallel ", parallel);
+      CHECK(test.steps() == steps + 1);
+      CHECK(test.last_edit() == "Add Fore");
+      const auto [count, furthest] = test.painted(1, centre, true);
+      CHECK(count > 20);
+      CHECK(furthest < 12 + 6);  // the radius, and a voxel's diagonal for where the surface lies
+      // Constant at full strength: wholly, not nearly; and every sum is exact.
+      test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
+        CHECK(i.weight[0] + i.weight[1] + i.weight[2] + i.weight[3] == kFullWeight);
+        if (glm::distance(p, centre) < 5) CHECK(i == rigid_influence(1));
+      });
+      CHECK(!test.editor->views->preview_weights);
+      test.play("key Ctrl+Z");
+      CHECK(test.editor->document().weights == before);
+    }
+}
+
+TEST_CASE(
+    "painting: each brush paints by the mouse as it is shown while it does, keeps what is locked, and is one edit that "
+    "is undone and redone") {
+  bool parallel = false;
+  for (const BrushKind kind :
+       {BrushKind::Add, BrushKind::Subtract, BrushKind::Set, BrushKind::Multiply, BrushKind::Smooth, BrushKind::Sharpen,
+        BrushKind::Average, BrushKind::Smear, BrushKind::JointCapsule}) {
+    PaintEditor test(1, parallel);
+    INFO(name_of(kind), ", parallel ", parallel);
+    // Something to sharpen and to drag: a blend that falls along the ball.
+    Document blended = test.editor->document();
+    SkinWeights weights = *blended.weights;
+    const TissueVoxels tissue(*blended.volume);
+    const AffineTransform world = world_from_voxel(blended.volume->grid);
+    for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+      SkinWeights::Influences chunk = weights.chunk(brick);
+      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+        const double fore = 1 / (1 + std::exp((world * glm::dvec3(v)).z / 6));
+        chunk[place - tissue.bricks()[brick].first] = quantize({{0, 1 - fore}, {1, fore}});
+      });
+      weights.set_chunk(brick, chunk);
+    }
+    blended.weights = std::make_shared<const SkinWeights>(std::move(weights));
+    test.editor->history.reset(blended, "Open blended limb");
+    test.play("wait-idle");
+    test.editor->skin->painting->kind = kind;
+    test.editor->skin->painting->value = 0.5;
+    test.editor->skin->painting->strength = 0.7;
+    const auto before = test.editor->document().weights;
+    const int steps = test.steps();
+    test.play("move " + test.at(-6, 4));
+    test.press();
+    test.play("move " + test.at(4, -3) + "\nmove " + test.at(8, 3));
+    REQUIRE(test.editor->views->preview_weights);
+    const SkinWeights seen = *test.editor->views->preview_weights;
+    test.release();
+    CHECK(test.steps() == steps + 1);
+    CHECK(test.last_edit() == std::string(name_of(kind)) + " Fore");
+    CHECK(test.weights() == seen);
+    CHECK(test.weights() != *before);
+    const Document& document = test.editor->document();
+    double gained = 0;
+    int wrong = 0;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+      const int brick = tissue.brick_at(voxel);
+      const Influence& was = before->chunk(brick)[tissue.index_of(voxel) - tissue.bricks()[brick].first];
+      wrong += i.weight[0] + i.weight[1] + i.weight[2] + i.weight[3] != kFullWeight;
+      wrong += i != was && (document.volume->at(voxel) == 111 || std::abs(p.z) > 25);
+      gained += i.of(1) - was.of(1);
+    });
+    CHECK(wrong == 0);
+    if (kind == BrushKind::Add) CHECK(gained > 1);
+    if (kind == BrushKind::Subtract || kind == BrushKind::Multiply) CHECK(gained < -1);
+    test.play("key Ctrl+Z");
+    CHECK(test.editor->document().weights == before);
+    test.play("key Ctrl+Shift+Z");
+    CHECK(test.weights() == seen);
+
+    // With the other bone locked there is nothing to take from: not one bit.
+    test.play("key Ctrl+Z");
+    toggle_lock(*test.editor, 0);
+    const int unlocked = test.steps();
+    test.stroke(test.at(-6, 4), test.at(8, 3));
+    CHECK(test.steps() == unlocked);
+    CHECK(*test.editor->document().weights == *before);
+    parallel = !parallel;  // by turns: where strokes land is the same in both
+  }
+}
+
+TEST_CASE(
+    "painting: how a brush is set is how it paints: strength, spacing, accumulating, depth, falloff, distance, what is "
+    "seen") {
+  const auto painted_by = [](const std::function<void(PaintEditor&)>& set,
+                             const std::function<void(PaintEditor&)>& paint = {}) {
+    PaintEditor test;
+    set(test);
+    if (paint) paint(test);
+    else test.stroke(test.at(0, 20), test.at(0, 20));
+    struct {
+      double weight = 0, deepest = 1e9, most = 0;
+      int voxels = 0;
+    } found;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
+      if (p.z < 0 || i.of(1) == 0) return;
+      ++found.voxels;
+      found.weight += i.of(1);
+      found.most = std::max(found.most, i.of(1));
+      found.deepest = std::min(found.deepest, glm::length(p));
+    });
+    return found;
+  };
+  const auto plain = painted_by([](PaintEditor&) {});
+  REQUIRE(plain.voxels > 30);
+  CHECK(plain.most == 1);
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->strength = 0.4; }).most ==
+        doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 6; }).voxels < 0.4 * plain.voxels);
+  // Fading, a brush does less; the sharper, the less.
+  const auto smooth = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_smooth"); }),
+             sharp = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_sharp"); });
+  CHECK(smooth.weight < 0.8 * plain.weight);
+  CHECK(sharp.weight < 0.8 * smooth.weight);
+  // Reach: the surface alone, then down to a depth, then through.
+  const auto surface = painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_surface"); });
+  const auto depth =
+      painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_depth"), t.editor->skin->painting->depth_mm = 8; });
+  CHECK(surface.deepest > depth.deepest);
+  CHECK(depth.deepest > plain.deepest);
+  CHECK(depth.deepest > 40 - 8 - 4);
+  // Coming over a place again adds up only where it is asked to.
+  const auto twice = [](PaintEditor& t) {
+    t.play("move " + t.at(0, 20));
+    t.press();
+    for (int i = 0; i < 4; ++i) t.play("move " + t.at(14, 20) + "\nmove " + t.at(0, 20));
+    t.release();
+  };
+  const auto weak = [](PaintEditor& t) { t.editor->skin->painting->strength = 0.05; };
+  CHECK(painted_by(weak, twice).most == doctest::Approx(0.05).epsilon(1e-3));
+  CHECK(painted_by([&](PaintEditor& t) { weak(t), run(*t.editor, "skin.accumulate"); }, twice).most > 0.2);
+  // Wide apart, dabs leave gaps on the way.
+  const auto way = [](PaintEditor& t) { t.stroke(t.at(-18, 20), t.at(18, 20)); };
+  const auto close_by = painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5; }, way);
+  CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5, t.editor->skin->painting->spacing = 4; },
+                   way)
+            .voxels < 0.8 * close_by.voxels);
+  // What is hidden keeps its weights where only what is seen is painted.
+  CHECK(painted_by(
+            [](PaintEditor& t) {
+              run(*t.editor, "skin.paint_visible");
+              Document next = t.editor->document();
+              Visibility visibility = next.visibility ? *next.visibility : Visibility{};
+              visibility.clip_plane = {.enabled = true, .point = {0, 0, 0}, .normal = {1, 0, 0}};
+              next.visibility = std::make_shared<const Visibility>(visibility);
+              t.editor->history.commit("Clip", next);
+              t.play("wait-idle");
+            },
+            [](PaintEditor& t) { t.stroke(t.at(-4, 20), t.at(-4, 20)); })
+            .voxels < 0.9 * plain.voxels);
+}
+
+TEST_CASE(
+    "painting: it is seen while the button is down, Escape drops it, and a stroke that changes nothing is no edit") {
+  PaintEditor test;
+  const auto before = test.editor->document().weights;
+  const int steps = test.steps();
+  test.play("move " + test.at(0, 20));
+  test.press();
+  REQUIRE(test.editor->views->preview_weights);
+  CHECK(test.editor->views->scene.weights->weights == test.editor->views->preview_weights);
+  test.play("move " + test.at(12, 20));
+  test.play("key Escape\nwait-idle");
+  CHECK(!test.editor->views->preview_weights);
+  CHECK(!test.editor->skin->painting->running);
+  test.release();
+  CHECK(test.editor->document().weights == before);
+  CHECK(test.steps() == steps);
+
+  test.stroke(test.at(0, -20), test.at(0, -25));  // there already
+  CHECK(test.steps() == steps);
+  test.stroke("300 90", "310 90");  // beside the body
+  CHECK(test.steps() == steps);
+  CHECK(test.editor->messages.toasts.empty());
+}
+
+TEST_CASE("painting: where a lock is in the way nothing changes by one bit, it is named, and one click undoes it") {
+  PaintEditor test;
+  toggle_lock(*test.editor, 0);
+  const auto before = test.editor->document().weights;
+  const int steps = test.steps();
+  test.stroke(test.at(0, 20), test.at(10, 20));
+  CHECK(test.editor->document().weights == before);
+  CHECK(test.steps() == steps);
+  REQUIRE(test.editor->messages.toasts.size() == 1);
+  CHECK(test.editor->messages.toasts[0].line == "Upper is locked");
+  CHECK(test.editor->messages.toasts[0].action == "skin.unlock_all");
+  run(*test.editor, "skin.unlock_all");
+  test.stroke(test.at(0, 20), test.at(10, 20));
+  CHECK(test.editor->document().weights != before);
+}
+
+TEST_CASE("painting: Ctrl takes away, Shift smooths, whatever the brush, the other bone gets what is taken") {
+  PaintEditor test;
+  test.play("key-down Ctrl");
+  test.stroke(test.at(0, -20), test.at(0, -20));
+  test.play("key-up Ctrl");
+  CHECK(test.last_edit() == "Subtract Fore");
+  CHECK(test.painted(0, {0, 0, 0}, false).first > 20);
+
+  test.editor->skin->painting->strength = 0.5;
+  test.play("key-down Shift");
+  test.stroke(test.at(0, 0), test.at(10, 0));
+  test.play("key-up Shift");
+  CHECK(test.last_edit() == "Smooth Fore");
+  int blended = 0;
+  test.for_each(
+      [&](const glm::dvec3&, const glm::ivec3&, const Influence& i) { blended += i.of(1) > 0 && i.of(1) < 1; });
+  CHECK(blended > 10);
+}
+
+TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and bone follows its bone still") {
+  PaintEditor test;
+  test.editor->skin->painting->distance = BrushDistance::Euclidean;
+  test.play("click \"header/view.four\"\nwait-idle");
+  std::optional<ViewPlace> slice;
+  for (const ViewPlace& place : test.editor->layout.view_places)
+    if (place.id != ViewId::Body && axis_of(place.id) == render::SliceAxis::Axial) slice = place;
+  REQUIRE(slice);
+  test.editor->views->cross_hair = {0, 0, 15};
+  slice_of(*test.editor->views, slice->id).fitted = false;
+  test.play("wait-idle");
+  const SeenFrom seen(*test.editor, *slice);
+  const glm::dvec3 point(18, 0, glm::dot(seen.slice.centre, glm::dvec3(0, 0, 1)));
+  const glm::dvec2 pixel = seen.pixel_of(point).value();
+  const int steps = test.steps();
+  char line[80];
+  std::snprintf(line, sizeof line, "%.4f %.4f", pixel.x, pixel.y);
+  test.stroke(line, line);
+  CHECK(test.steps() == steps + 1);
+  int wrong = 0, inside = 0;
+  const Document& document = test.editor->document();
+  test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+    if (p.z < 0) return;
+    const double off = glm::distance(p, point);
+    const bool bone = document.volume->at(voxel) == 111;
+    if (off < 11.5) ++inside, wrong += (i.of(1) == 1) == bone;
+    if (off > 12.5) wrong += i.of(1) != 0;
+  });
+  CHECK(inside > 30);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("painting: radius, strength and value are set with the pointer, typed, or given up") {
+  PaintEditor test;
+  Painting& painting = *test.editor->skin->painting;
+  test.play("move " + test.at(0, 10) + "\nwait-idle\nkey F");
+  REQUIRE(test.editor->modal);
+  test.play("key 2\nkey 5\nkey Return");
+  CHECK(!test.editor->modal);
+  CHECK(painting.radius == 25);
+  // The pointer goes a radius further from the middle: twice as large.
+  const double millimetres = body_seen(*test.editor)->millimetres_per_pixel({0, -38.7, 10});
+  test.play("key F");
+  const glm::vec2 from = test.editor->input.pointer;
+  char line[80];
+  std::snprintf(line, sizeof line, "move %.3f %.3f", from.x + 10 / millimetres, from.y);
+  test.play(line);
+  CHECK(painting.radius == doctest::Approx(35).epsilon(0.02));
+  test.play("key Escape");
+  CHECK(painting.radius == 25);
+  test.play("key [");
+  CHECK(painting.radius == doctest::Approx(25 / 1.15));
+  test.play("key ]");
+  CHECK(painting.radius == doctest::Approx(25));
+  test.play("key Shift+F\nkey .\nkey 3\nkey Return");
+  CHECK(painting.strength == doctest::Approx(0.3));
+  test.play("key Ctrl+F\nkey .\nkey 2\nkey 5\nkey Return");
+  CHECK(painting.value == doctest::Approx(0.25));
+  test.play("key Shift+]");
+  CHECK(painting.strength == doctest::Approx(0.35));
+  test.play("key F\nkey 0\nkey Return");
+  CHECK(painting.radius == Painting::kLeastRadius);
+}
+
+TEST_CASE("painting: only the tissue that the filter lets through changes") {
+  PaintEditor test;
+  test.editor->skin->painting->tissue = PaintedTissue::Chosen;
+  test.editor->selection.tissues = {143};
+  test.stroke(test.at(0, 20), test.at(5, 20));
+  int skin = 0, others = 0;
+  const Document& document = test.editor->document();
+  test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& i) {
+    if (p.z < 0 || i.of(1) == 0) return;
+    (document.volume->at(voxel) == 143 ? skin : others) += 1;
+  });
+  CHECK(skin > 10);
+  CHECK(others == 0);
+}
+
+TEST_CASE("painting: tissue that is hidden is not painted unless all tissue is asked for") {
+  for (const bool all : {false, true}) {
+    PaintEditor test;
+    show_tissues(*test.editor, {17}, false);
+    test.play("wait-idle");
+    if (all) test.play("click \"Edit/Brush reach/All tissue\"");
+    const auto before = test.editor->document().weights;
+    test.stroke(test.at(0, 12), test.at(20, 12));
+    test.play("wait-idle");
+    REQUIRE(test.editor->document().weights != before);
+    int hidden = 0, shown = 0;
+    test.for_each([&](const glm::dvec3& p, const glm::ivec3& voxel, const Influence& influence) {
+      if (p.z < 0 || influence.of(1) == 0) return;
+      (test.editor->document().volume->at(voxel) == 17 ? hidden : shown) += 1;
+    });
+    CHECK(shown > 20);
+    CHECK((hidden > 0) == all);
+  }
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The rooms of each floor, in order: a room includes only rooms that come before it in its list. A newcomer reads a
+// floor from the top of its list to the bottom.
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "tests/layers/sources.h"
+
+using namespace limber::layers;
+
+namespace {
+
+struct Floor {
+  std::string name;
+  std::vector<std::string> rooms;  // "" for the floor's own files
+};
+
+const std::vector<Floor> kFloors = {
+    {"core", {"base",   "volume", "tissue",   "volume_io", "rig",    "motion",  "rig_io", "pose",  "phantom",
+              "mesh",   "bones",  "prepare",  "autorig",   "skin",   "binding", "seams",  "paint", "paint/brushes",
+              "deform", "fem",    "resample", "export",    "report", "project", "study",  "cmd"}},
+    {"render", {"gl", "scene", "textures", "passes", ""}},
+    {"editor",
+     {"input", "ui", "context", "dialogs", "file_browser", "shown", "viewport", "volume", "seams", "rig", "motion",
+      "pose", "selection", "skin", "resample", "files", "screen", "app", "cli"}},
+};
+
+std::string room_of(const std::string& file) { return fs::path(file).parent_path().generic_string(); }
+
+// A header and the source of the same name are one unit.
+std::string unit_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
+
+// Which units each unit includes, of the program's own.
+std::map<std::string, std::set<std::string>> included_units() {
+  std::map<std::string, std::set<std::string>> included;
+  const std::vector<fs::path> files = sources({"core", "render", "editor"});
+  for (const fs::path& file : files) included[unit_of(file.generic_string())];
+  for (const fs::path& file : files)
+    for (const Include& include : includes_of(file)) {
+      const std::string from = unit_of(include.file), to = unit_of(include.header);
+      if (from != to && included.contains(to)) included[from].insert(to);
+    }
+  return included;
+}
+
+// Units that include one another in a circle, by Tarjan's algorithm [1972]; one list for each circle.
+class Circles {
+ public:
+  explicit Circles(const std::map<std::string, std::set<std::string>>& included) : included_(included) {
+    for (const auto& [unit, others] : included)
+      if (!number_.contains(unit)) visit(unit);
+  }
+  const std::vector<std::vector<std::string>>& found() const { return found_; }
+
+ private:
+  void visit(const std::string& unit) {
+    number_[unit] = lowest_[unit] = static_cast<int>(number_.size());
+    open_.push_back(unit);
+    for (const std::string& other : included_.at(unit)) {
+      if (!number_.contains(other)) {
+        visit(other);
+        lowest_[unit] = std::min(lowest_[unit], lowest_[other]);
+      } else if (std::find(open_.begin(), open_.end(), other) != open_.end()) {
+        lowest_[unit] = std::min(lowest_[unit], number_[other]);
+      }
+    }
+    if (lowest_[unit] != number_[unit]) return;
+    const auto first = std::find(open_.begin(), open_.end(), unit);
+    if (open_.end() - first > 1) found_.emplace_back(first, open_.end());
+    open_.erase(first, open_.end());
+  }
+
+  const std::map<std::string, std::set<std::string>>& included_;
+  std::map<std::string, int> number_, lowest_;
+  std::vector<std::string> open_;
+  std::vector<std::vector<std::string>> found_;
+};
+
+}  // namespace
+
+TEST_CASE("rooms: every folder is in its floor's list, and the list names no other") {
+  for (const Floor& floor : kFloors) {
+    std::set<std::string> listed, there;
+    for (const std::string& room : floor.rooms) listed.insert(room.empty() ? floor.name : floor.name + "/" + room);
+    for (const fs::path& file : sources({floor.name})) there.insert(room_of(file.generic_string()));
+    CHECK(listed == there);
+  }
+}
+
+TEST_CASE("rooms: a room includes only rooms that come before it") {
+  int seen = 0;
+  for (const Floor& floor : kFloors) {
+    std::map<std::string, int> place;
+    for (const std::string& room : floor.rooms)
+      place.emplace(room.empty() ? floor.name : floor.name + "/" + room, static_cast<int>(place.size()));
+    for (const fs::path& file : sources({floor.name}))
+      for (const Include& include : includes_of(file)) {
+        const auto from = place.find(room_of(include.file)), to = place.find(room_of(include.header));
+        if (from == place.end() || to == place.end()) continue;
+        ++seen;
+        INFO(include.file, " includes ", include.header);
+        CHECK(to->second <= from->second);
+      }
+  }
+  CHECK(seen > 1000);
+}
+
+TEST_CASE("rooms: no more than three units include one another in a circle") {
+  const auto included = included_units();
+  CHECK(included.size() > 400);
+  const Circles circles(included);
+  for (const auto& circle : circles.found()) {
+    std::string names;
+    for (const std::string& unit : circle) names += unit + " ";
+    INFO(names);
+    CHECK(circle.size() <= 3);
+  }
+}
+
+TEST_CASE("rooms: a header's change rebuilds few sources of the editor") {
+  const std::vector<fs::path> files = sources({"editor"});
+  std::map<std::string, std::vector<std::string>> includes;
+  for (const fs::path& file : files)
+    for (const Include& include : includes_of(file))
+      if (include.header.starts_with("editor/")) includes[include.file].push_back(include.header);
+  std::map<std::string, int> rebuilt;
+  for (const fs::path& file : files) {
+    if (file.extension() == ".h") rebuilt[file.generic_string()];
+    if (file.extension() != ".cpp") continue;
+    std::set<std::string> reached;
+    std::vector<std::string> open = {file.generic_string()};
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      for (const std::string& header : includes[next])
+        if (reached.insert(header).second) open.push_back(header);
+    }
+    for (const std::string& header : reached) ++rebuilt[header];
+  }
+  std::vector<int> counts;
+  for (const auto& [header, count] : rebuilt) counts.push_back(count);
+  std::nth_element(counts.begin(), counts.begin() + std::ssize(counts) / 2, counts.end());
+  CHECK(counts[counts.size() / 2] < 10);
+}
