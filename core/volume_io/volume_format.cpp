@@ -10,6 +10,7 @@ VolumeFormat nrrd_format();
 VolumeFormat metaimage_format();
 VolumeFormat nifti_format();
 VolumeFormat virtual_family_format();
+VolumeFormat vti_format();
 
 namespace {
 
@@ -37,7 +38,7 @@ Match match_of(const Path& path) {
 
 std::span<const VolumeFormat> volume_formats() {
   static const std::vector<VolumeFormat> kVolumeFormats = {
-      nrrd_format(), nifti_format(), metaimage_format(), virtual_family_format(), dicom_format(),
+      nrrd_format(), nifti_format(), metaimage_format(), vti_format(), virtual_family_format(), dicom_format(),
   };
   return kVolumeFormats;
 }

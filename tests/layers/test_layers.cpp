@@ -34,7 +34,7 @@ const std::vector<Door> kDoors = {
     {"SQLite", {"sqlite3"}, {"core/project/", "tests/core/project/", "tests/support/power_cut.cpp"}},
     {"zstd", {"zstd"}, {"core/project/"}},
     {"CLI11", {"CLI/"}, {"core/cmd/", "editor/cli/main.cpp", "editor/cli/", "tests/core/cmd/test_files_apart.cpp"}},
-    {"Expat", {"expat"}, {"core/rig_io/bender_rig.cpp"}},
+    {"Expat", {"expat"}, {"core/rig_io/bender_rig.cpp", "core/volume_io/vti.cpp"}},
     {"OpenSSL", {"openssl/"}, {"core/base/sha256.cpp"}},
     {"GLFW", {"GLFW/"}, {"editor/app/glfw_window.cpp"}},
     {"libpng", {"png"}, {"render/image_io.cpp"}},
