@@ -12,7 +12,9 @@ namespace fs = std::filesystem;
 Path asset(const std::string& name) {
   std::error_code failed;
   const Path program = fs::read_symlink("/proc/self/exe", failed);
-  for (const Path& folder : {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS)})
+  // Beside the program that runs, else where Limber is installed: the program may be another one that uses it.
+  for (const Path& folder : {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS),
+                             Path(LIMBER_INSTALLED_IN) / "share/limber"})
     if (fs::exists(folder / name, failed)) return folder / name;
   throw Error("a file of the program itself is missing", name, "install Limber again");
 }

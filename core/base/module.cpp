@@ -13,12 +13,13 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Where what belongs to the program lies: beside it, or in ../lib/limber from there.
+// Where what belongs to the program lies: beside it, in ../lib/limber from there, or where Limber is installed, for
+// another program that uses its library.
 std::vector<Path> own_folders() {
   std::error_code error;
   const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};
-  return {folder, folder / "../lib/limber"};
+  return {folder, folder / "../lib/limber", Path(LIMBER_INSTALLED_IN) / "lib/limber"};
 }
 
 bool is_program(const Path& path) {
