@@ -626,8 +626,8 @@ RodShare rod_share(const Mannequin& mannequin, const std::vector<glm::dvec3>& ce
   return share;
 }
 
-double misfit(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
-              const FitStage& within) {
+double residual(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
+                const FitStage& within) {
   double sum = 0;
   int kinds = 0;
   const auto add = [&](const std::vector<AtlasPoint>& points, const FitSurface& surface) {

@@ -103,8 +103,8 @@ RodShare rod_share(const Mannequin& mannequin, const std::vector<glm::dvec3>& ce
 
 // Mean squared distance in mm2 between the atlas and the surface, both ways, none counted above `cap` mm.
 //   within  its stride, points, around and reach are used
-double misfit(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
-              const FitStage& within);
+double residual(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
+                const FitStage& within);
 
 // Per bone of the atlas: share of its points, 0 .. 1, that lie within `near` mm of the surface; -1 where it has none to
 // ask for.

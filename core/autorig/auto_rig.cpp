@@ -53,7 +53,7 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
     for (size_t k = 0; k < starts.size(); ++k) {
       fit(starts[k], &*target.skin, nullptr,
           {.iterations = 6, .wide = 0.06 * L, .narrow = 0.03 * L, .turns = main, .stride = 20});
-      order.push_back({misfit(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 10}), k});
+      order.push_back({residual(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 10}), k});
     }
     std::sort(order.begin(), order.end());
     order.resize(kInEarnest);
@@ -64,10 +64,10 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
   for (const auto& [rough, k] : order) {
     fit(starts[k], &*target.skin, nullptr,
         {.iterations = 12, .wide = 0.06 * L, .narrow = 0.02 * L, .turns = main, .stride = 8});
-    const double off = misfit(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 4});
+    const double off = residual(starts[k], &*target.skin, nullptr, 0.04 * L, {.stride = 4});
     if (off < least) least = off, result.body = starts[k];
   }
-  result.misfit = std::sqrt(least);
+  result.residual = std::sqrt(least);
 }
 
 // Bones that are drawn as rods along a rig: the body's own segments are drawn onto their axes. Kept when nearly all
@@ -159,7 +159,7 @@ void refine(Fitted& result, const FitTarget& target, Progress& progress) {
     const double share = hands_near(turned, target);
     if (share > kBetter * most) most = share, m = turned;
   }
-  result.misfit = std::sqrt(misfit(m, &*target.skin, nullptr, 0.04 * L, {}));
+  result.residual = std::sqrt(residual(m, &*target.skin, nullptr, 0.04 * L, {}));
   progress.update("fitting", 1);
 }
 
@@ -210,7 +210,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, 
       take_best_start(tried, target,
                       kind == AtlasKind::Body ? body_starts(*tried.atlas, target.rough_body, target.cuts)
                                               : limb_starts(*tried.atlas, target.rough_body, kind, target.cuts));
-      if (tried.body && tried.misfit < best.misfit) best = tried;
+      if (tried.body && tried.residual < best.residual) best = tried;
     }
   }
   return best;
@@ -427,7 +427,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     take_named(found, fitted.atlas->rig, named, target.length);
     doubt_cut_limbs(fitted, target, found, result.warnings);
     const PlacedRig placed = place_rig(rig, *fitted.body, found.places);
-    result.misfit_mm = fitted.misfit;
+    result.misfit_mm = fitted.residual;
     for (size_t b = 0; b < rig.bones.size(); ++b) {
       const int match = placed.joint_of[b];
       JointFit joint;
@@ -458,7 +458,7 @@ std::string suggest_template(const LabelVolume& volume, Progress& progress) {
   // A body has five ends that stand far out, or three at least where arms lie at the trunk.
   const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
   if (ends >= 5) {
-    const double whole = best_start({AtlasKind::Body}, target, progress).misfit;
+    const double whole = best_start({AtlasKind::Body}, target, progress).residual;
     if (whole < 0.02 * target.length) return "adult";
   }
   std::pair<double, std::string> best{std::numeric_limits<double>::max(), "arm"};
@@ -466,7 +466,7 @@ std::string suggest_template(const LabelVolume& volume, Progress& progress) {
                                    std::pair(AtlasKind::Hand, "hand"), std::pair(AtlasKind::Body, "adult")}) {
     if (kind == AtlasKind::Body && ends < 3) continue;
     const Fitted tried = best_start({kind}, target, progress);
-    if (tried.body && tried.misfit < best.first) best = {tried.misfit, name};
+    if (tried.body && tried.residual < best.first) best = {tried.residual, name};
   }
   return best.second;
 }

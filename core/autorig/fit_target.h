@@ -37,7 +37,7 @@ bool has_shape(const FitTarget& target);
 struct Fitted {
   std::shared_ptr<const BodyAtlas> atlas;  // the mannequin stands on it
   std::optional<Mannequin> body;
-  double misfit = 1e300;  // mm
+  double residual = 1e300;  // mm
   bool is_rods = false;
   bool is_capsules = false;  // of a body that only its rig tells of
 };

@@ -220,7 +220,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   // Of the tissue's diagonal: whole bodies of other shapes came out at 0.011 at most, parts at 0.015 with joints 11 mm
   // off, at 0.019 with 50 mm, and limbs laid the wrong way round above that.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
-  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.misfit) / target.length - kUnlike);
+  const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.residual) / target.length - kUnlike);
   const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
   const auto doubt = [&](int b) {
     const std::string& name = rig.bones[b].name;
@@ -302,7 +302,7 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
     }
   }
   // And what lies next to such a joint slides with it.
-  constexpr double kWithIt = 0.35, kMost = 100, kLessSure = 0.6;
+  constexpr double kShareOfNeighboursError = 0.35, kMaxErrorMm = 100, kLessConfidence = 0.6;
   const std::vector<JointFit> own = found.how;
   const auto is_doubted = [&](int b) {
     return !is_digit(rig.bones[b].name) && (own[b].how == JointFit::How::Unseen || near_cut[b]);
@@ -316,11 +316,11 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       if ((rig.bones[c].parent == b || rig.bones[b].parent == c) && is_doubted(c))
         beside = std::max(beside, own[c].error);
     if (beside == 0) continue;
-    found.how[b].error = std::max(own[b].error, kWithIt * std::min(kMost, beside));
-    found.how[b].confidence *= kLessSure;
+    found.how[b].error = std::max(own[b].error, kShareOfNeighboursError * std::min(kMaxErrorMm, beside));
+    found.how[b].confidence *= kLessConfidence;
   }
   // A limb alone that is cut off at its upper end may be longer or shorter than it looks, from its free end on.
-  constexpr double kLonger = 0.13;
+  constexpr double kLimbLengthUncertainty = 0.13;
   const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(),
                                   [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });
   if (upper != rig.bones.end() && is_doubted(static_cast<int>(upper - rig.bones.begin()))) {
@@ -330,7 +330,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       if (const int parent = rig.bones[b].parent; parent >= 0)
         from_end[parent] =
             std::max(from_end[parent], from_end[b] + glm::distance(found.places[parent], found.places[b]));
-      if (own[b].error > kStrange) found.how[b].error = std::max(found.how[b].error, kLonger * from_end[b]);
+      if (own[b].error > kStrange)
+        found.how[b].error = std::max(found.how[b].error, kLimbLengthUncertainty * from_end[b]);
     }
   }
   if (!unseen.empty())

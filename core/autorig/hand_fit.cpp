@@ -80,7 +80,7 @@ void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
   std::vector<std::pair<int, double>> hands;  // and their misfit
   const auto keep_better = [&](Mannequin& best, double& least, Mannequin tried, const HandFit& hand, double share) {
     fit(tried, &*target.skin, bone, hand.stage);
-    const double off = misfit(tried, &*target.skin, bone, 0.25 * hand.palm, hand.stage);
+    const double off = residual(tried, &*target.skin, bone, 0.25 * hand.palm, hand.stage);
     if (off < least * share) least = off, best = std::move(tried);
   };
   for (int b = 0; b < std::ssize(rig.bones); ++b) {

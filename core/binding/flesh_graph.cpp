@@ -30,9 +30,9 @@ namespace {
 constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
 }  // namespace
 
-SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                   const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
-                   const std::map<Label, double>& stiffness)
+HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                     const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
+                     const std::map<Label, double>& stiffness)
     : volume_(volume),
       tissue_(tissue),
       held_by_(held_by),
@@ -51,7 +51,7 @@ SoftBody::SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const 
 
 // A brick and one layer around it: places in the tissue list, -1 for air, and what soft voxels conduct, 0 for all
 // others.
-struct SoftBody::Window {
+struct HeatGraph::Window {
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
   std::array<std::int32_t, 1000> place;
   std::array<float, 1000> soft;
@@ -61,7 +61,7 @@ struct SoftBody::Window {
 
   bool is_cut(const glm::ivec3& voxel, int direction) const { return seams && seams->is_cut_towards(voxel, direction); }
 
-  void look(const SoftBody& body, std::int64_t brick) {
+  void look(const HeatGraph& body, std::int64_t brick) {
     const auto& here = body.tissue_.bricks()[brick];
     seams = body.tissue_.seams();
     if (seams && !seams->is_near_brick(here.corner)) seams = nullptr;
@@ -72,14 +72,14 @@ struct SoftBody::Window {
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, TissueVoxels::kBrick}) look_beside(body, here.corner, axis, side);
   }
-  void set(const SoftBody& body, const glm::ivec3& from_corner, const glm::ivec3& voxel, std::int64_t its_place) {
+  void set(const HeatGraph& body, const glm::ivec3& from_corner, const glm::ivec3& voxel, std::int64_t its_place) {
     place[at(from_corner)] = static_cast<std::int32_t>(its_place);
     if (body.held_by_[its_place] == kSoft) soft[at(from_corner)] = body.conductivity_[body.volume_.at(voxel)];
   }
 
   // The layer of the brick beside it.
   //   side  place of the layer along the axis, from the corner
-  void look_beside(const SoftBody& body, const glm::ivec3& corner, int axis, int side) {
+  void look_beside(const HeatGraph& body, const glm::ivec3& corner, int axis, int side) {
     glm::ivec3 first = corner;
     first[axis] += side;
     if (!body.volume_.grid.contains(first)) return;
@@ -97,7 +97,7 @@ struct SoftBody::Window {
 };
 
 // What a face of a soft voxel conducts: between two soft voxels, to a held one, or nothing.
-float SoftBody::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
+float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
   const int there = here + Window::kTo[direction], axis = direction >> 1;
   if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
   const float ka = window.soft[here], kb = window.soft[there];
@@ -105,14 +105,14 @@ float SoftBody::conductance(const Window& window, const glm::ivec3& v, int here,
   return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
 }
 
-float SoftBody::attraction(std::int64_t place, const glm::ivec3& voxel) const {
+float HeatGraph::attraction(std::int64_t place, const glm::ivec3& voxel) const {
   const float distance = nearest_.distance[place];
   return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
 // body(voxel, place, its place in the window) for every soft voxel of a brick.
 template <class Body>
-void SoftBody::for_soft(std::int64_t brick, Window& window, const Body& body) const {
+void HeatGraph::for_soft(std::int64_t brick, Window& window, const Body& body) const {
   window.look(*this, brick);
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
   tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
@@ -120,7 +120,7 @@ void SoftBody::for_soft(std::int64_t brick, Window& window, const Body& body) co
   });
 }
 
-void SoftBody::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const {
+void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const {
   std::vector<glm::ivec3> corners;
   std::vector<std::array<std::int32_t, 6>> beside;
   for (const std::int32_t brick : bricks) {
@@ -157,7 +157,7 @@ void SoftBody::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system)
 }
 
 // Which bones hold or attract voxels of each brick, a bit each; bones that differ by 64 share one.
-std::vector<std::uint64_t> SoftBody::bones_in_bricks() const {
+std::vector<std::uint64_t> HeatGraph::bones_in_bricks() const {
   std::vector<std::uint64_t> bones(tissue_.bricks().size(), 0);
   parallel_for(std::ssize(bones), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t brick = begin; brick < end; ++brick)
@@ -169,8 +169,8 @@ std::vector<std::uint64_t> SoftBody::bones_in_bricks() const {
   return bones;
 }
 
-void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system,
-                           const std::vector<int>& lane_of_bone, HeatSolver& solver) const {
+void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system,
+                            const std::vector<int>& lane_of_bone, HeatSolver& solver) const {
   std::uint64_t wanted = 0;
   for (std::size_t bone = 0; bone < lane_of_bone.size(); ++bone)
     if (lane_of_bone[bone] >= 0) wanted |= std::uint64_t{1} << (bone & 63);
@@ -208,8 +208,8 @@ void SoftBody::add_sources(const std::vector<std::int32_t>& bricks, const HeatSy
 }
 
 // Connected soft voxels of one octant of a brick are one cell. Cells count from those that were found before.
-void SoftBody::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
-                          std::vector<CoarseCell>& found) const {
+void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
+                           std::vector<CoarseCell>& found) const {
   std::array<glm::ivec3, 64> open;
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
   for_soft(brick, window, [&](const glm::ivec3& seed_voxel, std::int64_t seed, int) {
@@ -251,8 +251,8 @@ void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const
 }  // namespace
 
 // One entry for each pair of cells; the way between their centres is four times as long as between voxels.
-void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of,
-                          std::vector<float>& diagonal, std::vector<Link>& links, std::vector<HeldFace>& held) const {
+void HeatGraph::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of,
+                           std::vector<float>& diagonal, std::vector<Link>& links, std::vector<HeldFace>& held) const {
   const size_t start = links.size(), held_start = held.size();
   const auto is_less_link = [](const Link& a, const Link& b) {
     return a.from != b.from ? a.from < b.from : a.to < b.to;
@@ -280,7 +280,7 @@ void SoftBody::link_cells(std::int64_t brick, Window& window, const std::vector<
   std::sort(held.begin() + held_start, held.end(), is_less_held);
 }
 
-SoftBody::Coarse SoftBody::coarse() const {
+HeatGraph::Coarse HeatGraph::coarse() const {
   Coarse coarse;
   coarse.cell_of_place.assign(tissue_.size(), -1);
   std::vector<std::int32_t>& cell_of = coarse.cell_of_place;

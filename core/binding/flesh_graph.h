@@ -33,8 +33,8 @@ float conductivity(TissueKind kind);
 
 // Which rig bone holds each tissue voxel, kSoft where none does: the voxels of its parts; for a bone without a part the
 // soft voxels around its axis (a bone that has neither, because it lies outside the tissue, holds nothing).
-std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
-                                        const Armature& armature);
+std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
+                                      const Armature& armature);
 
 // For every soft voxel the bone nearest to it and how far it is, found by spreading through tissue: a bone across an
 // air gap does not count. Held voxels have distance 0; kSoft and infinity where no held voxel is reached.
@@ -56,12 +56,12 @@ struct HeldFace {
   float conductance;
 };
 
-class SoftBody {
+class HeatGraph {
  public:
   // References are kept.
-  SoftBody(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-           const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
-           const std::map<Label, double>& stiffness = {});
+  HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+            const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
+            const std::map<Label, double>& stiffness = {});
 
   // Makes the soft voxels of some bricks (rising) the cells of a system; what lies in other bricks has temperature
   // zero.

@@ -58,7 +58,7 @@ std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFa
   return reached;
 }
 
-CoarseTemperatures solve_coarse(const SoftBody::Coarse& coarse, const std::vector<bool>& reached, int bone_count) {
+CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vector<bool>& reached, int bone_count) {
   // What no heat reaches stays at zero: a loss of its own keeps the system solvable.
   CellGraph graph = coarse.graph;
   for (std::int64_t i = 0; i < graph.size(); ++i)
@@ -175,10 +175,10 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   progress.update("weights", 0);
   return_free_memory();  // what splitting bones and finding seams leaves behind
   const int bone_count = static_cast<int>(armature.bones.size());
-  const std::vector<std::uint16_t> held_by = bone_holding(volume, tissue, parts, armature);
+  const std::vector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = attracting_bone(volume, tissue, armature, held_by);
-  const SoftBody body(volume, tissue, tissues, held_by, nearest, settings.stiffness);
-  const SoftBody::Coarse coarse = body.coarse();
+  const HeatGraph body(volume, tissue, tissues, held_by, nearest, settings.stiffness);
+  const HeatGraph::Coarse coarse = body.coarse();
   const std::vector<bool> reached = reached_cells(coarse.graph, coarse.held);
   const CoarseTemperatures temperatures = solve_coarse(coarse, reached, bone_count);
   progress.update("weights", 0.2);

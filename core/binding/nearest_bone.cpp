@@ -59,8 +59,8 @@ double flesh_around(const Bone& bone, const LabelVolume& volume) {
 }
 }  // namespace
 
-std::vector<std::uint16_t> bone_holding(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
-                                        const Armature& armature) {
+std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
+                                      const Armature& armature) {
   std::vector<std::uint16_t> held_by(tissue.size(), kSoft);
   std::vector<bool> has_part(armature.bones.size(), false);
   for (const auto& part : parts.parts) has_part[part.bone] = true;

@@ -33,7 +33,7 @@ Barrier barrier(double d, double h) {
 }
 
 // Of the triangles around a node, a third of each.
-double mean_area(const Eigen::MatrixX3i& F, const Places& V) {
+double mean_area(const Eigen::MatrixX3i& F, const NodePositions& V) {
   double sum = 0;
   std::vector<char> used(V.rows(), 0);
   for (const auto& f : F.rowwise()) {
@@ -46,7 +46,7 @@ double mean_area(const Eigen::MatrixX3i& F, const Places& V) {
 double share_of(ContactPair::Kind kind) { return kind == ContactPair::Kind::EdgeEdge ? 0.5 : 1; }
 }  // namespace
 
-ContactForm::ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid,
+ContactForm::ContactForm(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid,
                          const ContactSettings& settings)
     : surface_(F, rest, rigid),
       rest_(rest),
@@ -57,10 +57,10 @@ double ContactForm::thickness(const ContactPair& pair) const {
   return std::min(settings_.thickness_mm, kOfRest * nearest_points(pair, rest_).distance);
 }
 
-ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) const {
+ContactForm::Fade ContactForm::fade(const ContactPair& pair, const NodePositions& x) const {
   Fade fade{1, Eigen::Matrix<double, 3, 4>::Zero()};
   if (pair.kind == ContactPair::Kind::PointTriangle) return fade;
-  const auto edge = [&](const Places& p, int k) {
+  const auto edge = [&](const NodePositions& p, int k) {
     return Eigen::Vector3d((p.row(pair.node[k + 1]) - p.row(pair.node[k])).transpose());
   };
   const Eigen::Vector3d u = edge(x, 0), v = edge(x, 2);
@@ -76,12 +76,12 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const Places& x) co
   return fade;
 }
 
-void ContactForm::watch(const Places& x, const Places& step, double limit) {
-  Places end = x + limit * step;
+void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions& step, double limit) {
+  NodePositions end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
   if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
   watched_to_.resize(0, 3);  // as long as that is not done
-  know(x, end);
+  extend_broad_phase(x, end);
 
   // What has left the place that it is known to be near, as it does when only a stretch of a way is kept, is known no
   // more.
@@ -110,9 +110,9 @@ void ContactForm::watch(const Places& x, const Places& step, double limit) {
 
 // A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what
 // is known a stretch is kept, and anew is looked only for what comes near nodes that are not about there.
-void ContactForm::know(const Places& from, const Places& to) {
+void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositions& to) {
   const double about = kAbout * settings_.thickness_mm;
-  const auto is_away = [&](const Places& a, const Places& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
+  const auto is_away = [&](const NodePositions& a, const NodePositions& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
     return (a - b).rowwise().squaredNorm().array() > about * about;
   };
   Eigen::Array<bool, Eigen::Dynamic, 1> changed;
@@ -122,20 +122,20 @@ void ContactForm::know(const Places& from, const Places& to) {
     known_to_ = to;
     changed.setConstant(from.rows(), true);
   } else {
-    const Places way = known_to_ - known_from_;
-    const auto nearest_on_way = [&](const Places& place) {
+    const NodePositions way = known_to_ - known_from_;
+    const auto nearest_on_way = [&](const NodePositions& place) {
       const double squared = way.squaredNorm(),
                    on_way =
                        squared > 0 ? std::clamp((place - known_from_).cwiseProduct(way).sum() / squared, 0.0, 1.0) : 0;
-      Places nearest;
+      NodePositions nearest;
       std::ptrdiff_t least = place.rows() + 1;
       for (const double share : {0.0, 1.0, on_way}) {
-        Places there = known_from_ + share * way;
+        NodePositions there = known_from_ + share * way;
         if (const auto away = is_away(place, there).count(); away < least) least = away, nearest = std::move(there);
       }
       return nearest;
     };
-    Places near_from = nearest_on_way(from), near_to = nearest_on_way(to);
+    NodePositions near_from = nearest_on_way(from), near_to = nearest_on_way(to);
     known_from_ = std::move(near_from);
     known_to_ = std::move(near_to);
     changed = is_away(from, known_from_) || is_away(to, known_to_);
@@ -147,7 +147,7 @@ void ContactForm::know(const Places& from, const Places& to) {
       return changed[node[0]] || changed[node[1]] || changed[node[2]] || changed[node[3]];
     });
   }
-  Places steps = known_to_ - known_from_, begins;
+  NodePositions steps = known_to_ - known_from_, begins;
   begins.swap(known_from_);  // as long as that is not done, nothing is known
   for (const ContactPair& pair :
        surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
@@ -155,7 +155,7 @@ void ContactForm::know(const Places& from, const Places& to) {
   begins.swap(known_from_);
 }
 
-ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step, double limit) const {
+ContactForm::Bound ContactForm::largest_step(const NodePositions& x, const NodePositions& step, double limit) const {
   const double near = kNear * settings_.thickness_mm;
   std::vector<Bound> of_block((watched_.size() + kGrain - 1) / kGrain, {limit, {-1, -1, -1, -1}});
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -173,7 +173,8 @@ ContactForm::Bound ContactForm::largest_step(const Places& x, const Places& step
   return bound;
 }
 
-void ContactForm::block(const Places& x, const Places& step, const std::vector<char>& changed) {
+void ContactForm::mark_blocking_pairs(const NodePositions& x, const NodePositions& step,
+                                      const std::vector<char>& changed) {
   const double near = kNear * settings_.thickness_mm;
   parallel_for(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto k = begin; k < end; ++k) {
@@ -185,7 +186,7 @@ void ContactForm::block(const Places& x, const Places& step, const std::vector<c
   });
 }
 
-double ContactForm::value(const Places& x) const {
+double ContactForm::value(const NodePositions& x) const {
   return parallel_sum(std::ssize(watched_), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (auto k = begin; k < end; ++k) {
@@ -199,7 +200,7 @@ double ContactForm::value(const Places& x) const {
   });
 }
 
-void ContactForm::touch(const Places& x) {
+void ContactForm::update_active_pairs(const NodePositions& x) {
   touching_.clear();
   for (const auto& [pair, h, approach] : watched_) {
     const NearestPoints nearest = nearest_points(pair, x);
@@ -221,7 +222,7 @@ void ContactForm::touch(const Places& x) {
   }
 }
 
-void ContactForm::add_gradient(Places& gradient) const {
+void ContactForm::add_gradient(NodePositions& gradient) const {
   for (const Touch& touch : touching_)
     for (int a = 0; a < 4; ++a)
       gradient.row(touch.pair.node[a]) +=
@@ -243,7 +244,7 @@ void ContactForm::add_curvature(std::span<double> values) const {
       }
 }
 
-void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x) {
+void ContactForm::add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown, const NodePositions& x) {
   for (const auto& [pair, h, approach] : watched_) {
     if (nearest_points(pair, x).distance >= kSoon * h) continue;
     std::array<int, 4> element;
@@ -252,7 +253,7 @@ void ContactForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown
   }
 }
 
-bool ContactForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
+bool ContactForm::assign_nodes(const Cholesky& matrix, std::span<const int> unknown) {
   const auto rank = [&](int node) { return unknown[node] < 0 ? -1 : matrix.rank(unknown[node]); };
   for (Touch& touch : touching_) {
     bool unforeseen = false;

@@ -30,24 +30,24 @@ class ContactForm {
  public:
   ContactForm() = default;
   // F, rigid  as for ContactSurface
-  ContactForm(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid,
+  ContactForm(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid,
               const ContactSettings& settings = {});
 
   bool empty() const { return surface_.empty(); }
   // What follows is true for places on the way from x to x + limit step.
-  void watch(const Places& x, const Places& step, double limit);
+  void build_broad_phase(const NodePositions& x, const NodePositions& step, double limit);
 
   struct Bound {
     double length;
     std::array<int, 4> node;  // of the pair that bounds it, -1 none
   };
   // x and step as they are watched, limit at most that.
-  Bound largest_step(const Places& x, const Places& step, double limit) const;
+  Bound largest_step(const NodePositions& x, const NodePositions& step, double limit) const;
 
   // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too
   // near. x as watched.
   //   changed  #nodes; empty: asks all, about the step that is watched
-  void block(const Places& x, const Places& step, const std::vector<char>& changed);
+  void mark_blocking_pairs(const NodePositions& x, const NodePositions& step, const std::vector<char>& changed);
   // visit(nodes) of each that it would.
   template <class Visit>
   void for_blocked(const Visit& visit) const {
@@ -55,17 +55,17 @@ class ContactForm {
       if (blocked_[k]) visit(watched_[k].pair.node);
   }
 
-  double value(const Places& x) const;
+  double value(const NodePositions& x) const;
   // Also chooses whom add_gradient() and add_curvature() are about: what touches at x.
-  void touch(const Places& x);
-  void add_gradient(Places& gradient) const;
+  void update_active_pairs(const NodePositions& x);
+  void add_gradient(NodePositions& gradient) const;
   void add_curvature(std::span<double> values) const;
 
   // The matrix must know who may touch: who does at x, and who soon may on the way watched. What begins to touch
   // unforeseen pushes weakly: in the matrix each side then meets the other as if that stood still, until it is pressed.
-  void connect(BlockGraphBuilder& graph, std::span<const int> unknown, const Places& x);
-  bool bind(const Cholesky& matrix,
-            std::span<const int> unknown);  // after touch(); false where the matrix must know more
+  void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown, const NodePositions& x);
+  bool assign_nodes(const Cholesky& matrix,
+                    std::span<const int> unknown);  // after touch(); false where the matrix must know more
 
   std::int64_t touching() const { return std::ssize(touching_); }
 
@@ -89,19 +89,19 @@ class ContactForm {
     Approach approach;  // from where the way watched begins, by its step
   };
   // Looks for what may come near on a way, as far as that is not known yet.
-  void know(const Places& from, const Places& to);
+  void extend_broad_phase(const NodePositions& from, const NodePositions& to);
   double thickness(const ContactPair& pair) const;
-  Fade fade(const ContactPair& pair, const Places& x) const;
+  Fade fade(const ContactPair& pair, const NodePositions& x) const;
 
   ContactSurface surface_;
-  Places rest_;
+  NodePositions rest_;
   ContactSettings settings_;
   double scale_ = 0;  // c A H
   // Pairs that are not known keep their thickness, and twice what a node may be off, on these ways.
-  Places known_from_, known_to_;
+  NodePositions known_from_, known_to_;
   std::vector<Watched> known_;
-  Places watched_from_, watched_to_;  // ends of the way,
-  double watched_limit_ = 0;          // of its step
+  NodePositions watched_from_, watched_to_;  // ends of the way,
+  double watched_limit_ = 0;                 // of its step
   std::vector<Watched> watched_;
   std::vector<char> blocked_;  // of those watched
   std::vector<Touch> touching_;

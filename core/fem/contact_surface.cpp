@@ -21,7 +21,7 @@ std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 
 
 using Corners = std::array<Eigen::Vector3d, 4>;
 
-Corners at(const ContactPair& pair, const Places& x) {
+Corners at(const ContactPair& pair, const NodePositions& x) {
   Corners p;
   for (int a = 0; a < 4; ++a) p[a] = x.row(pair.node[a]);
   return p;
@@ -118,7 +118,7 @@ Moving around(Moving a, const Moving& b) {
 }
 }  // namespace
 
-NearestPoints nearest_points(const ContactPair& pair, const Places& x) {
+NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x) {
   const Corners p = at(pair, x);
   NearestPoints result;
   result.weight = weights(pair.kind, p);
@@ -146,12 +146,12 @@ double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, doub
 }
 }  // namespace
 
-double motion(const ContactPair& pair, const Places& step) {
+double motion(const ContactPair& pair, const NodePositions& step) {
   Corners s = at(pair, step);
   return relative_motion(pair.kind, s);
 }
 
-Approach approach(const ContactPair& pair, const Places& x, const Places& step) {
+Approach approach(const ContactPair& pair, const NodePositions& x, const NodePositions& step) {
   return {distance(pair.kind, at(pair, x)), motion(pair, step)};
 }
 
@@ -182,8 +182,8 @@ bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const App
 }
 }  // namespace
 
-double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step,
-                    double limit, double near) {
+double largest_step(const ContactPair& pair, const Approach& approach, const NodePositions& x,
+                    const NodePositions& step, double limit, double near) {
   const double kept = kKept * std::min(approach.apart, near);
   if (approach.apart - limit * approach.motion > kept) return limit;
   const Corners p = at(pair, x);
@@ -193,12 +193,13 @@ double largest_step(const ContactPair& pair, const Approach& approach, const Pla
   return largest_advance(pair.kind, p, s, approach.apart, motion, kept, limit);
 }
 
-bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near) {
+bool is_too_far(const ContactPair& pair, const Approach& approach, const NodePositions& x, const NodePositions& step,
+                double near) {
   const double kept = kKept * std::min(approach.apart, near);
   return approach.apart - approach.motion <= kept && !keeps(pair.kind, at(pair, x), at(pair, step), approach, kept, 1);
 }
 
-ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid)
+ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid)
     : rest_(rest),
       rigid_(rigid) {
   std::vector<Eigen::Vector3d> centre;
@@ -245,7 +246,7 @@ void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vect
   grow(order, centre, middle, end);
 }
 
-std::vector<ContactPair> ContactSurface::near(const Places& x, const Places& step, double limit,
+std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const NodePositions& step, double limit,
                                               const Nearness& nearness, const std::vector<char>& asked) const {
   if (faces_.empty()) return {};
   std::vector<Moving> node(x.rows()), face(faces_.size());

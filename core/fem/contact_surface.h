@@ -15,7 +15,7 @@
 
 #include <Eigen/Core>
 
-#include "core/fem/places.h"
+#include "core/fem/node_positions.h"
 
 namespace limber {
 
@@ -32,29 +32,30 @@ struct NearestPoints {
   Eigen::Vector4d weight;
   Eigen::Vector3d direction;  // n; zero where the parts touch
 };
-NearestPoints nearest_points(const ContactPair& pair, const Places& x);
+NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x);
 
 // What two parts are apart at x, and the most that they come towards each other by a step.
 struct Approach {
   double apart, motion;
 };
-Approach approach(const ContactPair& pair, const Places& x, const Places& step);
-double motion(const ContactPair& pair, const Places& step);
+Approach approach(const ContactPair& pair, const NodePositions& x, const NodePositions& step);
+double motion(const ContactPair& pair, const NodePositions& step);
 
 // How much of `step`, at most `limit`, a pair may take and keep half of its distance, or half of `near` where it is
 // further apart: maybe a little less, and where that is `limit` itself a quarter is sure to be kept. (With a tenth,
 // folds close faster than what pushes them open can tell, and Newton's method has then no room left to move in.)
-double largest_step(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step,
-                    double limit, double near = INFINITY);
+double largest_step(const ContactPair& pair, const Approach& approach, const NodePositions& x,
+                    const NodePositions& step, double limit, double near = INFINITY);
 // Whether it keeps less on the whole step, or as good as less.
-bool is_too_far(const ContactPair& pair, const Approach& approach, const Places& x, const Places& step, double near);
+bool is_too_far(const ContactPair& pair, const Approach& approach, const NodePositions& x, const NodePositions& step,
+                double near);
 
 class ContactSurface {
  public:
   ContactSurface() = default;
   // F     #F corners of a surface        rest  #V places
   // rigid #V: nodes of the same number, 0 or more, never move against each other; -1 free
-  ContactSurface(const Eigen::MatrixX3i& F, const Places& rest, const std::vector<int>& rigid);
+  ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid);
 
   bool empty() const { return faces_.empty(); }
   // What counts as near: less than `reach`, and than the share `of_rest` of what a pair is apart at rest; `margin` more
@@ -65,8 +66,8 @@ class ContactSurface {
   // Pairs without a common node that may come near on the way from x to x + limit step. Each once, the same for any
   // number of threads.
   //   asked  #V: only pairs with such a node; empty: all
-  std::vector<ContactPair> near(const Places& x, const Places& step, double limit, const Nearness& nearness,
-                                const std::vector<char>& asked = {}) const;
+  std::vector<ContactPair> near(const NodePositions& x, const NodePositions& step, double limit,
+                                const Nearness& nearness, const std::vector<char>& asked = {}) const;
 
  private:
   struct Face {
@@ -81,7 +82,7 @@ class ContactSurface {
 
   std::vector<Face> faces_;  // in the order of the tree
   std::vector<Branch> tree_;
-  Places rest_;
+  NodePositions rest_;
   std::vector<int> rigid_;
 };
 

@@ -13,7 +13,7 @@
 #include <Eigen/LU>
 
 #include "core/base/parallel.h"
-#include "core/fem/principal.h"
+#include "core/fem/signed_svd.h"
 #include "core/fem/tet_derivatives.h"
 
 namespace limber {
@@ -24,7 +24,7 @@ constexpr std::int64_t kChunk =
 constexpr std::int64_t kPatches = 256;  // of a loop without writes to nodes
 constexpr std::int64_t kGrain = 2048;   // tets of a loop without writes to nodes
 
-Eigen::Matrix3d deformation_of(const ElasticForm::Tet& tet, const Places& x) {
+Eigen::Matrix3d deformation_of(const ElasticForm::Tet& tet, const NodePositions& x) {
   const Eigen::Vector3d o = x.row(tet.node[0]);
   Eigen::Matrix3d F;
   F.noalias() = (x.row(tet.node[1]).transpose() - o) * tet.slope[1].transpose();
@@ -86,7 +86,7 @@ ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_coun
   return result;
 }
 
-ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
+ElasticForm::ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
                          std::vector<std::int64_t> first) {
   tets_.resize(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
@@ -127,7 +127,7 @@ ElasticForm::ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const st
   });
 }
 
-void ElasticForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown) const {
+void ElasticForm::add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown) const {
   std::vector<int> element;
   for (const Patch& patch : patches_) {
     element.clear();
@@ -136,7 +136,7 @@ void ElasticForm::connect(BlockGraphBuilder& graph, std::span<const int> unknown
   }
 }
 
-void ElasticForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
+void ElasticForm::assign_nodes(const Cholesky& matrix, std::span<const int> unknown) {
   parallel_for(std::ssize(patches_), kPatches, [&](std::int64_t first, std::int64_t last) {
     std::vector<std::pair<int, int>> by_rank;
     std::vector<int> unknowns;
@@ -165,14 +165,14 @@ void ElasticForm::bind(const Cholesky& matrix, std::span<const int> unknown) {
   });
 }
 
-void ElasticForm::volume_ratios(const Places& x, std::vector<double>& J) const {
+void ElasticForm::volume_ratios(const NodePositions& x, std::vector<double>& J) const {
   J.resize(tets_.size());
   parallel_for(size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     for (auto t = begin; t < end; ++t) J[t] = deformation_of(tets_[t], x).determinant();
   });
 }
 
-double ElasticForm::value(const Places& x, const std::vector<double>& J) const {
+double ElasticForm::value(const NodePositions& x, const std::vector<double>& J) const {
   return parallel_sum(size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     double sum = 0;
     for (auto t = begin; t < end; ++t) {
@@ -183,7 +183,8 @@ double ElasticForm::value(const Places& x, const std::vector<double>& J) const {
   });
 }
 
-void ElasticForm::add_gradient(const Places& x, std::span<const double> pressure, Places& gradient) const {
+void ElasticForm::add_gradient(const NodePositions& x, std::span<const double> pressure,
+                               NodePositions& gradient) const {
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
     for (auto t = patches_[chunk.begin].begin; t < patches_[chunk.end - 1].end; ++t) {
       const Tet& tet = tets_[t];
@@ -261,16 +262,17 @@ class ElasticForm::PatchSum {
   std::vector<Eigen::Vector3d> slope_;  // #nodes: G
 };
 
-void ElasticForm::add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness,
-                                  Curvature curvature, Places& gradient, std::span<double> matrix) const {
+void ElasticForm::add_derivatives(const NodePositions& x, std::span<const double> pressure,
+                                  const PatchStiffness& stiffness, HessianKind curvature, NodePositions& gradient,
+                                  std::span<double> matrix) const {
   constexpr int kTets = TetDerivatives::kTets;
   chunks_.for_each([&](const ColouredChunks::Chunk& chunk) {
     const auto first = patches_[chunk.begin].begin, last = patches_[chunk.end - 1].end;
     const auto count = std::size_t(last - first);
     std::vector<Eigen::Matrix3d> deformation(count);
     for (auto t = first; t < last; ++t) deformation[t - first] = deformation_of(tets_[t], x);
-    std::vector<Principal> axes_of(curvature == Curvature::Projected ? count : 0);
-    if (curvature == Curvature::Projected) principal(deformation, axes_of);
+    std::vector<Principal> axes_of(curvature == HessianKind::Projected ? count : 0);
+    if (curvature == HessianKind::Projected) signed_svd(deformation, axes_of);
 
     std::array<TetState, kTets> states;
     TetDerivatives derivatives;
@@ -291,9 +293,9 @@ void ElasticForm::add_derivatives(const Places& x, std::span<const double> press
         state.volume = tet.volume;
         state.shear = tet.energy.shear;
         state.force_slope = term.slope + p;
-        state.slope = curvature == Curvature::Exact ? term.slope + p : term.slope;
+        state.slope = curvature == HessianKind::Exact ? term.slope + p : term.slope;
         state.curvature = term.curvature;
-        if (curvature == Curvature::Projected) {
+        if (curvature == HessianKind::Projected) {
           state.axes = &axes_of[t - first];
           const NegativeCurvature negative =
               negative_curvature(tet.energy.shear, term.slope, term.curvature, state.axes->sigma);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/cholesky.h"
-#include "core/fem/places.h"
+#include "core/fem/node_positions.h"
 #include "core/fem/tet_energy.h"
 
 namespace limber {
@@ -20,7 +20,7 @@ namespace limber {
 // Projected: without what is negative in a tet's, and without what a pressure adds to it, which cancels inside an
 // evenly pressed body but not once it is projected tet by tet. Solves take the projected one; the exact one is what it
 // is checked by.
-enum class Curvature { Projected, Exact };
+enum class HessianKind { Projected, Exact };
 
 // Ranges of elements in an order in which ranges of one colour, which share no node, stand together.
 struct ColouredChunks {
@@ -58,26 +58,26 @@ class ElasticForm {
   // T      #T corners with positive volume at `rest`, in an order that keeps neighbours close
   // first  #patches + 1: where each begins, as in PatchOrder: of a tet or more, and of less than 256 nodes; empty:
   // every tet is one
-  ElasticForm(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
+  ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
               std::vector<std::int64_t> first = {});
 
   std::int64_t size() const { return std::ssize(tets_); }
   const Tet& tet(std::int64_t t) const { return tets_[t]; }
 
-  void connect(BlockGraphBuilder& graph, std::span<const int> unknown) const;
+  void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown) const;
   // Where the blocks of every patch lie in a matrix over unknown[node] (-1: the node is none). Changes the order of
   // tets' nodes.
-  void bind(const Cholesky& matrix, std::span<const int> unknown);
+  void assign_nodes(const Cholesky& matrix, std::span<const int> unknown);
 
   // det F of every tet.
-  void volume_ratios(const Places& x, std::vector<double>& J) const;
+  void volume_ratios(const NodePositions& x, std::vector<double>& J) const;
   // Infinite where a tet is inverted.
-  double value(const Places& x, const std::vector<double>& J) const;
+  double value(const NodePositions& x, const std::vector<double>& J) const;
   // After bind().
   //   pressure  of every tet, kPa, or empty
-  void add_derivatives(const Places& x, std::span<const double> pressure, const PatchStiffness& stiffness,
-                       Curvature curvature, Places& gradient, std::span<double> matrix) const;
-  void add_gradient(const Places& x, std::span<const double> pressure, Places& gradient) const;
+  void add_derivatives(const NodePositions& x, std::span<const double> pressure, const PatchStiffness& stiffness,
+                       HessianKind curvature, NodePositions& gradient, std::span<double> matrix) const;
+  void add_gradient(const NodePositions& x, std::span<const double> pressure, NodePositions& gradient) const;
 
  private:
   struct Patch {

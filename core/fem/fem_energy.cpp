@@ -33,7 +33,7 @@ double cpu_seconds() {
 CpuTimer::CpuTimer(double& sum) : sum_(sum), start_(cpu_seconds()) {}
 CpuTimer::~CpuTimer() { sum_ += cpu_seconds() - start_; }
 
-FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
+FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
                      double weak_barrier_kpa, int patch_size)
     : node_count_(int(rest.rows())),
       rest_(rest) {
@@ -54,17 +54,17 @@ FemEnergy::FemEnergy(const Places& rest, const Eigen::MatrixX4i& T, const std::v
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
   patches_ = PatchForm(flesh_, order.first, ordered_bulk, std::move(filled));
-  guard(Eigen::MatrixX4i(0, 4));
+  add_inversion_guard(Eigen::MatrixX4i(0, 4));
 }
 
-void FemEnergy::hold(PinForm pins, std::vector<int> carried, Places carried_target) {
+void FemEnergy::set_constraints(PinForm pins, std::vector<int> carried, NodePositions carried_target) {
   if (pins.node != pins_.node || carried != carried_) matrix_.reset();
   pins_ = std::move(pins);
   carried_ = std::move(carried);
   carried_target_ = std::move(carried_target);
 }
 
-void FemEnergy::guard(const Eigen::MatrixX4i& guarded) {
+void FemEnergy::add_inversion_guard(const Eigen::MatrixX4i& guarded) {
   bounded_.resize(flesh_tets_.rows() + guarded.rows(), 4);
   bounded_ << flesh_tets_, guarded;
   keep_.resize(bounded_.rows());
@@ -84,12 +84,12 @@ void FemEnergy::set_contact(ContactForm contact) {
   contact_ = std::move(contact);
 }
 
-void FemEnergy::prepare(const Places& x) {
+void FemEnergy::prepare(const NodePositions& x) {
   const CpuTimer timer(seconds_.analysis);
-  if (matrix_ && contact_.bind(*matrix_, unknown_)) return;
+  if (matrix_ && contact_.assign_nodes(*matrix_, unknown_)) return;
   if (!matrix_) number();
   BlockGraphBuilder touching(int(node_of_.size()));
-  contact_.connect(touching, unknown_, x);
+  contact_.add_sparsity(touching, unknown_, x);
   const BlockGraph graph = touching.build(graph_);
   {
     const CpuTimer ordering(seconds_.ordering);
@@ -97,8 +97,8 @@ void FemEnergy::prepare(const Places& x) {
     else matrix_ = std::make_unique<Cholesky>(graph);
   }
   ++analyses_;
-  flesh_.bind(*matrix_, unknown_);
-  contact_.bind(*matrix_, unknown_);
+  flesh_.assign_nodes(*matrix_, unknown_);
+  contact_.assign_nodes(*matrix_, unknown_);
 }
 
 void FemEnergy::number() {
@@ -113,25 +113,25 @@ void FemEnergy::number() {
     if (used[i]) unknown_[i] = int(node_of_.size()), node_of_.push_back(i);
 
   BlockGraphBuilder graph(int(node_of_.size()));
-  flesh_.connect(graph, unknown_);
+  flesh_.add_sparsity(graph, unknown_);
   graph_ = graph.build();
 }
 
 Cholesky& FemEnergy::matrix() { return *matrix_; }
 
-void FemEnergy::watch(const Places& x) {
+void FemEnergy::build_broad_phase(const NodePositions& x) {
   if (contact_.empty()) return;
   const CpuTimer timer(seconds_.contact);
-  contact_.watch(x, Places::Zero(x.rows(), 3), 0);
+  contact_.build_broad_phase(x, NodePositions::Zero(x.rows(), 3), 0);
 }
 
-void FemEnergy::find_ratios(const Places& x) {
+void FemEnergy::find_ratios(const NodePositions& x) {
   if (x.rows() == ratios_at_.rows() && x == ratios_at_) return;
   flesh_.volume_ratios(x, J_);
   ratios_at_ = x;
 }
 
-double FemEnergy::value(const Places& x) {
+double FemEnergy::value(const NodePositions& x) {
   double sum = 0;
   {
     const CpuTimer timer(seconds_.search);
@@ -143,17 +143,17 @@ double FemEnergy::value(const Places& x) {
   return sum + contact_.value(x);
 }
 
-void FemEnergy::gradient(const Places& x, Places& gradient) {
+void FemEnergy::gradient(const NodePositions& x, NodePositions& gradient) {
   find_ratios(x);
   gradient.setZero(node_count_, 3);
   patches_.pressures(J_, pressure_);
   flesh_.add_gradient(x, pressure_, gradient);
-  contact_.touch(x);
+  contact_.update_active_pairs(x);
   contact_.add_gradient(gradient);
   pins_.add_gradient(x, gradient);
 }
 
-void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient) {
+void FemEnergy::assemble(const NodePositions& x, HessianKind curvature, NodePositions& gradient) {
   const CpuTimer timer(seconds_.assembly);
   find_ratios(x);
   gradient.setZero(node_count_, 3);
@@ -167,13 +167,14 @@ void FemEnergy::assemble(const Places& x, Curvature curvature, Places& gradient)
   pins_.add_curvature(*matrix_, unknown_, values);
 }
 
-bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, double& slope, const Places* towards) {
+bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
+                            const NodePositions* towards) {
   {
     const CpuTimer timer(seconds_.contact);
-    contact_.touch(x);
+    contact_.update_active_pairs(x);
   }
   prepare(x);
-  Places gradient;
+  NodePositions gradient;
   assemble(x, curvature, gradient);
   right_side_.resize(3 * node_of_.size());
   for (int k = 0; k < int(node_of_.size()); ++k) {
@@ -201,7 +202,7 @@ bool FemEnergy::newton_step(const Places& x, Curvature curvature, Places& step, 
   return true;
 }
 
-FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, double limit) {
+FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePositions& step, double limit) {
   Bound bound{limit};
   {
     const CpuTimer timer(seconds_.search);
@@ -214,13 +215,14 @@ FemEnergy::Bound FemEnergy::largest_step(const Places& x, const Places& step, do
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  contact_.watch(x, step, std::max(bound.length, std::min(limit, 1.0)));  // what yielding() would ask about too
+  contact_.build_broad_phase(x, step,
+                             std::max(bound.length, std::min(limit, 1.0)));  // what yielding() would ask about too
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
     bound = {free.length, Obstacle::Contact, free.node};
   return bound;
 }
 
-Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>& fixed) {
+NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed) {
   constexpr double kBorne = 0.2;  // of a tet's volume,
   constexpr double kBeyond =
       1.2;  // or of what a step must leave of it: more than both, so that the step is not bounded
@@ -229,7 +231,7 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
       20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
-  Places sum(x.rows(), 3), there = x + step;
+  NodePositions sum(x.rows(), 3), there = x + step;
   std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // tets that may have become flat, or still are
   std::iota(asked.begin(), asked.end(), 0);
   std::vector<char> flattened(T.rows(), 0), changed;
@@ -255,10 +257,10 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
     for (const int t : asked) smooth(std::array{T(t, 0), T(t, 1), T(t, 2), T(t, 3)});
     if (!contact_.empty()) {
       if (round % kSeen == 0) {
-        contact_.watch(x, step, 1);
+        contact_.build_broad_phase(x, step, 1);
         changed.clear();
       }
-      contact_.block(x, step, changed);
+      contact_.mark_blocking_pairs(x, step, changed);
       contact_.for_blocked(smooth);
     }
     if (nodes.empty()) break;
@@ -277,7 +279,7 @@ Places FemEnergy::yielding(const Places& x, Places step, const std::vector<char>
   return step;
 }
 
-double FemEnergy::min_ratio(const Places& x) const {
+double FemEnergy::min_ratio(const NodePositions& x) const {
   std::vector<double> J;
   flesh_.volume_ratios(x, J);
   return J.empty() ? 1 : *std::min_element(J.begin(), J.end());

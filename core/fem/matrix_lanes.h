@@ -4,7 +4,7 @@
 // caller is compiled for; the same comes out for each, to the bit. Included by .cpp files only.
 #pragma once
 
-#include "core/fem/principal.h"
+#include "core/fem/signed_svd.h"
 
 namespace limber {
 

@@ -18,9 +18,11 @@ constexpr double kLeft =
 
 constexpr double kStraggle = 3;  // times the tolerance, for the few nodes that may
 
-double longest(const Places& step) { return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0; }
+double longest(const NodePositions& step) {
+  return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0;
+}
 
-bool settled(const Places& step, double longest, const NewtonSettings& settings) {
+bool settled(const NodePositions& step, double longest, const NewtonSettings& settings) {
   if (longest < settings.tolerance_mm) return true;
   if (longest >= kStraggle * settings.tolerance_mm) return false;
   const auto moving = (step.rowwise().squaredNorm().array() >= settings.tolerance_mm * settings.tolerance_mm).count();
@@ -29,10 +31,11 @@ bool settled(const Places& step, double longest, const NewtonSettings& settings)
 
 // x + length step of lower energy, in place; the length, 0 if none was found.
 //   bound  of the length, at most 1; a full step is followed further where the energy falls more than a parabola does
-double search(FemEnergy& energy, Places& x, double& value, const Places& step, double slope, double bound) {
+double search(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
+              double bound) {
   const double rounding = 1e-13 * std::abs(value);
   double length = bound;
-  Places there;
+  NodePositions there;
   double best = value;
   for (int k = 0;; ++k, length *= 0.5) {
     if (k == kHalvings) return 0;
@@ -43,7 +46,7 @@ double search(FemEnergy& energy, Places& x, double& value, const Places& step, d
   // Forward tracking, where the parabola through what is known is lower at 2 than at 1.
   if (length == 1 && slope > 0 && 3 * (best - value + slope) < slope) {
     const double furthest = energy.largest_step(x, step, kFurthest).length;
-    Places further;
+    NodePositions further;
     for (double next = 2; next <= furthest; next *= 2) {
       further = x + next * step;
       const double lower = energy.value(further);
@@ -59,23 +62,23 @@ double search(FemEnergy& energy, Places& x, double& value, const Places& step, d
 }
 }  // namespace
 
-NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress,
+NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings, Progress& progress,
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
   int jams = 0;
   double value = energy.value(x);
-  Places step;
+  NodePositions step;
   while (result.iterations < settings.iterations) {
     if (progress.cancelled()) throw Cancelled();
     double slope = 0;
-    if (!energy.newton_step(x, Curvature::Projected, step, slope)) break;
+    if (!energy.newton_step(x, HessianKind::Projected, step, slope)) break;
     ++result.iterations;
     result.residual = longest(step);
 
     result.bound = energy.largest_step(x, step, 1);
     double length = 0;
     if (result.bound.length < kShort) {
-      const Places around = energy.yielding(x, step, settings.fixed);
+      const NodePositions around = energy.limit_step(x, step, settings.fixed);
       const FemEnergy::Bound further = energy.largest_step(x, around, 1);
       if (further.length > result.bound.length && (length = search(energy, x, value, around, 0, further.length)) > 0)
         result.bound = further;

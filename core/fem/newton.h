@@ -33,7 +33,7 @@ struct NewtonResult {
 
 // x  in: positive tets, on the way that the energy watches; out: the least energy found, never higher than where it
 // began on_iteration(iteration, residual) after each
-NewtonResult minimise(FemEnergy& energy, Places& x, const NewtonSettings& settings, Progress& progress = no_progress(),
-                      const std::function<void(int, double)>& on_iteration = {});
+NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings,
+                      Progress& progress = no_progress(), const std::function<void(int, double)>& on_iteration = {});
 
 }  // namespace limber

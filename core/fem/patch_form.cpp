@@ -21,7 +21,7 @@ std::uint64_t spread_bits(std::uint64_t v) {
   return spread;
 }
 
-std::vector<int> morton_order(const Places& rest, const Eigen::MatrixX4i& T) {
+std::vector<int> morton_order(const NodePositions& rest, const Eigen::MatrixX4i& T) {
   const Eigen::RowVector3d low = rest.colwise().minCoeff();
   const double extent = std::max((rest.colwise().maxCoeff() - low).maxCoeff(), 1e-9);
   std::vector<std::uint64_t> code(T.rows());
@@ -38,7 +38,7 @@ std::vector<int> morton_order(const Places& rest, const Eigen::MatrixX4i& T) {
 }
 }  // namespace
 
-PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
+PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
                         const std::vector<double>& shear, int size) {
   const auto neighbour = neighbours_of(T);
   const auto order = morton_order(rest, T);

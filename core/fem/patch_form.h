@@ -24,7 +24,7 @@ struct PatchOrder {
 // curve through space [Morton 1966]. Only tets of `bulk` above 0 share a patch, and only those whose shear is within a
 // factor of 1.5 of the patch's first; the others are patches of their own.
 //   bulk, shear  #T, kPa
-PatchOrder grow_patches(const Places& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
+PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
                         const std::vector<double>& shear, int size = 8);
 
 class PatchForm {

@@ -3,14 +3,14 @@
 
 namespace limber {
 
-double PinForm::value(const Places& x) const {
+double PinForm::value(const NodePositions& x) const {
   double sum = 0;
   for (std::size_t k = 0; k < node.size(); ++k)
     sum += 0.5 * (stiffness.row(k).array() * (x.row(node[k]) - target.row(k)).array().square()).sum();
   return sum;
 }
 
-void PinForm::add_gradient(const Places& x, Places& gradient) const {
+void PinForm::add_gradient(const NodePositions& x, NodePositions& gradient) const {
   for (std::size_t k = 0; k < node.size(); ++k)
     gradient.row(node[k]).array() += stiffness.row(k).array() * (x.row(node[k]) - target.row(k)).array();
 }

@@ -9,17 +9,17 @@
 #include <vector>
 
 #include "core/base/cholesky.h"
-#include "core/fem/places.h"
+#include "core/fem/node_positions.h"
 
 namespace limber {
 
 struct PinForm {
   std::vector<int> node;
-  Places stiffness;  // #node by 3, kPa mm
-  Places target;     // #node by 3
+  NodePositions stiffness;  // #node by 3, kPa mm
+  NodePositions target;     // #node by 3
 
-  double value(const Places& x) const;
-  void add_gradient(const Places& x, Places& gradient) const;
+  double value(const NodePositions& x) const;
+  void add_gradient(const NodePositions& x, NodePositions& gradient) const;
   void add_curvature(const Cholesky& matrix, std::span<const int> unknown, std::span<double> values) const;
 };
 

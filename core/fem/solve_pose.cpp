@@ -109,7 +109,7 @@ struct Parts {
 
     std::vector<Eigen::Index> elastic_tet, rigid_tet;
     std::vector<double> volume(model.mesh.V.rows(), 0);
-    const Places rest = model.mesh.V;
+    const NodePositions rest = model.mesh.V;
     for (Eigen::Index t = 0; t < T.rows(); ++t) {
       const bool one = held_by_one(held_by, T.row(t));
       if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
@@ -145,7 +145,7 @@ class PoseSolve {
         on_step_(on_step),
         waiting_(worth_waiting(model)),
         rest_(model.mesh.V),
-        x_(start ? Places(*start) : rest_) {}
+        x_(start ? NodePositions(*start) : rest_) {}
 
   SolvedPose run(double largest_angle_degrees) {
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
@@ -176,23 +176,23 @@ class PoseSolve {
   std::vector<int> rigid_nodes() const;
   bool at_rest() const;
   bool step(double to);
-  bool part(double from, double& to, Places& x);
-  void tell(double at, int iteration, double residual, const Places& x);
-  NewtonResult relax(double at, double tolerance_mm, int iterations, Places& x);
-  bool good(const std::vector<RigidTransform>& pose, const Places& x);
+  bool part(double from, double& to, NodePositions& x);
+  void tell(double at, int iteration, double residual, const NodePositions& x);
+  NewtonResult relax(double at, double tolerance_mm, int iterations, NodePositions& x);
+  bool good(const std::vector<RigidTransform>& pose, const NodePositions& x);
   void record();
   void settle();
-  void hold_at(const std::vector<RigidTransform>& pose, const Places* less = nullptr);
+  void hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less = nullptr);
   template <class Way>
-  Places blend(const Places& x, const Way& way) const;
-  double follow(double from, double to, Places& x);
+  NodePositions blend(const NodePositions& x, const Way& way) const;
+  double follow(double from, double to, NodePositions& x);
   struct Drift {
     double mm = 0;
     int node = -1;
   };
-  Drift bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const;
-  std::string at(const std::array<int, 4>& nodes, const Places& x) const;
-  std::string obstacle(const FemEnergy::Bound& bound, const Places& x) const;
+  Drift bone_drift(const std::vector<RigidTransform>& pose, const NodePositions& x) const;
+  std::string at(const std::array<int, 4>& nodes, const NodePositions& x) const;
+  std::string obstacle(const FemEnergy::Bound& bound, const NodePositions& x) const;
 
   const FemModel& model_;
   const BonePath& path_;
@@ -203,9 +203,9 @@ class PoseSolve {
   double freed_ = 0;          // place on the path: what waits until before that is free
   std::vector<int> held_by_;  // #V: as the model's, and what still waits
   Parts parts_;
-  const Places rest_;
+  const NodePositions rest_;
   std::vector<char> held_;  // #V: nodes that a bone holds stiffly, or carries along
-  Places x_;
+  NodePositions x_;
   double shortest_ = 0;  // step, of the path
   std::optional<FemEnergy> energy_;
   FemSeconds seconds_;
@@ -226,7 +226,7 @@ void PoseSolve::free_for(double place) {
   held_.resize(held_by_.size());
   for (std::size_t v = 0; v < held_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
   energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
-  energy_->guard(parts_.rigid);
+  energy_->add_inversion_guard(parts_.rigid);
   if (settings_.contact)
     energy_->set_contact(
         ContactForm(boundary_of(model_.mesh.T), rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
@@ -247,25 +247,25 @@ bool PoseSolve::at_rest() const {
 }
 
 //   less  #V: is taken off the places that nodes are held at; none: nothing
-void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const Places* less) {
+void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less) {
   const auto place_of = [&](int v) {
     const Eigen::RowVector3d place = moved(pose[held_by_[v]], rest_.row(v));
     return less ? Eigen::RowVector3d(place - less->row(v)) : place;
   };
-  PinForm pins{parts_.pinned, Places(parts_.pinned.size(), 3), Places(parts_.pinned.size(), 3)};
+  PinForm pins{parts_.pinned, NodePositions(parts_.pinned.size(), 3), NodePositions(parts_.pinned.size(), 3)};
   for (std::size_t k = 0; k < parts_.pinned.size(); ++k) {
     pins.stiffness.row(k).setConstant(parts_.pin_stiffness[k]);
     pins.target.row(k) = place_of(parts_.pinned[k]);
   }
-  Places carried(parts_.carried.size(), 3);
+  NodePositions carried(parts_.carried.size(), 3);
   for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = place_of(parts_.carried[k]);
-  energy_->hold(std::move(pins), parts_.carried, std::move(carried));
+  energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
 }
 
 // By the bone that holds a node, or the blend of those that it follows: way(bone, place) of each.
 template <class Way>
-Places PoseSolve::blend(const Places& x, const Way& way) const {
-  Places sum = Places::Zero(x.rows(), 3);
+NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
+  NodePositions sum = NodePositions::Zero(x.rows(), 3);
   parallel_for(x.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = begin; v < end; ++v) {
       const glm::dvec3 p(x(v, 0), x(v, 1), x(v, 2));
@@ -293,7 +293,7 @@ std::vector<int> PoseSolve::rigid_nodes() const {
 // where, for the paces that the bones set out with; and what the bones' turns add to those. Half of the way, or a
 // quarter, ..., where tissue does not bear it. Returns the place on the path that x is now about, and that the bones
 // are held at; `from` where there is no such way.
-double PoseSolve::follow(double from, double to, Places& x) {
+double PoseSolve::follow(double from, double to, NodePositions& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
     std::vector<RigidTransform> motion = path_(at);
@@ -306,20 +306,20 @@ double PoseSolve::follow(double from, double to, Places& x) {
   std::vector<RigidTransform> motion = moved_to(to);
   std::vector<Screw> screw;
   for (const RigidTransform& each : motion) screw.push_back(screw_of(each));
-  const Places pace = blend(x, [&](int bone, const glm::dvec3& p) { return screw[bone].velocity(p); });
-  Places blended = blend_of(motion), way;
-  const Places turns = blended - pace;
+  const NodePositions pace = blend(x, [&](int bone, const glm::dvec3& p) { return screw[bone].velocity(p); });
+  NodePositions blended = blend_of(motion), way;
+  const NodePositions turns = blended - pace;
   double slope = 0;
   hold_at(path_(to), &turns);
-  energy_->watch(x);
-  if (!energy_->newton_step(x, Curvature::Projected, way, slope, &pace)) return from;
+  energy_->build_broad_phase(x);
+  if (!energy_->newton_step(x, HessianKind::Projected, way, slope, &pace)) return from;
   for (double share = 1;; share /= 2) {
     const double at = share == 1 ? to : from + share * (to - from);
     if (share < 1) blended = blend_of(moved_to(at));
-    Places step = blended + share * (way - pace);
+    NodePositions step = blended + share * (way - pace);
     double bound = energy_->largest_step(x, step, 1).length;
     if (bound < kRough) {
-      step = energy_->yielding(x, step, held_);
+      step = energy_->limit_step(x, step, held_);
       bound = energy_->largest_step(x, step, 1).length;
     }
     if (bound < kRough && at - from > shortest_) continue;
@@ -330,7 +330,7 @@ double PoseSolve::follow(double from, double to, Places& x) {
   }
 }
 
-PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, const Places& x) const {
+PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, const NodePositions& x) const {
   Drift drift;
   for (const int v : parts_.pinned)
     if (const double mm = (x.row(v) - moved(pose[held_by_[v]], rest_.row(v))).norm();
@@ -340,7 +340,7 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
 }
 
 // "between Humerus and Forearm near (1, 2, 3) mm": the two bones that move the corners most.
-std::string PoseSolve::at(const std::array<int, 4>& nodes, const Places& x) const {
+std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
   for (const int v : nodes) {
@@ -361,14 +361,14 @@ std::string PoseSolve::at(const std::array<int, 4>& nodes, const Places& x) cons
          place;
 }
 
-std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const Places& x) const {
+std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const NodePositions& x) const {
   if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no lower energy";
   const char* what =
       bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
   return what + at(bound.node, x);
 }
 
-void PoseSolve::tell(double at, int iteration, double residual, const Places& x) {
+void PoseSolve::tell(double at, int iteration, double residual, const NodePositions& x) {
   progress_.update("solving", result_.reached);
   if (!on_step_) return;
   const Eigen::MatrixX3d V = x;
@@ -376,7 +376,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const Places& x)
 }
 
 // To the least energy, with the bones where they are held, from x on a way that is watched.
-NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, Places& x) {
+NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
       minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
@@ -392,8 +392,8 @@ void PoseSolve::settle() {
   if (result_.residual < settings_.tolerance_mm) return;
   const auto pose = path_(1);
   hold_at(pose);
-  Places x = x_;
-  energy_->watch(x);
+  NodePositions x = x_;
+  energy_->build_broad_phase(x);
   const NewtonResult solved = relax(1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
   if (!good(pose, x)) return;
   x_ = std::move(x);
@@ -405,7 +405,7 @@ void PoseSolve::settle() {
 }
 
 // Bones where they are held.
-bool PoseSolve::good(const std::vector<RigidTransform>& pose, const Places& x) {
+bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePositions& x) {
   const Drift drift = bone_drift(pose, x);
   if (drift.mm > settings_.bone_drift_mm) {
     char by[40];
@@ -423,7 +423,7 @@ void PoseSolve::record() {
 }
 
 // From x, good at `from`, to the shape at `to`, or at a place before it, which `to` becomes.
-bool PoseSolve::part(double from, double& to, Places& x) {
+bool PoseSolve::part(double from, double& to, NodePositions& x) {
   const double at = follow(from, to, x);
   if (at == from) {
     result_.blocked_by = obstacle({}, x);
@@ -447,7 +447,7 @@ bool PoseSolve::step(double to) {
   bool loose = from > 0;
   while (from < to) {
     double next = way < 0.999 * (to - from) ? from + way : to;
-    Places x = x_;
+    NodePositions x = x_;
     if (part(from, next, x)) {
       x_ = std::move(x);
       way = 2 * (next - from);
@@ -456,7 +456,7 @@ bool PoseSolve::step(double to) {
     } else if (std::exchange(loose, false)) {
       // A shape that lags behind its bones is a poor start for the next step.
       hold_at(path_(from));
-      energy_->watch(x_);
+      energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       if (held_by_ == model_.held_by) break;

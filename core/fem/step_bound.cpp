@@ -47,7 +47,8 @@ double first_root(double c0, double c1, double c2, double c3, double limit) {
   return limit;
 }
 
-double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, double keep, double limit) {
+double tet_bound(const Eigen::Vector4i& t, const NodePositions& x, const NodePositions& step, double keep,
+                 double limit) {
   const Eigen::Vector3d o = x.row(t[0]), p = step.row(t[0]);
   const Eigen::Vector3d a = x.row(t[1]).transpose() - o, b = x.row(t[2]).transpose() - o,
                         c = x.row(t[3]).transpose() - o;
@@ -60,7 +61,7 @@ double tet_bound(const Eigen::Vector4i& t, const Places& x, const Places& step, 
 }
 }  // namespace
 
-StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit,
+StepBound largest_step(const Eigen::MatrixX4i& T, const NodePositions& x, const NodePositions& step, double limit,
                        std::span<const double> keep) {
   std::vector<StepBound> of_block((T.rows() + kGrain - 1) / kGrain, {limit, -1});
   parallel_for(T.rows(), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -76,12 +77,12 @@ StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places&
   return bound;
 }
 
-double determinant(const Places& x, int a, int b, int c, int d) {
+double determinant(const NodePositions& x, int a, int b, int c, int d) {
   const Eigen::RowVector3d o = x.row(a);
   return (x.row(b) - o).dot((x.row(c) - o).cross(x.row(d) - o));
 }
 
-std::int64_t count_inverted(const Eigen::MatrixX4i& T, const Places& x) {
+std::int64_t count_inverted(const Eigen::MatrixX4i& T, const NodePositions& x) {
   std::int64_t count = 0;
   for (Eigen::Index t = 0; t < T.rows(); ++t) count += !(determinant(x, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) > 0);
   return count;

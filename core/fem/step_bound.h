@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/fem/places.h"
+#include "core/fem/node_positions.h"
 
 namespace limber {
 
@@ -18,13 +18,13 @@ struct StepBound {
 
 // T     #T corners, all with positive volume at x
 // keep  #T: six times the volume that each must keep; empty: none
-StepBound largest_step(const Eigen::MatrixX4i& T, const Places& x, const Places& step, double limit,
+StepBound largest_step(const Eigen::MatrixX4i& T, const NodePositions& x, const NodePositions& step, double limit,
                        std::span<const double> keep = {});
 
 // Six times the volume of tet (a, b, c, d).
-double determinant(const Places& x, int a, int b, int c, int d);
+double determinant(const NodePositions& x, int a, int b, int c, int d);
 
 // Tets without positive volume.
-std::int64_t count_inverted(const Eigen::MatrixX4i& T, const Places& x);
+std::int64_t count_inverted(const Eigen::MatrixX4i& T, const NodePositions& x);
 
 }  // namespace limber

@@ -53,11 +53,11 @@ std::map<Label, Stretch> stretches(const TissueModel& model, const Eigen::Matrix
   for (int t = 0; t < mesh.T.rows(); ++t) {
     if (model.joint[t] || mesh.region[t] != TetMesh::kSoft || held_wholly(model.fem, t)) continue;
     const Eigen::Matrix3d F = edges(V, t) * edges(mesh.V, t).inverse();
-    const Eigen::Vector3d principal = Eigen::JacobiSVD<Eigen::Matrix3d>(F).singularValues();
+    const Eigen::Vector3d signed_svd = Eigen::JacobiSVD<Eigen::Matrix3d>(F).singularValues();
     for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i) {
       auto& [least, most] = seen[model.parts[i].label];
-      least.push_back({principal[2], model.parts[i].mm3});
-      most.push_back({principal[0], model.parts[i].mm3});
+      least.push_back({signed_svd[2], model.parts[i].mm3});
+      most.push_back({signed_svd[0], model.parts[i].mm3});
     }
   }
   std::map<Label, Stretch> result;

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "core/fem/principal.h"
+#include "core/fem/signed_svd.h"
 #include "core/fem/tet_energy.h"
 
 namespace limber {

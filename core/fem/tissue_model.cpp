@@ -207,7 +207,7 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
 
 // By the regions of the tets at each node, then by what does not bend; joints are what lies between two bones.
 void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
-                    const SkinWeights& weights, const MovingTissue& moving, double joint_mm) {
+                    const SkinWeights& weights, const DeformingRegion& moving, double joint_mm) {
   const TetMesh& mesh = model.fem.mesh;
   std::vector<int> bone(mesh.V.rows(), kNone);
   for (int t = 0; t < mesh.T.rows(); ++t) {
@@ -253,7 +253,7 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
 }  // namespace
 
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const MovingTissue& moving) {
+                            const SkinWeights& weights, const DeformingRegion& moving) {
   LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();
@@ -267,7 +267,7 @@ LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissu
 }
 
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                         const SkinWeights& weights, const MovingTissue& moving, TetMesh mesh,
+                         const SkinWeights& weights, const DeformingRegion& moving, TetMesh mesh,
                          const TissueModelSettings& settings) {
   TissueModel model;
   model.fem.mesh = std::move(mesh);

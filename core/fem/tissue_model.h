@@ -19,7 +19,7 @@
 #include <map>
 #include <vector>
 
-#include "core/fem/moving_tissue.h"
+#include "core/fem/deforming_region.h"
 #include "core/tissue/tissue_table.h"
 
 namespace limber {
@@ -44,12 +44,12 @@ struct TissueModel {
 
 // What is to be meshed: 0 air or not in the mesh, 1 soft tissue, 2 + bone (as moves_as) bone tissue.
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const MovingTissue& moving);
+                            const SkinWeights& weights, const DeformingRegion& moving);
 
 //   weights  bone tissue follows one bone wholly
 //   mesh     of regions_to_mesh; its regions are 1 + bone, as moves_as
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                         const SkinWeights& weights, const MovingTissue& moving, TetMesh mesh,
+                         const SkinWeights& weights, const DeformingRegion& moving, TetMesh mesh,
                          const TissueModelSettings& settings = {});
 
 // How much each label, with the tets it lies in, gained or lost; without the joint, which may.    V  #V posed nodes

@@ -14,14 +14,36 @@ BrushRule average_brush();
 BrushRule smear_brush();
 BrushRule joint_capsule_brush();
 
+namespace {
+
+std::vector<BrushRule> numbered(std::vector<BrushRule> rules) {
+  for (std::size_t i = 0; i < rules.size(); ++i) rules[i].kind = static_cast<BrushKind>(i);
+  return rules;
+}
+
+}  // namespace
+
 std::span<const BrushRule> brush_rules() {
-  static const std::vector<BrushRule> kBrushes = {
-      add_brush(),     subtract_brush(), set_brush(),   multiply_brush(),      smooth_brush(),
-      sharpen_brush(), average_brush(),  smear_brush(), joint_capsule_brush(),
-  };
+  static const std::vector<BrushRule> kBrushes = numbered({
+      add_brush(),
+      subtract_brush(),
+      set_brush(),
+      multiply_brush(),
+      smooth_brush(),
+      sharpen_brush(),
+      average_brush(),
+      smear_brush(),
+      joint_capsule_brush(),
+  });
   return kBrushes;
 }
 
 const BrushRule& rule_of(BrushKind kind) { return brush_rules()[static_cast<std::size_t>(kind)]; }
+
+const BrushRule* find_brush(std::string_view id) {
+  for (const BrushRule& rule : brush_rules())
+    if (rule.id == id) return &rule;
+  return nullptr;
+}
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What each brush does with a voxel, as one table: strokes, the editor's operators, menus and tool strip read it. A new
-// brush is one source in core/paint/brushes, its line of kBrushes in brush_rule.cpp, and its kind.
+// brush is one source in core/paint/brushes and its line of kBrushes in brush_rule.cpp.
 //
 // A plain brush looks at nothing but the painted bones' weight. A brush that looks around draws weights to a target of
 // its own making. A brush may also change a voxel in a way of its own.
@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/paint/brush_region.h"
 #include "core/rig/mirror.h"
@@ -21,6 +22,7 @@
 
 namespace limber {
 
+// Places in the table. A brush that nothing but the table knows needs no name here.
 enum class BrushKind {
   Add,           // w + cover
   Subtract,      // w - cover
@@ -86,10 +88,10 @@ class BrushSide {
 };
 
 struct BrushRule {
-  BrushKind kind;
-  std::string id;        // "add": its operator is "skin.brush_add"
-  std::string name;      // "Add"
-  std::string sentence;  // what it does
+  BrushKind kind = {};      // its place in the table
+  std::string id;           // "add": its operator is "skin.brush_add"
+  std::string name;         // "Add"
+  std::string description;  // what it does
   bool takes_value = false;
   bool looks_around = false;
   bool accumulates = false;  // always
@@ -106,5 +108,6 @@ struct BrushRule {
 // By BrushKind.
 std::span<const BrushRule> brush_rules();
 const BrushRule& rule_of(BrushKind kind);
+const BrushRule* find_brush(std::string_view id);  // null for none
 
 }  // namespace limber

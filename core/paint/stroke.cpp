@@ -224,7 +224,7 @@ Stroke::Work::Side Stroke::Work::side_of(std::vector<int> bones, const std::opti
 void Stroke::Work::find_nearby(const Reached& reached) {
   ready_ = true;
   const std::vector<int>& bones = sides_[0].bones;
-  if (rules_.heir(bones[0], bones) >= 0) return;
+  if (rules_.fallback_bone(bones[0], bones) >= 0) return;
   std::vector<std::int64_t> sum(body_.armature.bones.size());
   for (const Reached::Brick& part : reached.bricks)
     for (int i = part.begin; i < part.end; ++i) {
@@ -394,17 +394,17 @@ void Stroke::Work::paint_waiting() {
 // What no lock keeps is painted together, the rest voxel by voxel.
 void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked) {
   auto& [made, at, weight] = canvas;
-  const int bone = sides_[0].bones[0], heir = rules_.heir(bone);
+  const int bone = sides_[0].bones[0], fallback_bone = rules_.fallback_bone(bone);
   int waiting = 0;
   for (int word = 0; word < std::ssize(brick.waiting); ++word)
     for (std::uint64_t bits = std::exchange(brick.waiting[word], 0); bits; bits &= bits - 1)
       at[waiting++] = static_cast<std::uint16_t>(64 * word + std::countr_zero(bits));
   weights_->chunk(brick.brick).unpack(std::span(at.data(), waiting), made.data());
   int count = waiting;
-  if (heir < 0 || !rules_.is_free_everywhere()) {
+  if (fallback_bone < 0 || !rules_.is_free_everywhere()) {
     count = 0;
     for (int i = 0; i < waiting; ++i) {
-      if (heir >= 0 && rules_.is_free(made[i], bone)) {
+      if (fallback_bone >= 0 && rules_.is_free(made[i], bone)) {
         made[count] = made[i];
         at[count++] = at[i];
         continue;
@@ -420,7 +420,7 @@ void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked)
       weight[i] = static_cast<std::uint16_t>(std::min(weight[i] + brick.cover[0][at[i]], kFullWeight));
   else
     for (int i = 0; i < count; ++i) weight[i] = painted(weight[i], brick.cover[0][at[i]]);
-  set_weights(std::span(made.data(), padded), bone, heir, std::span(weight.data(), padded));
+  set_weights(std::span(made.data(), padded), bone, fallback_bone, std::span(weight.data(), padded));
 
   int i = 0;
   if (brick.now.empty())

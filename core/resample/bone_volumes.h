@@ -9,7 +9,7 @@
 // change hands that lie nearest to a border, and where the grid has kept the volumes none does.
 #pragma once
 
-#include "core/resample/mend.h"
+#include "core/resample/preserve_connectivity.h"
 
 namespace limber {
 

@@ -129,7 +129,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
       fem_(std::move(fem)),
       spacing_(tet_spacing(fem_)) {
   const auto meshing = std::chrono::steady_clock::now();
-  MovingTissue& moving = last_.moving;
+  DeformingRegion& moving = last_.moving;
   moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
                          {.margin_mm = kMargin + spacing_,
                           .rim_mm = kRim * spacing_,

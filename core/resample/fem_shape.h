@@ -13,7 +13,7 @@ namespace limber {
 struct FemShape {
   TissueModel model;
   Eigen::MatrixX3d V;  // #V posed nodes, world, mm
-  MovingTissue moving;
+  DeformingRegion moving;
   double reached = 1;  // of the way to the pose
   Pose pose;           // where that is
   MeshReport mesh;

@@ -134,13 +134,13 @@ int nearest_component(const Components& components, const LabelVolume& volume, L
   return found ? component_at(components, volume, *found) : -1;
 }
 
-bool hang_together(const std::array<bool, 27>& marked) {
+bool is_connected_26(const std::array<bool, 27>& marked) {
   unsigned places = 0;
   for (int k = 0; k < 27; ++k) places |= unsigned{marked[k]} << k;
   return bits_hang_together(places);
 }
 
-bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool is_simple_point(const LabelVolume& volume, const glm::ivec3& voxel) {
   const Label own = volume.at(voxel);
   unsigned same = 0;
   for_each_around(volume, voxel, [&](int k, Label label) { same |= unsigned{label == own} << k; });

@@ -43,10 +43,10 @@ int nearest_component(const Components& components, const LabelVolume& volume, L
 // Whether the marked ones of a voxel's surroundings hang together, 26-connected, without the voxel itself; not when
 // none is.
 //   marked  27, x fastest; the middle one counts for nothing
-bool hang_together(const std::array<bool, 27>& marked);
+bool is_connected_26(const std::array<bool, 27>& marked);
 
 // Whether its tissue can spare the voxel: what is left of it around hangs together.
-bool can_spare(const LabelVolume& volume, const glm::ivec3& voxel);
+bool is_simple_point(const LabelVolume& volume, const glm::ivec3& voxel);
 
 // Whether a tissue may have the voxel without two of its parts, or two ends of one, being joined: the label's voxels
 // around it hang together, and there is one.

@@ -143,7 +143,7 @@ class Organs {
 
   bool give(const glm::ivec3& v, Label to) {
     const Label from = posed_.at(v);
-    if (to == 0 || from == to || !can_give(from) || touches_air(posed_, v) || !can_spare(posed_, v) ||
+    if (to == 0 || from == to || !can_give(from) || touches_air(posed_, v) || !is_simple_point(posed_, v) ||
         !can_join(posed_, v, to))
       return false;
     const int leaves = part_of(v), joins = part_beside(v, to);

@@ -167,7 +167,7 @@ class Parting {
       const glm::ivec3 at = v + glm::ivec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       same[k] = posed_.at_or_air(at) == label && part_of(at) == own;
     }
-    return hang_together(same);
+    return is_connected_26(same);
   }
 
   // The component of the neighbours of a tissue, when it is one; a small one beside a large one counts for nothing.

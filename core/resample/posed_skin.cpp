@@ -14,7 +14,8 @@ std::int64_t close_skin(LabelVolume& posed, const std::vector<UnderSkin>& under_
   std::int64_t closed = 0;
   for (const UnderSkin& voxel : under_skin) {
     const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
-    if (voxel.skin == 0 || !flesh[posed.voxels[voxel.at]] || !touches_air(posed, v) || !can_spare(posed, v)) continue;
+    if (voxel.skin == 0 || !flesh[posed.voxels[voxel.at]] || !touches_air(posed, v) || !is_simple_point(posed, v))
+      continue;
     posed.voxels[voxel.at] = voxel.skin;
     ++closed;
   }
@@ -31,7 +32,7 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
     if (given == most) break;
     const glm::ivec3 v = voxel_at(posed.grid, voxel.at);
     const Label below = most_common_around(posed, v, 1, flesh);
-    if (below == 0 || !skin[posed.voxels[voxel.at]] || touches_air(posed, v) || !can_spare(posed, v)) continue;
+    if (below == 0 || !skin[posed.voxels[voxel.at]] || touches_air(posed, v) || !is_simple_point(posed, v)) continue;
     posed.voxels[voxel.at] = below;
     ++given;
   }

@@ -13,9 +13,9 @@
 #include "core/resample/air_pockets.h"
 #include "core/resample/bone_volumes.h"
 #include "core/resample/grey_sampler.h"
-#include "core/resample/mend.h"
 #include "core/resample/organ_volumes.h"
 #include "core/resample/posed_skin.h"
+#include "core/resample/preserve_connectivity.h"
 #include "core/resample/rest_points.h"
 #include "core/resample/skin_at_rest.h"
 #include "core/resample/tissue_volumes.h"
@@ -167,8 +167,8 @@ class PosedVoxels {
       const auto known = origins.find(output_.grid.index(voxel));
       return known != origins.end() ? known->second.rest : rest_point(voxel);
     };
-    posed_.report.mended_voxels += mend(posed_.volume, volume_, labels_.soft, any_rest_point, {&rows_, &rest_rows},
-                                        {&bone_rows_, &bone_rest_rows});
+    posed_.report.mended_voxels += preserve_connectivity(posed_.volume, volume_, labels_.soft, any_rest_point,
+                                                         {&rows_, &rest_rows}, {&bone_rows_, &bone_rest_rows});
   }
 
  private:

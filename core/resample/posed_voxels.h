@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // From the inverse map of a posed body to its voxels: read tile by tile from the volume at rest, then mended where the
-// grid or a stretch tore what was whole (mend.h, bone_volumes.h), and where it is asked for brought back to the volumes
-// that tissues have (tissue_volumes.h).
+// grid or a stretch tore what was whole (preserve_connectivity.h, bone_volumes.h), and where it is asked for brought
+// back to the volumes that tissues have (tissue_volumes.h).
 #pragma once
 
 #include <vector>

@@ -58,7 +58,7 @@ struct DeformReport {
   std::int64_t overlap_voxels = 0;       // posed voxels claimed by cells that are no neighbours at rest
   std::int64_t bone_overlap_voxels = 0;  // posed voxels claimed by two rig bones' bone tissue
   std::int64_t mended_voxels =
-      0;  // given to a neighbouring tissue where the pose had torn it: skin, connected parts (mend.h)
+      0;  // given to a neighbouring tissue where the pose had torn it: skin, connected parts (preserve_connectivity.h)
   std::int64_t new_skin_voxels = 0;            // flesh that a seam or a stretch laid bare, and that is skin now
   std::int64_t filled_air_voxels = 0;          // of hollows that the pose closed or made larger
   std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label

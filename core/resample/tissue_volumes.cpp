@@ -215,7 +215,9 @@ class Exchange {
     return !(touches_air(posed_, v) && skin_[from] != skin_[to]) && may_lose(v) && may_gain(v, to);
   }
 
-  bool may_lose(const glm::ivec3& v) const { return can_spare(posed_, v) && parts_.voxels[part_of(v)] >= kFrozen; }
+  bool may_lose(const glm::ivec3& v) const {
+    return is_simple_point(posed_, v) && parts_.voxels[part_of(v)] >= kFrozen;
+  }
 
   bool may_gain(const glm::ivec3& v, Label label) const {
     return can_join(posed_, v, label) && parts_.voxels[*part_beside(v, label)] >= kFrozen;

@@ -67,7 +67,7 @@ class SeamFinder {
       named_[t.label] = limb_of_tissue(t);
     }
     if (limbs_.empty()) return;
-    held_by_ = bone_holding(volume, tissue, parts, armature);
+    held_by_ = fixed_bone(volume, tissue, parts, armature);
     limb_of_bone_ = limb_of_bones(armature);
     spread_bones();
     find_bridges();

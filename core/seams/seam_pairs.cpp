@@ -103,7 +103,7 @@ std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, 
   if (seams.empty()) return {};
   TissueVoxels parted = tissue;
   parted.set_seams(std::make_shared<const Seams>(seams));
-  const NearestBone nearest = nearest_bone(volume, parted, armature, bone_holding(volume, parted, parts, armature));
+  const NearestBone nearest = nearest_bone(volume, parted, armature, fixed_bone(volume, parted, parts, armature));
   if (progress.cancelled()) throw Cancelled();
   const std::vector<std::string> names = body_parts_of(armature);
   const AffineTransform world = world_from_voxel(volume.grid);

@@ -42,7 +42,7 @@ struct Entries {
     int n = 0;
     for (int i = 0; i < count; ++i)
       if (entry[i].part == part) share[n++] = entry[i].weight;
-    share_out(std::span(share.data(), n), total, std::span(out.data(), n));
+    distribute(std::span(share.data(), n), total, std::span(out.data(), n));
     n = 0;
     for (int i = 0; i < count; ++i)
       if (entry[i].part == part) entry[i].weight = out[n++];
@@ -71,7 +71,8 @@ struct Entries {
     const Entry gone = entry[i];
     remove(i);
     if (sum(gone.part) > 0) scale(gone.part, sum(gone.part) + gone.weight);
-    else if (Entry* heir = largest(gone.part == Part::Other ? Part::Group : Part::Other)) heir->weight += gone.weight;
+    else if (Entry* fallback_bone = largest(gone.part == Part::Other ? Part::Group : Part::Other))
+      fallback_bone->weight += gone.weight;
   }
   Influence influence() const {
     Influence made;
@@ -150,7 +151,7 @@ void sort_influence(Influence& influence) {
 }
 
 // Rounded, the rest to the largest share; cut off where rounding would take more than there is.
-void share_out(std::span<const double> share, int total, std::span<int> out) {
+void distribute(std::span<const double> share, int total, std::span<int> out) {
   double sum = 0;
   std::size_t largest = 0;
   for (std::size_t i = 0; i < share.size(); ++i) {
@@ -208,7 +209,7 @@ int WeightRules::nearest_relative(int bone, std::span<const int> group, bool loc
   return -1;
 }
 
-int WeightRules::heir(int bone, std::span<const int> group) const {
+int WeightRules::fallback_bone(int bone, std::span<const int> group) const {
   const bool other = group.empty() || (group.size() == 1 && group[0] == bone);
   const int found = other ? heir_[bone] : nearest_relative(bone, group, false);
   if (found >= 0) return found;
@@ -249,7 +250,7 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
       if (now == before) return {};
       int other = influence.bone[first ? 1 : 0];
       if (before == kFullWeight) {
-        other = heir(bone);
+        other = fallback_bone(bone);
         if (other < 0) return {false, nearest_relative(bone, {}, true)};
       }
       influence = pair_of(bone, now, other);
@@ -317,7 +318,7 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   if (now == before) return {false, weight > room ? largest_locked(entries) : -1};
 
   if (others == 0) {
-    const int to = heir(*painted, group);
+    const int to = fallback_bone(*painted, group);
     if (to < 0) return {false, nearest_relative(*painted, group, true)};
     entries.add(to, room - now, Part::Other);
   } else {
@@ -333,8 +334,9 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   entries.drop_empty();
   if (entries.count > 4) {
     // The heir is the fifth: the smaller of what is not locked goes.
-    const int painted_least = entries.smallest(Part::Group), heir = entries.smallest(Part::Other);
-    entries.give_up(entries.entry[heir].weight < entries.entry[painted_least].weight ? heir : painted_least);
+    const int painted_least = entries.smallest(Part::Group), fallback_bone = entries.smallest(Part::Other);
+    entries.give_up(entries.entry[fallback_bone].weight < entries.entry[painted_least].weight ? fallback_bone
+                                                                                              : painted_least);
   }
   return changed_to(influence, entries.influence());
 }
@@ -360,7 +362,7 @@ bool WeightRules::blend_own(Influence& influence, std::span<const std::pair<int,
   std::array<double, 4> share{};
   std::array<int, 4> out{};
   for (std::size_t i = 0; i < count; ++i) share[i] = mixed[i].second;
-  share_out(std::span(share.data(), count), kFullWeight, std::span(out.data(), count));
+  distribute(std::span(share.data(), count), kFullWeight, std::span(out.data(), count));
   influence.bone = four(mixed[0].first, mixed[1].first, mixed[2].first, mixed[3].first);
   influence.weight = four(out[0], out[1], out[2], out[3]);
   sort_influence(influence);
@@ -404,7 +406,7 @@ WeightChange WeightRules::blend(Influence& influence, std::span<const std::pair<
   std::array<double, 4> share{};
   std::array<int, 4> out{};
   for (int i = 0; i < most; ++i) share[i] = mixed[i].second;
-  share_out(std::span(share.data(), most), room, std::span(out.data(), most));
+  distribute(std::span(share.data(), most), room, std::span(out.data(), most));
   Entries next;
   for (int i = 0; i < entries.count; ++i)
     if (entries.entry[i].part == Part::Locked) next.entry[next.count++] = entries.entry[i];

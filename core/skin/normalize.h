@@ -50,7 +50,7 @@ class WeightRules {
   // In every voxel.
   bool is_free_everywhere() const { return normalize_ != Normalize::All && !any_locked_; }
   // -1 where every other bone is locked. Not one of `group`.
-  int heir(int bone, std::span<const int> group = {}) const;
+  int fallback_bone(int bone, std::span<const int> group = {}) const;
 
   // The weight of `bone` becomes `weight`, in 1/65535, [0, kFullWeight] (as far as locks leave room).
   WeightChange set(Influence& influence, int bone, int weight) const;
@@ -97,7 +97,7 @@ class WeightRules {
 void sort_influence(Influence& influence);
 
 // Whole numbers in proportion to `share` (not negative, not all zero) that sum to exactly `total`.
-void share_out(std::span<const double> share, int total, std::span<int> out);
+void distribute(std::span<const double> share, int total, std::span<int> out);
 
 // "Forearm is locked"
 std::string lock_message(const Armature& armature, int bone);

@@ -219,11 +219,11 @@ void weights_of(std::span<const Influence> influences, int bone, std::span<std::
   all(influences.data(), influences.size(), key_of_bone(bone), weights.data());
 }
 
-void set_weights(std::span<Influence> influences, int bone, int heir, std::span<const std::uint16_t> weights,
+void set_weights(std::span<Influence> influences, int bone, int fallback_bone, std::span<const std::uint16_t> weights,
                  LaneWidth width) {
   check_groups(influences.size(), weights.size());
   const auto all = width == LaneWidth::Widest && has_avx2() ? set_all_avx2 : set_all<Four>;
-  all(influences.data(), influences.size(), key_of_bone(bone), key_of_bone(heir), weights.data());
+  all(influences.data(), influences.size(), key_of_bone(bone), key_of_bone(fallback_bone), weights.data());
 }
 
 }  // namespace limber

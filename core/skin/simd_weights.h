@@ -20,7 +20,7 @@ void weights_of(std::span<const Influence> influences, int bone, std::span<std::
 
 // In each the weight of `bone` becomes what is asked for; the others make room in proportion.
 //   heir  gets what the bone leaves where it had everything
-void set_weights(std::span<Influence> influences, int bone, int heir, std::span<const std::uint16_t> weights,
+void set_weights(std::span<Influence> influences, int bone, int fallback_bone, std::span<const std::uint16_t> weights,
                  LaneWidth width = LaneWidth::Widest);
 
 }  // namespace limber

@@ -49,7 +49,7 @@ int most_of_region(const SkinWeights& weights, const WeightedBody& body, const E
 // Whether the tree leaves some bone without an heir.
 bool needs_nearby(const WeightedBody& body, const WeightRules& rules) {
   for (int b = 0; b < std::ssize(body.armature.bones); ++b)
-    if (rules.heir(b) < 0) return true;
+    if (rules.fallback_bone(b) < 0) return true;
   return false;
 }
 

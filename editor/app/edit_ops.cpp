@@ -71,7 +71,7 @@ std::vector<Operator> edit_operators() {
        [](Editor& e) { step(e, &History::redo); }, nothing_to_redo},
       {"edit.adjust_last", "Adjust last operation", "", "Edit",
        "Does what was done last again with other numbers, as the same step of the history.",
-       [](Editor& e) { e.last_operation->wanted_at_pointer = true; }, why_not_adjust},
+       [](Editor& e) { e.last_operation->wanted_at_pointer = true; }, why_not_redo},
       {"edit.rename", "Rename", icon::kRename, "Edit",
        "Gives the chosen tissue or bone, or the result that is shown, another name.", rename, nothing_to_rename},
       {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",

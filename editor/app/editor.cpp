@@ -138,7 +138,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
       operators(gather_operators()),
       jobs(kJobsAtOnce, [&host] { host.wake(); }),
       arrangements(preferences.arrangements),
-      handling(std::make_unique<Handling>()),
+      transform_settings(std::make_unique<TransformSettings>()),
       skin(std::make_unique<SkinDisplay>()),
       fem(std::make_unique<FemView>()),
       fem_overlay(std::make_unique<FemOverlay>()),
@@ -357,7 +357,7 @@ void Editor::frame(double time) {
   await_next_frame(*this);
   follow_tour(*this);
   keep_edits(*this);
-  keep_remembered(*this);
+  keep_recent_files(*this);
   ended(*this, "keeping");
   change_dialog();
 

@@ -15,11 +15,11 @@ constexpr double kRestBeforeWriting = 1;  // s
 Path file_of(const Editor& editor) { return editor.folders.config / "remembered.json"; }
 
 void write_changed(Editor& editor) {
-  RememberedOnDisk& disk = editor.remembered_on_disk;
+  RecentFilesOnDisk& disk = editor.recent_files_on_disk;
   disk.changed_at.reset();
-  disk.contents = editor.remembered;
+  disk.contents = editor.recent_files;
   try {
-    write_remembered(editor.remembered, file_of(editor));
+    write_recent_files(editor.recent_files, file_of(editor));
   } catch (const Error& error) {
     if (!disk.failure_told) editor.messages.warn("Recent files cannot be kept", parts_of(error.what()).where);
     disk.failure_told = true;
@@ -28,38 +28,38 @@ void write_changed(Editor& editor) {
 
 }  // namespace
 
-void begin_sitting(Editor& editor, const Folders& folders, std::vector<Path> files) {
+void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files) {
   editor.folders = folders;
   if (!folders.config.empty()) {
     std::string warning;
-    editor.remembered = editor.remembered_on_disk.contents = read_remembered(file_of(editor), warning);
+    editor.recent_files = editor.recent_files_on_disk.contents = read_recent_files(file_of(editor), warning);
     if (const ErrorMessage parts = parts_of(warning); !warning.empty())
       editor.messages.warn(parts.what, parts.what_to_do);
   }
-  editor.remembered_on_disk.named = editor.remembered.recents;
+  editor.recent_files_on_disk.named = editor.recent_files.recents;
   name_recent_operators(editor);
   look_for_leftovers(editor);
-  editor.start_screen = files.empty() && editor.remembered.show_start;
+  editor.start_screen = files.empty() && editor.recent_files.show_start;
   if (editor.start_screen) look_at_recents(editor);
   editor.to_open = std::move(files);
 }
 
-void keep_remembered(Editor& editor) {
-  RememberedOnDisk& disk = editor.remembered_on_disk;
-  if (editor.remembered.recents != disk.named) {
-    disk.named = editor.remembered.recents;
+void keep_recent_files(Editor& editor) {
+  RecentFilesOnDisk& disk = editor.recent_files_on_disk;
+  if (editor.recent_files.recents != disk.named) {
+    disk.named = editor.recent_files.recents;
     name_recent_operators(editor);
     if (editor.start_screen) look_at_recents(editor);
   }
   if (editor.folders.config.empty()) return;
-  if (editor.remembered == disk.contents) return disk.changed_at.reset();
+  if (editor.recent_files == disk.contents) return disk.changed_at.reset();
   if (!disk.changed_at) disk.changed_at = editor.now;
   if (editor.now - *disk.changed_at >= kRestBeforeWriting) write_changed(editor);
   else editor.wake_at(*disk.changed_at + kRestBeforeWriting);
 }
 
-void end_sitting(Editor& editor) {
-  if (!editor.folders.config.empty() && !(editor.remembered == editor.remembered_on_disk.contents))
+void end_editor_session(Editor& editor) {
+  if (!editor.folders.config.empty() && !(editor.recent_files == editor.recent_files_on_disk.contents))
     write_changed(editor);
 }
 

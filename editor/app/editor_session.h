@@ -8,10 +8,10 @@
 namespace limber::editor {
 
 // Before the first frame. With `files` to open there is no start screen.
-void begin_sitting(Editor& editor, const Folders& folders, std::vector<Path> files);
+void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files);
 // Once a frame.
-void keep_remembered(Editor& editor);
+void keep_recent_files(Editor& editor);
 // At the end.
-void end_sitting(Editor& editor);
+void end_editor_session(Editor& editor);
 
 }  // namespace limber::editor

@@ -28,7 +28,7 @@ void play(const StartOptions& options) {
   const auto script = parse_script(read_file(options.script));
   const auto host = open_offscreen(options.size);
   Editor editor(*host, with_options({}, options));
-  begin_sitting(editor, user_folders(), options.files);
+  begin_editor_session(editor, user_folders(), options.files);
   Player player(editor, *host);
   player.step();
   player.play({{0, {"wait-job"}}});
@@ -37,7 +37,7 @@ void play(const StartOptions& options) {
     Editor& editor;
     ~Ending() {
       if (editor.life.session) editor.life.session->discard();
-      end_sitting(editor);
+      end_editor_session(editor);
     }
   } ending{editor};
   player.play(script, options.script.parent_path());
@@ -49,7 +49,7 @@ void run_in_window(const StartOptions& options) {
   Editor editor(*host, with_options(read_preferences(preferences_path(), problem), options));
   editor.preferences_path = preferences_path();
   if (!problem.empty()) editor.messages.warn("Preferences could not be read", problem);
-  begin_sitting(editor, user_folders(), options.files);
+  begin_editor_session(editor, user_folders(), options.files);
   while (!editor.quit) {
     const bool minimized = host->size().x == 0 || host->size().y == 0;
     host->wait(minimized ? kMinimizedRest : editor.rest());
@@ -59,7 +59,7 @@ void run_in_window(const StartOptions& options) {
     }
     editor.frame(steady_seconds());
   }
-  end_sitting(editor);
+  end_editor_session(editor);
 }
 
 }  // namespace

@@ -6,11 +6,12 @@ namespace limber::editor {
 
 namespace {
 
-Operator to_workspace(const char* id, const char* label, const char* icon, const char* sentence, Workspace workspace) {
-  return {id,       label,
-          icon,     "Workspace",
-          sentence, [workspace](Editor& e) { e.workspace = workspace; },
-          nullptr,  [workspace](const Editor& e) { return e.workspace == workspace; }};
+Operator to_workspace(const char* id, const char* label, const char* icon, const char* description,
+                      Workspace workspace) {
+  return {id,          label,
+          icon,        "Workspace",
+          description, [workspace](Editor& e) { e.workspace = workspace; },
+          nullptr,     [workspace](const Editor& e) { return e.workspace == workspace; }};
 }
 
 Operator by_step(const char* id, const char* label, int step) {

@@ -38,7 +38,7 @@ struct ImGuiContext;
 namespace limber::editor {
 
 struct Timeline;
-struct Handling;
+struct TransformSettings;
 struct LastOperation;
 struct SkinDisplay;
 struct FemView;
@@ -133,8 +133,8 @@ struct Editor : Ui {
 
   // Between sittings
   Folders folders;  // empty ones: nothing is kept
-  Remembered remembered;
-  RememberedOnDisk remembered_on_disk;
+  RecentFiles recent_files;
+  RecentFilesOnDisk recent_files_on_disk;
   std::map<Path, RecentFacts> recent_facts;
   Pictures pictures;
 
@@ -164,13 +164,13 @@ struct Editor : Ui {
   } edited_number;  // while it is dragged or typed; the document changes once, at the end
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
-  std::unique_ptr<Handling> handling;  // of bones; never null
-  std::unique_ptr<SkinDisplay> skin;   // of skin_display.h; never null
-  std::string open_menu;               // of the top bar
-  std::string open_popup;              // a menu of menus.h wanted at the pointer in the next frame; "" for none
-  std::string shown_popup;             // the one that is open
-  bool open_pick_list = false;         // likewise
-  std::vector<Pickable> pick_list;     // what lies under the pointer, nearest first
+  std::unique_ptr<TransformSettings> transform_settings;  // of bones; never null
+  std::unique_ptr<SkinDisplay> skin;                      // of skin_display.h; never null
+  std::string open_menu;                                  // of the top bar
+  std::string open_popup;           // a menu of menus.h wanted at the pointer in the next frame; "" for none
+  std::string shown_popup;          // the one that is open
+  bool open_pick_list = false;      // likewise
+  std::vector<Pickable> pick_list;  // what lies under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
   std::unique_ptr<FemView> fem;                // of fem_live_view.h; never null

@@ -39,7 +39,9 @@ const Operator* find_operator(const Editor& editor, std::string_view id) {
   return found == editor.operators.end() ? nullptr : &*found;
 }
 
-std::string why_not(const Editor& editor, const Operator& op) { return op.why_not ? op.why_not(editor) : ""; }
+std::string disabled_reason(const Editor& editor, const Operator& op) {
+  return op.disabled_reason ? op.disabled_reason(editor) : "";
+}
 
 bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act) {
   try {
@@ -58,7 +60,8 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
 
 void run(Editor& editor, const Operator& op) {
   editor.touch();
-  if (const std::string reason = why_not(editor, op); !reason.empty()) return editor.messages.info(op.label, reason);
+  if (const std::string reason = disabled_reason(editor, op); !reason.empty())
+    return editor.messages.info(op.label, reason);
   if (!goes_on_while_playing(op)) editor.before_change(editor);
   if (attempt(editor, op.label, op.run)) note_use(editor, op);
 }

@@ -13,21 +13,21 @@ namespace limber::editor {
 struct Editor;
 
 struct Operator {
-  std::string id;         // "view.frame_all"
-  std::string label;      // "Frame all"; ends in "..." when it asks for more
-  const char* icon = "";  // of icons.h
-  std::string place;      // the menu it belongs to, as the search shows it: "View"
-  std::string sentence;   // what it does
+  std::string id;           // "view.frame_all"
+  std::string label;        // "Frame all"; ends in "..." when it asks for more
+  const char* icon = "";    // of icons.h
+  std::string category;     // the menu it belongs to, as the search shows it: "View"
+  std::string description;  // what it does
   std::function<void(Editor&)> run;
-  std::function<std::string(const Editor&)> why_not;  // why it cannot run; "" or no function: it can
-  std::function<bool(const Editor&)> checked;         // switches: whether it is on
+  std::function<std::string(const Editor&)> disabled_reason;  // why it cannot run; "" or no function: it can
+  std::function<bool(const Editor&)> checked;                 // switches: whether it is on
 };
 
 // All operators, in the order of the menus.
 std::vector<Operator> gather_operators();
 
 const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr for none
-std::string why_not(const Editor& editor, const Operator& op);             // "" when it can run
+std::string disabled_reason(const Editor& editor, const Operator& op);     // "" when it can run
 // Runs it, or says why not.
 void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);

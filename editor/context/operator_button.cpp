@@ -8,8 +8,8 @@
 namespace limber::editor {
 
 void operator_tooltip(Editor& editor, const Operator& op, const Rect& rect) {
-  const std::string reason = why_not(editor, op);
-  tooltip(editor, rect, op.label, reason.empty() ? op.sentence : op.sentence + "\n" + reason,
+  const std::string reason = disabled_reason(editor, op);
+  tooltip(editor, rect, op.label, reason.empty() ? op.description : op.description + "\n" + reason,
           editor.keymap.chord_of(op.id, contexts(editor)));
 }
 
@@ -17,7 +17,7 @@ bool operator_button(Editor& editor, std::string_view id, const Rect& rect, cons
                      ButtonStyle style) {
   const Operator* op = find_operator(editor, id);
   if (!op) return false;
-  const std::string reason = why_not(editor, *op);
+  const std::string reason = disabled_reason(editor, *op);
   const bool clicked = button(editor, std::string(id), rect, {op->icon, label, style, reason.empty()});
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *op, rect);
   if (clicked) run(editor, *op);
@@ -28,7 +28,7 @@ void operator_menu_item(Editor& editor, std::string_view id) {
   const Operator* op = find_operator(editor, id);
   if (!op) return;
   const auto chord = editor.keymap.chord_of(op->id, contexts(editor));
-  const bool enabled = why_not(editor, *op).empty(), on = op->checked && op->checked(editor);
+  const bool enabled = disabled_reason(editor, *op).empty(), on = op->checked && op->checked(editor);
   const Look& look = editor.look;
   const std::vector<std::string> caps = chord ? key_caps(*chord) : std::vector<std::string>{};
   const float width = std::max(look.px(190), text_size(look.fonts.regular, op->label).x + look.px(34 + 28) +
@@ -58,7 +58,7 @@ void operator_menu_item(Editor& editor, std::string_view id) {
 void operator_box(Editor& editor, std::string_view id, const Rect& rect, const std::string& label) {
   const Operator& op = *find_operator(editor, id);
   const Look& look = editor.look;
-  const bool can_run = why_not(editor, op).empty(), on = op.checked(editor);
+  const bool can_run = disabled_reason(editor, op).empty(), on = op.checked(editor);
   const Pressed pressed = press_area(editor, label, rect, can_run);
   const float side = look.px(16), y = std::round(rect.centre().y - side / 2);
   checkbox_mark(editor, {{rect.low.x, y}, {rect.low.x + side, y + side}}, on, pressed.hovered && can_run);

@@ -20,7 +20,7 @@ struct Recent {
   bool operator==(const Recent&) const = default;
 };
 
-struct Remembered {
+struct RecentFiles {
   std::vector<Recent> recents;          // latest first
   std::map<std::string, Path> folders;  // of file dialogs, by purpose
   std::vector<Path> recent_folders;     // of file dialogs, latest first
@@ -28,25 +28,25 @@ struct Remembered {
   bool hidden_files = false;
   int tour_step = 0;
 
-  bool operator==(const Remembered&) const = default;
+  bool operator==(const RecentFiles&) const = default;
 };
 
 // What of it is on the disk.
-struct RememberedOnDisk {
-  Remembered contents;
+struct RecentFilesOnDisk {
+  RecentFiles contents;
   std::vector<Recent> named;         // those that have operators
   std::optional<double> changed_at;  // the editor's time
   bool failure_told = false;
 };
 
-void add_recent(Remembered& remembered, const Path& path, std::int64_t time);
-void add_recent_folder(Remembered& remembered, const Path& folder);
-void forget_recent(Remembered& remembered, const Path& path);
+void add_recent(RecentFiles& recent_files, const Path& path, std::int64_t time);
+void add_recent_folder(RecentFiles& recent_files, const Path& folder);
+void forget_recent(RecentFiles& recent_files, const Path& path);
 
 // `warning` says why a file could not be used; it is then set aside as NAME.damaged. A missing file is no failure.
-Remembered read_remembered(const Path& file, std::string& warning);
+RecentFiles read_recent_files(const Path& file, std::string& warning);
 // Throws Error when it cannot be written.
-void write_remembered(const Remembered& remembered, const Path& file);
+void write_recent_files(const RecentFiles& recent_files, const Path& file);
 
 // Text of a file of settings that should be a JSON object with this schema; "" when there is none. A damaged one is set
 // aside.

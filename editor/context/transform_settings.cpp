@@ -14,7 +14,7 @@ glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone) {
   return glm::mat3_cast(posed_from_rest(armature, pose)[bone].rotation) * rest_axes(armature.bones[bone]);
 }
 
-glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const SeenFrom& view) {
+glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const ViewProjection& view) {
   const int parent = armature.bones[bone].parent;
   switch (space) {
     case Space::Global: break;

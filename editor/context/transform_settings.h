@@ -20,9 +20,9 @@ enum class Snap { Steps, Voxel, Joint, BoneMiddle };
 
 struct KnownRigCheck;
 struct ProposedJoint;
-struct SeenFrom;
+struct ViewProjection;
 
-struct Handling {
+struct TransformSettings {
   enum class Part { Whole, Head, Tail };
 
   Space space = Space::Global;
@@ -59,7 +59,7 @@ struct Handling {
 };
 
 // Columns x, y, z of a space for a bone of a posed rig. A root's parent is the world.
-glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const SeenFrom& view);
+glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const ViewProjection& view);
 
 // Where the bone's own axes point in that pose: columns x, y (along the bone), z.
 glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone);

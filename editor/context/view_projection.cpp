@@ -7,7 +7,9 @@
 
 namespace limber::editor {
 
-SeenFrom::SeenFrom(const Editor& editor, const ViewPlace& at) : place(at), camera(editor.views->body.camera) {
+ViewProjection::ViewProjection(const Editor& editor, const ViewPlace& at)
+    : place(at),
+      camera(editor.views->body.camera) {
   if (place.id == ViewId::Body) {
     right = camera.world_from_view * glm::dvec3(1, 0, 0);
     up = camera.world_from_view * glm::dvec3(0, 1, 0);
@@ -20,7 +22,7 @@ SeenFrom::SeenFrom(const Editor& editor, const ViewPlace& at) : place(at), camer
   towards_eye = glm::cross(right, up);
 }
 
-std::optional<glm::dvec2> SeenFrom::pixel_of(const glm::dvec3& point) const {
+std::optional<glm::dvec2> ViewProjection::pixel_of(const glm::dvec3& point) const {
   const glm::dvec2 corner(place.rect.low);
   if (place.id != ViewId::Body) {
     const glm::dvec3 offset = (point - slice.centre) / slice.millimetres_per_pixel;
@@ -31,24 +33,24 @@ std::optional<glm::dvec2> SeenFrom::pixel_of(const glm::dvec3& point) const {
   return corner + pixel;
 }
 
-bool SeenFrom::shows(const glm::dvec3& point) const {
+bool ViewProjection::shows(const glm::dvec3& point) const {
   constexpr double kDepth = 20;  // mm
   return place.id == ViewId::Body || std::abs(glm::dot(point - slice.centre, towards_eye)) <= kDepth;
 }
 
-render::Ray SeenFrom::ray(const glm::dvec2& pixel) const {
+render::Ray ViewProjection::ray(const glm::dvec2& pixel) const {
   const glm::dvec2 inside = pixel - glm::dvec2(place.rect.low);
   if (place.id == ViewId::Body) return render::ray_through(camera, inside, glm::ivec2(place.rect.size()));
   const glm::dvec2 off = (inside - glm::dvec2(place.rect.size()) * 0.5) * slice.millimetres_per_pixel;
   return {slice.centre + right * off.x - up * off.y, -towards_eye};
 }
 
-glm::dvec3 SeenFrom::direction_to_eye(const glm::dvec3& point) const {
+glm::dvec3 ViewProjection::direction_to_eye(const glm::dvec3& point) const {
   if (place.id != ViewId::Body || camera.projection == render::Projection::Orthographic) return towards_eye;
   return glm::normalize(render::eye_of(camera) - point);
 }
 
-double SeenFrom::millimetres_per_pixel(const glm::dvec3& point) const {
+double ViewProjection::millimetres_per_pixel(const glm::dvec3& point) const {
   if (place.id != ViewId::Body) return slice.millimetres_per_pixel;
   const double depth = camera.projection == render::Projection::Orthographic
                            ? camera.distance
@@ -56,8 +58,8 @@ double SeenFrom::millimetres_per_pixel(const glm::dvec3& point) const {
   return 2 * depth * std::tan(camera.field_of_view / 2) / std::floor(place.rect.height());
 }
 
-std::optional<glm::dvec3> SeenFrom::in_plane(const glm::dvec2& pixel, const glm::dvec3& point,
-                                             const glm::dvec3& normal) const {
+std::optional<glm::dvec3> ViewProjection::in_plane(const glm::dvec2& pixel, const glm::dvec3& point,
+                                                   const glm::dvec3& normal) const {
   const render::Ray sight = ray(pixel);
   const double steep = glm::dot(sight.direction, normal);
   if (std::abs(steep) < 1e-9) return std::nullopt;
@@ -67,8 +69,8 @@ std::optional<glm::dvec3> SeenFrom::in_plane(const glm::dvec2& pixel, const glm:
   return sight.origin + far * sight.direction;
 }
 
-std::optional<double> SeenFrom::along_line(const glm::dvec2& pixel, const glm::dvec3& point,
-                                           const glm::dvec3& direction) const {
+std::optional<double> ViewProjection::along_line(const glm::dvec2& pixel, const glm::dvec3& point,
+                                                 const glm::dvec3& direction) const {
   const render::Ray sight = ray(pixel);
   const glm::dvec3 off = point - sight.origin;
   const double b = glm::dot(direction, sight.direction), d = glm::dot(direction, off),
@@ -77,10 +79,10 @@ std::optional<double> SeenFrom::along_line(const glm::dvec2& pixel, const glm::d
   return (b * e - d) / denominator;
 }
 
-std::optional<SeenFrom> body_seen(const Editor& editor) {
+std::optional<ViewProjection> body_seen(const Editor& editor) {
   const Rect* rect = editor.layout.place_of(ViewId::Body);
   if (!rect) return std::nullopt;
-  return SeenFrom(editor, {ViewId::Body, *rect});
+  return ViewProjection(editor, {ViewId::Body, *rect});
 }
 
 }  // namespace limber::editor

@@ -12,8 +12,8 @@ namespace limber::editor {
 
 struct Editor;
 
-struct SeenFrom {
-  SeenFrom(const Editor& editor, const ViewPlace& place);
+struct ViewProjection {
+  ViewProjection(const Editor& editor, const ViewPlace& place);
 
   std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // nothing behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
@@ -36,6 +36,6 @@ struct SeenFrom {
 };
 
 // The 3D view; nothing when it is not shown.
-std::optional<SeenFrom> body_seen(const Editor& editor);
+std::optional<ViewProjection> body_seen(const Editor& editor);
 
 }  // namespace limber::editor

@@ -27,7 +27,7 @@ bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
     const bool changed = choice_field(editor, rect, field.choices, field.chosen);
     if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) &&
         !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId))
-      tooltip(editor, rect, field.label, field.sentence);
+      tooltip(editor, rect, field.label, field.description);
     return changed;
   }
   const int before = field.chosen;
@@ -37,7 +37,7 @@ bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
     if (button(editor, field.choices[i], place,
                {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain}))
       field.chosen = i;
-    if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.sentence);
+    if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.description);
   }
   return field.chosen != before;
 }
@@ -78,8 +78,8 @@ float height_of(const Look& look, const FormField& field) {
 
 void Form::draw(Editor& editor) {
   const Look& look = editor.look;
-  const float sentence =
-      height_of_wrapped(look.fonts.regular, request_.sentence, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
+  const float description =
+      height_of_wrapped(look.fonts.regular, request_.description, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
   // Nothing moves under a pressed button.
   if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
     problems_.clear();
@@ -91,14 +91,14 @@ void Form::draw(Editor& editor) {
   const float said = std::max(
       52.0f, 20 + height_of_wrapped(look.fonts.small, words_, look.px(kWidth - 36 - 24), kMostLines) / look.scale);
   Rect rect = begin_dialog(editor, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0),
-                           36 + 18 + sentence + fields + said + 28 + 18);
+                           36 + 18 + description + fields + said + 28 + 18);
   if (request_.picture) {
     const float left = rect.high.x - look.px(kPicture);
     request_.picture(editor, {{left, rect.low.y}, rect.high}, request_.fields);
     rect.high.x = left - look.px(18);
   }
-  put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.sentence, 2);
-  float y = rect.low.y + look.px(sentence);
+  put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.description, 2);
+  float y = rect.low.y + look.px(description);
   for (std::size_t i = 0; i < request_.fields.size(); ++i) {
     FormField& field = request_.fields[i];
     const bool typed_into = field.kind == FormField::Kind::Text || field.kind == FormField::Kind::Number;
@@ -146,7 +146,7 @@ void Form::draw(Editor& editor) {
   const Rect primary{{rect.high.x - width, low}, rect.high};
   const bool pressed = button(editor, request_.action, primary, action);
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-    tooltip(editor, primary, request_.action, ready ? request_.sentence : problem,
+    tooltip(editor, primary, request_.action, ready ? request_.description : problem,
             Chord{Chord::Kind::Key, {}, Key::Return});
   if (button(editor, "Cancel", {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}},
              {"", "Cancel"}))
@@ -155,7 +155,7 @@ void Form::draw(Editor& editor) {
 
   if (!(pressed || std::exchange(accept_, false)) || !ready) return;
   editor.close_dialog();
-  attempt(editor, request_.title, [this](Editor& e) { act_adjustably(e, request_.fields, request_.act); });
+  attempt(editor, request_.title, [this](Editor& e) { act_and_allow_redo(e, request_.fields, request_.act); });
 }
 
 }  // namespace
@@ -181,13 +181,14 @@ bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_w
   else
     committed =
         judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, field.label, field.sentence + "\nDrag it, or click it and type.");
+  if (ImGui::IsItemHovered())
+    tooltip(editor, rect, field.label, field.description + "\nDrag it, or click it and type.");
   return committed;
 }
 
-FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format,
-                    const char* unit) {
-  FormField field{std::move(label), std::move(sentence)};
+FormField number_of(std::string label, std::string description, double value, double low, double high,
+                    const char* format, const char* unit) {
+  FormField field{std::move(label), std::move(description)};
   field.value = value;
   field.low = low;
   field.high = high;
@@ -196,15 +197,15 @@ FormField number_of(std::string label, std::string sentence, double value, doubl
   return field;
 }
 
-FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen) {
-  FormField field{std::move(label), std::move(sentence), FormField::Kind::Choice};
+FormField choice_of(std::string label, std::string description, std::vector<std::string> choices, int chosen) {
+  FormField field{std::move(label), std::move(description), FormField::Kind::Choice};
   field.choices = std::move(choices);
   field.chosen = chosen;
   return field;
 }
 
-FormField text_of(std::string label, std::string sentence, std::string text) {
-  FormField field{std::move(label), std::move(sentence), FormField::Kind::Text};
+FormField text_of(std::string label, std::string description, std::string text) {
+  FormField field{std::move(label), std::move(description), FormField::Kind::Text};
   field.text = std::move(text);
   return field;
 }

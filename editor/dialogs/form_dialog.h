@@ -13,7 +13,7 @@ namespace limber::editor {
 
 struct FormField {
   std::string label;
-  std::string sentence;  // its tool tip
+  std::string description;  // its tool tip
 
   enum class Kind { Number, Choice, Text, Fact } kind = Kind::Number;
   double value = 0, low = 0, high = 1;  // of a number
@@ -23,11 +23,11 @@ struct FormField {
   int chosen = 0;
   std::string text;  // of a text; of a fact, which cannot be changed
 };
-FormField number_of(std::string label, std::string sentence, double value, double low, double high, const char* format,
-                    const char* unit = "");
-FormField choice_of(std::string label, std::string sentence, std::vector<std::string> choices, int chosen = 0);
+FormField number_of(std::string label, std::string description, double value, double low, double high,
+                    const char* format, const char* unit = "");
+FormField choice_of(std::string label, std::string description, std::vector<std::string> choices, int chosen = 0);
 
-FormField text_of(std::string label, std::string sentence, std::string text);
+FormField text_of(std::string label, std::string description, std::string text);
 FormField fact_of(std::string label, std::string text);
 
 // Nothing is wrong, but the fields ask for nothing yet.
@@ -48,8 +48,8 @@ bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_w
 // typed into has the keyboard.
 struct FormRequest {
   std::string title;
-  std::string sentence;  // what it does, above the fields
-  std::string action;    // the primary button's word
+  std::string description;  // what it does, above the fields
+  std::string action;       // the primary button's word
   std::vector<FormField> fields;
   // Below the fields, anew whenever they change: what will come out of it. Throws Error for what cannot be done: shown
   // in place of it, and the button waits. So it does without a warning where a NotYet is thrown.

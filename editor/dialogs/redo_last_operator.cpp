@@ -3,13 +3,13 @@
 
 namespace limber::editor {
 
-void act_adjustably(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
-                    const std::function<void(Editor&)>& first) {
+void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
+                        const std::function<void(Editor&)>& first) {
   LastOperation done{.fields = fields,
                      .shown = fields,
                      .act = act,
                      .selection = editor.selection,
-                     .part = editor.handling->part,
+                     .part = editor.transform_settings->part,
                      .unfolded = editor.last_operation->unfolded};
   const History& history = editor.history;
   const std::int64_t before = history.revision();
@@ -23,7 +23,7 @@ void act_adjustably(Editor& editor, const std::vector<FormField>& fields, const 
   *editor.last_operation = std::move(done);
 }
 
-std::string why_not_adjust(const Editor& editor) {
+std::string why_not_redo(const Editor& editor) {
   const LastOperation& last = *editor.last_operation;
   if (editor.modal) return "Finish what you are doing first";
   if (!last.label.empty() && last.revision == editor.history.revision()) return "";
@@ -31,14 +31,14 @@ std::string why_not_adjust(const Editor& editor) {
   return editor.history.steps()[editor.history.position()].label + " has nothing to adjust";
 }
 
-void adjust(Editor& editor, const std::vector<FormField>& fields) {
-  if (const std::string why = why_not_adjust(editor); !why.empty())
+void redo_last_operator(Editor& editor, const std::vector<FormField>& fields) {
+  if (const std::string why = why_not_redo(editor); !why.empty())
     return editor.messages.info("Adjust last operation", why);
   LastOperation& last = *editor.last_operation;
   const Selection selection = editor.selection;
   const bool taken_back = last.made_a_step && editor.history.undo();
   editor.selection = last.selection;
-  editor.handling->part = last.part;
+  editor.transform_settings->part = last.part;
   const std::int64_t before = editor.history.revision();
   editor.touch();
   if (!attempt(editor, last.label, [&](Editor& e) { last.act(e, fields); })) {

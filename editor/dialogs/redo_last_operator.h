@@ -25,7 +25,7 @@ struct LastOperation {
   bool made_a_step = true;     // not where its numbers come to nothing
 
   Selection selection;  // before it
-  Handling::Part part = Handling::Part::Whole;
+  TransformSettings::Part part = TransformSettings::Part::Whole;
 
   bool unfolded = false;  // its box in the view
   bool wanted_at_pointer = false;
@@ -33,13 +33,13 @@ struct LastOperation {
 
 // Acts, and may do so again where that made one step.
 //   first  what it does this time, where that is not the act with these fields
-void act_adjustably(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
-                    const std::function<void(Editor&)>& first = {});
+void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
+                        const std::function<void(Editor&)>& first = {});
 
 // Why there is nothing to adjust now; "" where there is.
-std::string why_not_adjust(const Editor& editor);
+std::string why_not_redo(const Editor& editor);
 // What is thrown becomes a message, and all stays as it was.
-void adjust(Editor& editor, const std::vector<FormField>& fields);
+void redo_last_operator(Editor& editor, const std::vector<FormField>& fields);
 
 // At the lower left of a view.
 void draw_last_operation(Editor& editor, const Rect& view);

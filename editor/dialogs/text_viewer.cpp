@@ -3,6 +3,9 @@
 
 #include <utility>
 
+#include "core/export/exporter.h"
+#include "core/paint/brush_rule.h"
+#include "core/volume_io/volume_format.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/ui/asset_path.h"
 #include "editor/ui/markdown.h"
@@ -13,6 +16,23 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 760, kHeight = 600, kChapters = 200, kMargin = 22;
+
+}  // namespace
+
+std::string with_tables(std::string text) {
+  std::string brushes;
+  for (const BrushRule& rule : brush_rules())
+    brushes += (brushes.empty() ? "" : " ") + rule.name + ": " + rule.description;
+  for (const auto& [id, words] : {std::pair<std::string, std::string>{"{table.volume_formats}", readable_formats()},
+                                  {"{table.volume_endings}", writable_endings()},
+                                  {"{table.exporters}", exporter_endings()},
+                                  {"{table.brushes}", brushes}})
+    for (std::size_t place = 0; (place = text.find(id, place)) != std::string::npos; place += words.size())
+      text.replace(place, id.size(), words);
+  return text;
+}
+
+namespace {
 
 class Reader final : public Dialog {
  public:
@@ -148,7 +168,7 @@ class Reader final : public Dialog {
 }  // namespace
 
 std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name) {
-  return std::make_unique<Reader>(title, read_file(asset(asset_name)));
+  return std::make_unique<Reader>(title, with_tables(read_file(asset(asset_name))));
 }
 
 }  // namespace limber::editor

@@ -12,4 +12,7 @@ namespace limber::editor {
 // `asset_name`: a Markdown file of the assets. Throws Error when it is missing.
 std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name);
 
+// A document with the rows of the program's tables, as words, in place of "{table.volume_formats}" and the like.
+std::string with_tables(std::string text);
+
 }  // namespace limber::editor

@@ -51,8 +51,8 @@ std::vector<Place> places_of(const Editor& editor) {
   const auto add_recent = [&](const Path& folder) {
     if (places.size() < most) add(icon::kHistory, folder.filename().string(), folder);
   };
-  for (const Path& folder : editor.remembered.recent_folders) add_recent(folder);
-  for (const Recent& one : editor.remembered.recents) add_recent(one.path.parent_path());
+  for (const Path& folder : editor.recent_files.recent_folders) add_recent(folder);
+  for (const Recent& one : editor.recent_files.recents) add_recent(one.path.parent_path());
   return places;
 }
 

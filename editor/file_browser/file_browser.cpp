@@ -43,8 +43,8 @@ FileBrowser::FileBrowser(Editor& editor, FileRequest request)
       places_(places_of(editor)),
       name_(request_.name) {
   if (request_.kind != FileRequest::Kind::OpenFolder) request_.filters.push_back({"All files", {}});
-  const auto last = editor.remembered.folders.find(request_.purpose);
-  Path begin = last != editor.remembered.folders.end() ? last->second : request_.folder;
+  const auto last = editor.recent_files.folders.find(request_.purpose);
+  Path begin = last != editor.recent_files.folders.end() ? last->second : request_.folder;
   if (begin.empty() || !is_folder(begin))
     begin = editor.project_path.empty() ? Path() : editor.project_path.parent_path();
   if (begin.empty() || !is_folder(begin)) begin = home_folder();
@@ -99,7 +99,7 @@ void FileBrowser::arrange_rows(Editor& editor) {
   DirectoryView view{.search = saving()          ? ""
                                : path_is_typed() ? ""
                                                  : search_,
-                     .hidden = editor.remembered.hidden_files,
+                     .hidden = editor.recent_files.hidden_files,
                      .folders_only = folders_only(),
                      .by = by_,
                      .falling = falling_};
@@ -180,7 +180,7 @@ void FileBrowser::go_up(Editor& editor) {
 }
 
 void FileBrowser::toggle_hidden(Editor& editor) {
-  editor.remembered.hidden_files = !editor.remembered.hidden_files;
+  editor.recent_files.hidden_files = !editor.recent_files.hidden_files;
   changed_ = true;
 }
 
@@ -192,8 +192,8 @@ void FileBrowser::leave(Editor& editor) {
 
 void FileBrowser::finish(Editor& editor, const Path& path) {
   const Path folder = is_folder(path) && folders_only() ? path : path.parent_path();
-  editor.remembered.folders[request_.purpose] = folder;
-  add_recent_folder(editor.remembered, folder);
+  editor.recent_files.folders[request_.purpose] = folder;
+  add_recent_folder(editor.recent_files, folder);
   const auto act = request_.chosen;
   editor.close_dialog();
   editor.touch();
@@ -266,8 +266,8 @@ void FileBrowser::open_row(Editor& editor, int index) {
 }
 
 void FileBrowser::finish_folder(Editor& editor) {
-  editor.remembered.folders[request_.purpose] = folder_;
-  add_recent_folder(editor.remembered, folder_);
+  editor.recent_files.folders[request_.purpose] = folder_;
+  add_recent_folder(editor.recent_files, folder_);
   const auto act = request_.chosen;
   editor.close_dialog();
   editor.touch();

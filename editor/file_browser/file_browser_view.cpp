@@ -284,7 +284,7 @@ void FileBrowser::draw_foot(Editor& editor, const Rect& rect) {
   if (ImGui::IsItemHovered())
     tooltip(editor, {{x, low}, {x + look.px(30), high}}, "New folder", "Makes a folder in the one that is shown.");
   x += look.px(34);
-  bool hidden = editor.remembered.hidden_files;
+  bool hidden = editor.recent_files.hidden_files;
   if (checkbox(editor, "Hidden files", {{x, low}, {x + look.px(104), high}}, "Hidden files", hidden))
     toggle_hidden(editor);
   x = rect.low.x + look.px(kPlaces + 10);

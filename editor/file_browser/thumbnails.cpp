@@ -44,7 +44,7 @@ void keep_thumbnail(Editor& editor, const Path& path) {
 }
 
 void look_at_recents(Editor& editor) {
-  start_task(editor, "", [recents = editor.remembered.recents, cache = editor.folders.cache](Progress&) -> Finish {
+  start_task(editor, "", [recents = editor.recent_files.recents, cache = editor.folders.cache](Progress&) -> Finish {
     auto facts = std::make_shared<std::map<Path, RecentFacts>>();
     for (std::size_t i = 0; i < std::min<std::size_t>(recents.size(), 8); ++i) {
       const Path& path = recents[i].path;

@@ -19,7 +19,7 @@ std::string stem_of(const Editor& editor) {
 }
 
 struct ExportFacts {
-  const char *id, *label, *sentence;
+  const char *id, *label, *description;
   ExportKind kind;
   std::vector<FileFilter> filters;  // the first one's first end is proposed
   const char* suffix;               // of the proposed name
@@ -33,7 +33,7 @@ Operator export_operator(const ExportFacts& facts) {
           facts.label,
           icon::kExport,
           "File",
-          facts.sentence,
+          facts.description,
           [facts](Editor& e) {
             browse(e, {.purpose = "export",
                        .title = title_of(facts.label),
@@ -47,13 +47,13 @@ Operator export_operator(const ExportFacts& facts) {
           [kind = facts.kind](const Editor& e) { return why_not_export(e, kind); }};
 }
 
-Operator picture_operator(const char* id, const char* label, const char* sentence, const char* suffix,
+Operator picture_operator(const char* id, const char* label, const char* description, const char* suffix,
                           void (*act)(Editor&, const Path&)) {
   return {id,
           label,
           icon::kCamera,
           "File",
-          sentence,
+          description,
           [label, suffix, act](Editor& e) {
             browse(e, {.purpose = "picture",
                        .title = title_of(label),

@@ -93,8 +93,7 @@ std::vector<Operator> file_operators() {
       {"file.save_copy", "Save a copy...", "", "File",
        "Writes the project under another name and goes on with this one.", save_copy, nothing_open},
       {"help.tour", "Tour", icon::kTour, "Help", "Shows the editor on a sample, step by step.", start_tour},
-      {"file.recover", "Recover...", icon::kHistory, "File", "Brings back edits of a sitting that did not end well.",
-       recover_latest,
+      {"file.recover", "Recover...", icon::kHistory, "File", "Recovers unsaved changes after a crash.", recover_latest,
        [](const Editor& e) {
          return e.life.recoverable.empty() ? std::string("There is nothing to recover") : std::string();
        }},
@@ -104,8 +103,8 @@ std::vector<Operator> file_operators() {
 
 void name_recent_operators(Editor& editor) {
   std::erase_if(editor.operators, [](const Operator& op) { return op.id.starts_with("file.recent_"); });
-  for (int i = 0; i < std::min<int>(kRecentOperators, std::ssize(editor.remembered.recents)); ++i) {
-    const Path path = editor.remembered.recents[i].path;
+  for (int i = 0; i < std::min<int>(kRecentOperators, std::ssize(editor.recent_files.recents)); ++i) {
+    const Path path = editor.recent_files.recents[i].path;
     editor.operators.push_back({"file.recent_" + std::to_string(i + 1), path.filename().string(), icon::kHistory,
                                 "File", "Opens " + short_path(path) + ".",
                                 [path](Editor& e) { open_files(e, {path}); }});

@@ -327,7 +327,7 @@ void open_volume(Editor& editor, const Path& path, Then then) {
                                  };
                                  const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
                                    warn_of(ed, path, warnings);
-                                   add_recent(ed.remembered, path, std::time(nullptr));
+                                   add_recent(ed.recent_files, path, std::time(nullptr));
                                    replace_project(ed, opened);
                                  };
                                  return [take, path, read = std::move(read)](Editor& ed) {

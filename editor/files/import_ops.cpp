@@ -13,17 +13,17 @@ namespace limber::editor {
 namespace {
 
 struct ImportFacts {
-  const char *id, *label, *sentence;
+  const char *id, *label, *description;
   FileKind kind;
   FileFilter filter;
 };
 
-Operator import_operator(const ImportFacts& facts, std::string (*why_not)(const Editor&)) {
+Operator import_operator(const ImportFacts& facts, std::string (*disabled_reason)(const Editor&)) {
   return {facts.id,
           facts.label,
           icon::kImport,
           "File",
-          facts.sentence,
+          facts.description,
           [facts](Editor& e) {
             browse(e, {.purpose = facts.id,
                        .title = std::string("Import: ") + facts.label,
@@ -35,7 +35,7 @@ Operator import_operator(const ImportFacts& facts, std::string (*why_not)(const 
                          kind == FileKind::Motion ? import_motion(ed, path) : import_file(ed, kind, path);
                        }});
           },
-          why_not};
+          disabled_reason};
 }
 
 void import_dicom(Editor& editor) {

@@ -44,7 +44,7 @@ void met_save(Editor& editor, const Path& path, std::int64_t revision, const std
   editor.life.saved_at = seconds_now();
   editor.project_path = path;
   editor.name = path.filename().string();
-  add_recent(editor.remembered, path, editor.life.saved_at);
+  add_recent(editor.recent_files, path, editor.life.saved_at);
   if (!remark.empty()) editor.messages.info(path.filename().string(), remark);
 }
 
@@ -207,7 +207,7 @@ void open_project(Editor& editor, const Path& path, Then then, Leftover leftover
           opened->recover = leftover == Leftover::Recover;
           return [opened, file, warnings = std::move(project.warnings)](Editor& ed) {
             for (const std::string& warning : warnings) ed.messages.warn(file.filename().string(), warning);
-            add_recent(ed.remembered, file, seconds_now());
+            add_recent(ed.recent_files, file, seconds_now());
             replace_project(ed, opened);
           };
         },
@@ -325,9 +325,9 @@ void keep_edits(Editor& editor) {
   life.trouble = trouble;
   editor.touch();
   if (trouble.empty()) return editor.messages.ok("Your edits are kept again");
-  const auto sentence = trouble.find(". ");
-  if (sentence != std::string::npos)
-    return editor.messages.warn(trouble.substr(0, sentence), trouble.substr(sentence + 2));
+  const auto description = trouble.find(". ");
+  if (description != std::string::npos)
+    return editor.messages.warn(trouble.substr(0, description), trouble.substr(description + 2));
   const ErrorMessage parts = parts_of(trouble);
   editor.messages.warn("Edits are not kept on disk: " + parts.what,
                        parts.what_to_do.empty() ? parts.where : parts.what_to_do);

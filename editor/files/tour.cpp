@@ -58,7 +58,7 @@ TourStart start_of(const Editor& editor) {
 void show_tour(Editor& editor) {
   editor.start_screen = false;
   editor.tour.shown = true;
-  const int kept = editor.remembered.tour_step;
+  const int kept = editor.recent_files.tour_step;
   go_to_step(editor, kept < std::ssize(tour_steps()) ? kept : 0);
 }
 
@@ -99,10 +99,10 @@ void start_tour(Editor& editor) {
 }
 
 void go_to_step(Editor& editor, int step) {
-  editor.remembered.tour_step = step;
+  editor.recent_files.tour_step = step;
   if (step >= std::ssize(tour_steps())) {
     editor.tour.shown = false;
-    editor.remembered.tour_step = 0;
+    editor.recent_files.tour_step = 0;
     editor.messages.ok("That was the tour", "Help > Tour shows it again");
     return;
   }

@@ -46,14 +46,14 @@ std::string needs_both(const Editor& editor) {
   return editor.document().armature ? "" : "Import a rig first";
 }
 
-Operator setting(const char* id, const char* label, const char* sentence,
+Operator setting(const char* id, const char* label, const char* description,
                  const std::function<void(RetargetSettings&)>& set,
                  const std::function<bool(const RetargetSettings&)>& is) {
   return {id,
           label,
           "",
           "Motion",
-          sentence,
+          description,
           [label, set](Editor& e) {
             RetargetSettings next = shown_clip(e)->retarget;
             set(next);
@@ -64,25 +64,25 @@ Operator setting(const char* id, const char* label, const char* sentence,
           needs_motion,
           [is](const Editor& e) { return shown_clip(e) && is(shown_clip(e)->retarget); }};
 }
-Operator travel(const char* id, const char* label, const char* sentence, Travel which) {
+Operator travel(const char* id, const char* label, const char* description, Travel which) {
   return setting(
-      id, label, sentence, [which](RetargetSettings& s) { s.travel = which; },
+      id, label, description, [which](RetargetSettings& s) { s.travel = which; },
       [which](const RetargetSettings& s) { return s.travel == which; });
 }
-Operator reference(const char* id, const char* label, const char* sentence, Reference which) {
+Operator reference(const char* id, const char* label, const char* description, Reference which) {
   return setting(
-      id, label, sentence, [which](RetargetSettings& s) { s.reference = which; },
+      id, label, description, [which](RetargetSettings& s) { s.reference = which; },
       [which](const RetargetSettings& s) { return s.reference == which; });
 }
 
 // Offsets that were read from a file give way to what is said.
-Operator rest(const char* id, const char* label, const char* sentence, RestStance RestStances::*whose,
+Operator rest(const char* id, const char* label, const char* description, RestStance RestStances::*whose,
               RestStance which) {
   return {id,
           label,
           "",
           "Motion",
-          sentence,
+          description,
           [=](Editor& e) {
             if (shown_clip(e)->map.stances.*whose == which) return;
             edit_clip(e, std::string("At rest: ") + label, PoseThen::FromClip, [&](Clip& clip) {

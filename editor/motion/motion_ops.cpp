@@ -197,12 +197,12 @@ void zoom(Editor& editor) {
   timeline.window.count = fresh;
 }
 
-Operator at_end(const char* id, const char* label, const char* icon, const char* sentence, AtEnd which) {
+Operator at_end(const char* id, const char* label, const char* icon, const char* description, AtEnd which) {
   return {id,
           label,
           icon,
           "Motion",
-          sentence,
+          description,
           [which](Editor& e) {
             auto& mode = e.timeline->play.at_end;
             mode = mode == which ? AtEnd::Stop : which;

@@ -19,7 +19,7 @@ namespace {
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;  // 4B8EF5, 5AD19A
 constexpr double kWidest = 0.12, kHalfWidth = 0.0425;       // of a bone's length, as bones are drawn
 
-void draw_ghost(Editor& editor, const SeenFrom& view, const Armature& armature, const Pose& pose, Colour colour) {
+void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& armature, const Pose& pose, Colour colour) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const auto posed = posed_from_rest(armature, pose);
   for (std::size_t b = 0; b < armature.bones.size(); ++b) {
@@ -59,7 +59,7 @@ void take_surface(Editor& editor, OnionOutlines& outlines) {
 }
 
 // Where some fixed points are seen: equal for equal views.
-std::vector<double> view_of(const SeenFrom& view) {
+std::vector<double> view_of(const ViewProjection& view) {
   std::vector<double> numbers{view.place.rect.low.x, view.place.rect.low.y, view.place.rect.high.x,
                               view.place.rect.high.y};
   for (const glm::dvec3& point : {glm::dvec3(0), glm::dvec3(100, 0, 0), glm::dvec3(0, 100, 0), glm::dvec3(0, 0, 100)}) {
@@ -70,7 +70,7 @@ std::vector<double> view_of(const SeenFrom& view) {
   return numbers;
 }
 
-std::vector<std::vector<glm::vec2>> outline_of(const SeenFrom& view, const OnionOutlines& outlines,
+std::vector<std::vector<glm::vec2>> outline_of(const ViewProjection& view, const OnionOutlines& outlines,
                                                const Armature& armature, const Pose& pose, float cell) {
   const auto posed = posed_from_rest(armature, pose);
   std::vector<RigidTransform> motions;
@@ -101,7 +101,7 @@ void draw_lines(const std::vector<std::vector<glm::vec2>>& lines, Colour colour,
 
 void draw_onion_skin(Editor& editor) {
   auto& onion = editor.timeline->onion;
-  const std::optional<SeenFrom> view = body_seen(editor);
+  const std::optional<ViewProjection> view = body_seen(editor);
   const ClipOnRig* clip = onion.on && editor.workspace == Workspace::Pose && view ? clip_on_rig(editor) : nullptr;
   if (!clip) return;
   if (!onion.outlines) onion.outlines = std::make_shared<OnionOutlines>();

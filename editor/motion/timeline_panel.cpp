@@ -58,7 +58,7 @@ class Transport {
     {
       const Operator* op = find_operator(editor_, "motion.play");
       const Rect place = next(28);
-      const std::string why = why_not(editor_, *op);
+      const std::string why = disabled_reason(editor_, *op);
       if (button(editor_, "motion.play", place,
                  {playing ? icon::kPause : icon::kPlay, "", playing ? ButtonStyle::Soft : ButtonStyle::Plain,
                   why.empty()}))
@@ -110,7 +110,7 @@ class Transport {
       if (!op) continue;
       const std::string label = !wide ? "" : std::string_view(id) == "file.import_motion" ? "Import BVH..." : op->label;
       const char* sign = std::string_view(id) == "file.import_motion" ? icon::kMotion : op->icon;
-      const ButtonLook face{sign, label, ButtonStyle::Plain, why_not(editor_, *op).empty()};
+      const ButtonLook face{sign, label, ButtonStyle::Plain, disabled_reason(editor_, *op).empty()};
       const float width = label.empty() ? look_.px(30) : width_of_button(editor_, face), height = look_.px(26),
                   y = std::round(bar_.centre().y - height / 2);
       const Rect place{{right_ - width, y}, {right_, y + height}};
@@ -213,7 +213,7 @@ class Transport {
 
   void draw_keying() {
     const Operator* op = find_operator(editor_, "motion.insert_key");
-    const bool enabled = why_not(editor_, *op).empty(), long_form = fits(170);
+    const bool enabled = disabled_reason(editor_, *op).empty(), long_form = fits(170);
     const Rect place = next(long_form ? 124 : 30);
     const Pressed pressed = press_area(editor_, "motion.insert_key", place, enabled);
     fill(place,

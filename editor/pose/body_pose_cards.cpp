@@ -27,7 +27,7 @@ void draw_pictures(const std::shared_ptr<const Armature>& armature, PoseLibrary&
 }  // namespace
 
 const PoseLibrary& body_pose_cards(const Editor& editor) {
-  auto& known = editor.handling->body_poses;
+  auto& known = editor.transform_settings->body_poses;
   const std::shared_ptr<const Armature>& armature = editor.document().armature;
   if (known.armature != armature) known = {armature, armature ? body_pose_library(*armature) : PoseLibrary{}};
   return known.poses;
@@ -35,7 +35,7 @@ const PoseLibrary& body_pose_cards(const Editor& editor) {
 
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor) {
   body_pose_cards(editor);
-  auto& known = editor.handling->body_poses;
+  auto& known = editor.transform_settings->body_poses;
   if (!known.poses.empty() && known.poses.front()->picture.empty()) draw_pictures(known.armature, known.poses);
   return known.poses;
 }

@@ -16,7 +16,7 @@ const PoseLibrary& body_pose_cards(const Editor& editor);
 // The same with pictures, which are drawn the first time.
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor);
 
-// What Handling::library_pose calls such a pose: no name that a user gives.
+// What TransformSettings::library_pose calls such a pose: no name that a user gives.
 std::string library_name(const NamedPose& body_pose);
 bool is_body_pose(const std::string& library_name);
 

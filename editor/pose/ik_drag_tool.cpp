@@ -27,7 +27,7 @@ class Dragging final : public TransformTool {
     is_root_ = bone.parent < 0;
     const auto posed = posed_from_rest(*armature_, before_);
     from_ = target_ = posed[bone_] * (is_root_ ? bone.head : bone.tail);
-    chain_ = editor.handling->auto_ik ? limb_of(*armature_, bone_) : 1;
+    chain_ = editor.transform_settings->auto_ik ? limb_of(*armature_, bone_) : 1;
     const Anchors& anchors = anchors_of(editor.document());
     for (const std::string& name : anchors.pins)
       if (const auto pin = armature_->find(name); pin && *pin != bone_)
@@ -149,7 +149,7 @@ class DraggingPole final : public TransformTool {
         bone_(*editor.selection.bone),
         from_(anchors_of(editor.document()).poles.at(armature_->bones[bone_].name)) {
     const int other = mirror_pairs(*armature_)[bone_];
-    if (editor.handling->x_mirror && other != bone_ &&
+    if (editor.transform_settings->x_mirror && other != bone_ &&
         anchors_of(editor.document()).poles.contains(armature_->bones[other].name))
       other_ = other;
   }
@@ -157,7 +157,7 @@ class DraggingPole final : public TransformTool {
   std::string title() const override { return "Turn to pole" + lock_text("along"); }
   std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
   void cancel(Editor& editor) override {
-    editor.handling->shown_pole = {};
+    editor.transform_settings->shown_pole = {};
     drop_shown_pose(editor);
   }
 
@@ -190,7 +190,7 @@ class DraggingPole final : public TransformTool {
 
   void show(Editor& editor) override {
     show_pose(editor, pose(editor));
-    editor.handling->shown_pole = {armature_->bones[bone_].name, to_};
+    editor.transform_settings->shown_pole = {armature_->bones[bone_].name, to_};
   }
   void keep(Editor& editor) override {
     Pose turned = pose(editor);
@@ -199,7 +199,7 @@ class DraggingPole final : public TransformTool {
     anchors.poles[armature_->bones[bone_].name] = to_;
     if (other_) anchors.poles[armature_->bones[*other_].name] = mirrored();
     if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
-    editor.handling->shown_pole = {};
+    editor.transform_settings->shown_pole = {};
     commit_pose(editor, "Turn to pole", std::move(turned), std::move(next));
   }
 

@@ -34,7 +34,7 @@ int limb_of(const Armature& armature, int bone) {
 }
 
 Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
-  if (!editor.handling->x_mirror) return next;
+  if (!editor.transform_settings->x_mirror) return next;
   const Armature& armature = *editor.document().armature;
   const std::vector<int> pairs = mirror_pairs(armature);
   const MirrorPlane plane = mirror_plane(armature);

@@ -29,7 +29,7 @@ std::string needs_chosen(const Editor& editor) {
 // What is renamed or deleted is the user's own.
 std::string needs_own(const Editor& editor) {
   if (const std::string why = needs_chosen(editor); !why.empty()) return why;
-  return is_body_pose(editor.handling->library_pose) ? "This pose comes with the program" : "";
+  return is_body_pose(editor.transform_settings->library_pose) ? "This pose comes with the program" : "";
 }
 
 std::size_t place_of(const PoseLibrary& library, const std::string& name) {
@@ -62,7 +62,7 @@ void add_pose(Editor& editor) {
       named_pose(next.poses, clip && clip->motion ? clip->name + " " + std::to_string(next.frame) : "Pose",
                  *next.armature, pose_of(next), chosen_bones(editor));
   named.picture = picture_of_pose(editor);
-  editor.handling->library_pose = named.name;
+  editor.transform_settings->library_pose = named.name;
   editor.open_sections["Pose library"] = true;
   const std::string label = "Add pose " + named.name;
   next.poses.push_back(std::make_shared<const NamedPose>(std::move(named)));
@@ -78,7 +78,7 @@ void blend_to_chosen(Editor& editor) {
 }
 
 void ask_pose_name(Editor& editor) {
-  const std::string before = editor.handling->library_pose;
+  const std::string before = editor.transform_settings->library_pose;
   editor.open_dialog(make_form({"Rename pose",
                                 "Another name for the chosen pose of the library.",
                                 "Rename",
@@ -93,7 +93,7 @@ void ask_pose_name(Editor& editor) {
                                   if (place == next.poses.size() || fields[0].text == before) return;
                                   NamedPose named = *next.poses[place];
                                   named.name = unique_pose_name(next.poses, fields[0].text);
-                                  e.handling->library_pose = named.name;
+                                  e.transform_settings->library_pose = named.name;
                                   next.poses[place] = std::make_shared<const NamedPose>(std::move(named));
                                   commit(e, "Rename pose", std::move(next));
                                 }}));
@@ -101,7 +101,7 @@ void ask_pose_name(Editor& editor) {
 
 void delete_pose(Editor& editor) {
   Document next = editor.document();
-  const std::string name = editor.handling->library_pose;
+  const std::string name = editor.transform_settings->library_pose;
   next.poses.erase(next.poses.begin() + static_cast<std::ptrdiff_t>(place_of(next.poses, name)));
   commit(editor, "Delete pose " + name, std::move(next));
 }
@@ -109,15 +109,15 @@ void delete_pose(Editor& editor) {
 }  // namespace
 
 const NamedPose* chosen_pose(const Editor& editor) {
-  if (is_body_pose(editor.handling->library_pose)) {
+  if (is_body_pose(editor.transform_settings->library_pose)) {
     const PoseLibrary& cards = body_pose_cards(editor);
     const auto found = std::find_if(cards.begin(), cards.end(), [&](const auto& pose) {
-      return library_name(*pose) == editor.handling->library_pose;
+      return library_name(*pose) == editor.transform_settings->library_pose;
     });
     return found == cards.end() ? nullptr : found->get();
   }
   const PoseLibrary& library = editor.document().poses;
-  const std::size_t place = place_of(library, editor.handling->library_pose);
+  const std::size_t place = place_of(library, editor.transform_settings->library_pose);
   return place < library.size() ? library[place].get() : nullptr;
 }
 

@@ -41,11 +41,11 @@ void draw_picture(Editor& editor, const NamedPose& pose, const Rect& rect) {
 }
 
 // A press in place applies the pose when it ends; a press that goes sideways blends towards it, and Escape leaves it.
-//   name  of Handling::library_pose
+//   name  of TransformSettings::library_pose
 void take_press(Editor& editor, const NamedPose& pose, const std::string& name, const Pressed& pressed) {
-  auto& drag = editor.handling->library_drag;
+  auto& drag = editor.transform_settings->library_drag;
   if (pressed.activated) {
-    editor.handling->library_pose = name;
+    editor.transform_settings->library_pose = name;
     drag = {name, editor.input.pointer.x, false};
   }
   if (drag.pose != name) return;
@@ -73,7 +73,7 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
   const Look& look = editor.look;
   const Rect picture{rect.low, {rect.high.x, rect.low.y + look.px(kPicture)}};
   const std::string name = description.empty() ? pose.name : library_name(pose);
-  const bool chosen = editor.handling->library_pose == name;
+  const bool chosen = editor.transform_settings->library_pose == name;
   const Pressed pressed = press_area(editor, description.empty() ? pose.name : "Body pose " + pose.name, rect);
   draw_picture(editor, pose, picture);
   const float width = chosen ? 2 * look.line() : look.line();
@@ -82,7 +82,7 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
                                       : pressed.hovered ? look.theme.text2
                                                         : look.theme.line2,
                                       look.px(4), 0, width);
-  const auto& drag = editor.handling->library_drag;
+  const auto& drag = editor.transform_settings->library_drag;
   if (drag.pose == name && drag.moved) {
     const float share =
         std::clamp((editor.input.pointer.x - drag.begin) / static_cast<float>(kPixels * look.scale), 0.0f, 1.0f);
@@ -95,7 +95,7 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
   if (pressed.hovered && !pressed.held)
     tooltip(editor, rect, pose.name, description.empty() ? use : std::string(description) + " " + use);
   if (pressed.right_clicked) {
-    editor.handling->library_pose = name;
+    editor.transform_settings->library_pose = name;
     editor.open_popup = "Pose library";
   }
   take_press(editor, pose, name, pressed);

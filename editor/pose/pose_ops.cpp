@@ -287,11 +287,11 @@ std::string needs_limb(const Editor& editor) {
                                                                           : "A pole needs a limb of two bones or more";
 }
 
-Operator space_operator(const char* id, const char* label, const char* sentence, Space space) {
+Operator space_operator(const char* id, const char* label, const char* description, Space space) {
   return {id,           label,
           icon::kSpace, "Pose",
-          sentence,     [space](Editor& e) { e.handling->space = space; },
-          nullptr,      [space](const Editor& e) { return e.handling->space == space; }};
+          description,  [space](Editor& e) { e.transform_settings->space = space; },
+          nullptr,      [space](const Editor& e) { return e.transform_settings->space == space; }};
 }
 
 }  // namespace
@@ -347,12 +347,12 @@ std::vector<Operator> pose_operators() {
        needs_anchor},
       {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose",
        "A dragged joint takes its whole limb along, not its bone alone.",
-       [](Editor& e) { e.handling->auto_ik = !e.handling->auto_ik; }, nullptr,
-       [](const Editor& e) { return e.handling->auto_ik; }},
+       [](Editor& e) { e.transform_settings->auto_ik = !e.transform_settings->auto_ik; }, nullptr,
+       [](const Editor& e) { return e.transform_settings->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit",
        "What is done to a bone is done to the one on the other side, in the mirror.",
-       [](Editor& e) { e.handling->x_mirror = !e.handling->x_mirror; }, nullptr,
-       [](const Editor& e) { return e.handling->x_mirror; }},
+       [](Editor& e) { e.transform_settings->x_mirror = !e.transform_settings->x_mirror; }, nullptr,
+       [](const Editor& e) { return e.transform_settings->x_mirror; }},
       space_operator("space.global", "Global axes", "Gizmos and locks go by the axes of the world.", Space::Global),
       space_operator("space.local", "Local axes", "Gizmos and locks go by the bone's own axes.", Space::Local),
       space_operator("space.parent", "Parent axes", "Gizmos and locks go by the axes of the bone above.",

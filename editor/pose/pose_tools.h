@@ -12,7 +12,7 @@ namespace limber::editor {
 // The axes of the rings about a bone's head: those of the space, or turned so that the nearest runs along the hinge of
 // a joint that keeps its limits. So a hinge turns by the angle that the pointer goes round its ring.
 glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
-                         const SeenFrom& view);
+                         const ViewProjection& view);
 // From a button that is held on a gizmo's ring, the angle goes by the ring as it is seen.
 std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip = {});
 // The tail of the active bone goes with the pointer and its limb follows; a root's head takes the whole body along.

@@ -258,7 +258,7 @@ class Turning final : public TransformTool {
 }  // namespace
 
 glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
-                         const SeenFrom& view) {
+                         const ViewProjection& view) {
   glm::dmat3 axes = axes_of(space, armature, pose, bone, view);
   const auto hinge = hinge_of(editor, armature, pose, bone);
   if (!hinge) return axes;

@@ -17,11 +17,11 @@ namespace limber::editor {
 
 namespace {
 
-Operator method_operator(const char* id, const char* label, const char* sentence, const char* method) {
-  return {id,       label,
-          "",       "Result",
-          sentence, [method](Editor& e) { e.resampling.method = method; },
-          nullptr,  [method](const Editor& e) { return e.resampling.method == method; }};
+Operator method_operator(const char* id, const char* label, const char* description, const char* method) {
+  return {id,          label,
+          "",          "Result",
+          description, [method](Editor& e) { e.resampling.method = method; },
+          nullptr,     [method](const Editor& e) { return e.resampling.method == method; }};
 }
 
 std::string needs_result(const Editor& editor) {
@@ -38,12 +38,13 @@ void toggle_watching(Editor& editor) {
   watch(editor);
 }
 
-Operator colours_operator(const char* id, const char* label, const char* sentence, std::optional<FemMeasure> measure) {
+Operator colours_operator(const char* id, const char* label, const char* description,
+                          std::optional<FemMeasure> measure) {
   return {id,
           label,
           "",
           "Finite elements",
-          sentence,
+          description,
           [measure](Editor& e) {
             show_difference_overlay(e, false);
             show_overlap_overlay(e, false);

@@ -71,7 +71,7 @@ void draw_resample(Editor& editor, Column& column) {
     const Rect place{{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(28)}};
     operator_button(editor, "resample.run", place, "Resample this pose", ButtonStyle::Primary);
     const Operator* op = find_operator(editor, "resample.run");
-    const std::string reason = why_not(editor, *op);
+    const std::string reason = disabled_reason(editor, *op);
     const Rect note = column.row(24);
     const Document& document = editor.document();
     const std::string words =

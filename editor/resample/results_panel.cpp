@@ -199,10 +199,10 @@ void draw_results(Editor& editor, const Rect& rect) {
   const Rect body{{rect.low.x, head.high.y}, rect.high};
   if (results.empty()) {
     const Operator* op = find_operator(editor, "resample.run");
-    if (why_not(editor, *op).empty()) {
+    if (disabled_reason(editor, *op).empty()) {
       if (empty_state(editor, body, "No results", "Resample this pose")) run(editor, *op);
     } else {
-      put_text(editor, look.fonts.regular, look.theme.text2, body, "No results. " + why_not(editor, *op),
+      put_text(editor, look.fonts.regular, look.theme.text2, body, "No results. " + disabled_reason(editor, *op),
                Align::Centre);
     }
     return;

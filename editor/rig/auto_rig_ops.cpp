@@ -22,13 +22,13 @@ std::string needs_proposed_joint(const Editor& editor) {
   return proposed_joint(editor) ? "" : "Fit a joint's axis first";
 }
 
-Operator shows_proposed(const char* id, const char* label, const char* sentence, bool after) {
+Operator shows_proposed(const char* id, const char* label, const char* description, bool after) {
   return {id,
           label,
           "",
           "Rig",
-          sentence,
-          [after](Editor& e) { e.handling->proposed_joint->shows_after = after; },
+          description,
+          [after](Editor& e) { e.transform_settings->proposed_joint->shows_after = after; },
           needs_proposed_joint,
           [after](const Editor& e) { return proposed_joint(e) && proposed_joint(e)->shows_after == after; }};
 }

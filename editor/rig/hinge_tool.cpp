@@ -65,7 +65,7 @@ class HingeTool final : public TransformTool {
     const glm::dvec3 towards = dragged(editor, from_, 0, 0) - rig_.bones[bone_].head;
     if (glm::length(towards) < 1e-9) return axis_;
     const glm::dvec3 axis = glm::normalize(towards);
-    if (editor.input.down(Key::Ctrl) == editor.handling->snapping) return axis;
+    if (editor.input.down(Key::Ctrl) == editor.transform_settings->snapping) return axis;
     const glm::dmat3 own = rest_axes(rig_.bones[bone_]);
     glm::dvec3 nearest = own[0];
     for (int i = 0; i < 6; ++i)

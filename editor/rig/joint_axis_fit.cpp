@@ -53,7 +53,7 @@ void propose(Editor& editor, ProposedJoint proposed) {
   if (proposed.fit.overlap_before == 0)
     return editor.messages.ok("Joint axis of " + proposed.bone,
                               "No bone enters another within its range: the axis can stay");
-  editor.handling->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
+  editor.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
   editor.touch();
 }
 
@@ -68,7 +68,7 @@ void start_joint_fit(Editor& editor) {
   FitJoint settings;
   if (limits.type == JointLimits::Type::Hinge)
     settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
-  const bool both_sides = editor.handling->x_mirror;
+  const bool both_sides = editor.transform_settings->x_mirror;
   const int id =
       start_task(editor, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
         ProposedJoint proposed{.volume = from.volume,
@@ -92,7 +92,7 @@ void start_joint_fit(Editor& editor) {
 }
 
 const ProposedJoint* proposed_joint(const Editor& editor) {
-  const auto& proposed = editor.handling->proposed_joint;
+  const auto& proposed = editor.transform_settings->proposed_joint;
   const bool here = proposed && editor.workspace == Workspace::Rig && editor.document().volume == proposed->volume &&
                     editor.document().armature == proposed->from;
   return here ? proposed.get() : nullptr;
@@ -117,7 +117,7 @@ void show_proposed_joint(Editor& editor) {
 }
 
 void take_proposed_joint(Editor& editor) {
-  const auto proposed = editor.handling->proposed_joint;
+  const auto proposed = editor.transform_settings->proposed_joint;
   leave_proposed_joint(editor);
   Document next = editor.document();
   next.armature = proposed->fitted;
@@ -125,7 +125,7 @@ void take_proposed_joint(Editor& editor) {
 }
 
 void leave_proposed_joint(Editor& editor) {
-  editor.handling->proposed_joint.reset();
+  editor.transform_settings->proposed_joint.reset();
   editor.touch();
 }
 

@@ -13,28 +13,28 @@ namespace {
 constexpr double kAxis = 124, kKnob = 30, kHit = 9;
 
 // The bone that has handles; null for none.
-const Bone* handled_bone(const Editor& editor, const Armature* rig, const SeenFrom& view) {
+const Bone* handled_bone(const Editor& editor, const Armature* rig, const ViewProjection& view) {
   const auto bone = editor.selection.bone;
   const bool wanted = editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate &&
                       view.place.id == ViewId::Body && editor.views->bones;
   return wanted && rig && bone && *bone < std::ssize(rig->bones) ? &rig->bones[*bone] : nullptr;
 }
 
-bool is_at(const SeenFrom& view, const std::optional<glm::dvec3>& handle, const glm::dvec2& pixel, float scale) {
+bool is_at(const ViewProjection& view, const std::optional<glm::dvec3>& handle, const glm::dvec2& pixel, float scale) {
   const auto seen = handle ? view.pixel_of(*handle) : std::nullopt;
   return seen && glm::distance(*seen, pixel) <= kHit * scale;
 }
 
 }  // namespace
 
-std::optional<glm::dvec3> hinge_handle(const Editor& editor, const SeenFrom& view) {
+std::optional<glm::dvec3> hinge_handle(const Editor& editor, const ViewProjection& view) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   const Bone* bone = handled_bone(editor, rig.get(), view);
   if (!bone || bone->limits.type != JointLimits::Type::Hinge) return std::nullopt;
   return bone->head + bone->limits.axis * (kAxis * editor.look.scale * view.millimetres_per_pixel(bone->head));
 }
 
-std::optional<glm::dvec3> roll_handle(const Editor& editor, const SeenFrom& view) {
+std::optional<glm::dvec3> roll_handle(const Editor& editor, const ViewProjection& view) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   const Bone* bone = handled_bone(editor, rig.get(), view);
   if (!bone || bone->head == bone->tail) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<glm::dvec3> roll_handle(const Editor& editor, const SeenFrom& view
   return middle + rest_axes(*bone)[0] * (kKnob * editor.look.scale * view.millimetres_per_pixel(middle));
 }
 
-bool press_joint_handle(Editor& editor, const SeenFrom& view) {
+bool press_joint_handle(Editor& editor, const ViewProjection& view) {
   const glm::dvec2 pixel(editor.input.pointer);
   const bool hinge = is_at(view, hinge_handle(editor, view), pixel, editor.look.scale);
   if (!hinge && !is_at(view, roll_handle(editor, view), pixel, editor.look.scale)) return false;
@@ -52,7 +52,7 @@ bool press_joint_handle(Editor& editor, const SeenFrom& view) {
   return true;
 }
 
-void draw_joint_handles(Editor& editor, const SeenFrom& view) {
+void draw_joint_handles(Editor& editor, const ViewProjection& view) {
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
   const std::shared_ptr<const Armature> rig = shown_rig(editor);

@@ -8,11 +8,11 @@
 namespace limber::editor {
 
 // True when the pointer was over one: its tool has begun.
-bool press_joint_handle(Editor& editor, const SeenFrom& view);
-void draw_joint_handles(Editor& editor, const SeenFrom& view);
+bool press_joint_handle(Editor& editor, const ViewProjection& view);
+void draw_joint_handles(Editor& editor, const ViewProjection& view);
 
 // Where they stand; nothing where there is none. Points of the world.
-std::optional<glm::dvec3> hinge_handle(const Editor& editor, const SeenFrom& view);
-std::optional<glm::dvec3> roll_handle(const Editor& editor, const SeenFrom& view);
+std::optional<glm::dvec3> hinge_handle(const Editor& editor, const ViewProjection& view);
+std::optional<glm::dvec3> roll_handle(const Editor& editor, const ViewProjection& view);
 
 }  // namespace limber::editor

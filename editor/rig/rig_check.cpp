@@ -35,8 +35,8 @@ const KnownRigCheck* rig_check(const Editor& editor) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   const std::shared_ptr<const LabelVolume> volume = editor.document().volume;
   if (editor.workspace != Workspace::Rig || !rig || !volume) return nullptr;
-  if (!editor.handling->rig_check) editor.handling->rig_check = std::make_shared<KnownRigCheck>();
-  KnownRigCheck& known = *editor.handling->rig_check;
+  if (!editor.transform_settings->rig_check) editor.transform_settings->rig_check = std::make_shared<KnownRigCheck>();
+  KnownRigCheck& known = *editor.transform_settings->rig_check;
   if (known.rig == rig && known.volume == volume) return &known;
   known = {rig, volume, check_rig(*volume, *rig), {}};
   known.bones = leaving_bones(known.check);
@@ -47,9 +47,9 @@ void show_leaving(Editor& editor, const LeavingBone& leaving) {
   editor.selection = {};
   editor.selection.bone = leaving.bone;
   editor.selection.bones = {leaving.bone};
-  editor.handling->part = leaving.tail   ? Handling::Part::Tail
-                          : leaving.head ? Handling::Part::Head
-                                         : Handling::Part::Whole;
+  editor.transform_settings->part = leaving.tail   ? TransformSettings::Part::Tail
+                                    : leaving.head ? TransformSettings::Part::Head
+                                                   : TransformSettings::Part::Whole;
   Views& views = *editor.views;
   render::Camera camera = views.body.move ? views.body.move->to : views.body.camera;
   camera.centre = leaving.place;
@@ -70,8 +70,9 @@ void show_next_leaving(Editor& editor) {
   show_leaving(editor, next == known->bones.end() ? known->bones.front() : *next);
 }
 
-void draw_rig_check(Editor& editor, const SeenFrom& view) {
-  const KnownRigCheck* known = editor.views->bones && editor.handling->rig_check_marks ? rig_check(editor) : nullptr;
+void draw_rig_check(Editor& editor, const ViewProjection& view) {
+  const KnownRigCheck* known =
+      editor.views->bones && editor.transform_settings->rig_check_marks ? rig_check(editor) : nullptr;
   if (!known) return;
   const GizmoPainter painter(editor, view);
   const Colour colour = kViewError;

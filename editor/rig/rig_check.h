@@ -12,7 +12,7 @@
 namespace limber::editor {
 
 struct Editor;
-struct SeenFrom;
+struct ViewProjection;
 
 // A bone that is not wholly in tissue.
 struct LeavingBone {
@@ -38,6 +38,6 @@ void show_leaving(Editor& editor, const LeavingBone& leaving);
 void show_next_leaving(Editor& editor);
 
 // Stretches and joints in air, over a view.
-void draw_rig_check(Editor& editor, const SeenFrom& view);
+void draw_rig_check(Editor& editor, const ViewProjection& view);
 
 }  // namespace limber::editor

@@ -84,7 +84,7 @@ void drop_shown_rig(Editor& editor) {
 
 Armature mirrored_too(const Editor& editor, Armature next) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
-  return before && editor.handling->x_mirror ? with_mirrored_changes(*before, next) : next;
+  return before && editor.transform_settings->x_mirror ? with_mirrored_changes(*before, next) : next;
 }
 
 void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
@@ -116,14 +116,14 @@ void mirror_bones(Editor& editor, const std::vector<int>& bones, const std::stri
   std::vector<int> from(next.bones.size()), chosen;
   for (int bone = 0; bone < std::ssize(from); ++bone) from[bone] = before->find(next.bones[bone].name).value_or(bone);
   for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value_or(bone));
-  editor.handling->part = Handling::Part::Whole;
+  editor.transform_settings->part = TransformSettings::Part::Whole;
   commit_followed(
       editor, label, std::move(next), from, chosen,
       [&](Document& document, const Armature& was, const Armature& is) { follow_mirrored(document, was, is, bones); });
 }
 
 std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones) {
-  if (!editor.handling->x_mirror) return bones;
+  if (!editor.transform_settings->x_mirror) return bones;
   const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
   std::vector<int> both;
   for (const int bone : bones)

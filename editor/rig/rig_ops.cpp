@@ -56,7 +56,7 @@ void transform(Editor& editor, RigChange::Kind kind) {
 
 void extrude(Editor& editor) {
   const RigChange change = extrusion(editor);
-  editor.handling->part = Handling::Part::Tail;
+  editor.transform_settings->part = TransformSettings::Part::Tail;
   begin_tool(editor, begin_rig_change(editor, change));
 }
 
@@ -67,7 +67,7 @@ void add(Editor& editor) {
   const glm::dvec3 head = editor.views->cross_hair, tail = head + glm::dvec3(0, 0, (box.high.z - box.low.z) / 8);
   commit_rig(editor, "Add bone", with_bone(armature, "Bone", -1, head, tail),
              {static_cast<int>(armature.bones.size())});
-  editor.handling->part = Handling::Part::Tail;
+  editor.transform_settings->part = TransformSettings::Part::Tail;
 }
 
 // Between the ends of two bones that are nearest to each other, from the one chosen first; from one bone's joint to the
@@ -99,7 +99,7 @@ void fill(Editor& editor) {
   const std::vector<int> was = bones_of(*rig, next);
   const int added = static_cast<int>(std::find(was.begin(), was.end(), -1) - was.begin());
   const std::string name = next.bones[added].name;
-  editor.handling->part = Handling::Part::Tail;
+  editor.transform_settings->part = TransformSettings::Part::Tail;
   commit_rig(editor, "Fill with " + name, mirrored_too(editor, std::move(next)), {added});
 }
 
@@ -121,7 +121,7 @@ void duplicate(Editor& editor) {
     if (is_connected(change.start, copy) && change.start.bones[copy].parent < std::ssize(armature->bones))
       change.start.bones[copy].parent = -1;
   }
-  editor.handling->part = Handling::Part::Whole;
+  editor.transform_settings->part = TransformSettings::Part::Whole;
   begin_tool(editor, begin_rig_change(editor, change));
 }
 
@@ -141,7 +141,7 @@ void edit(Editor& editor, const char* verb, const Edit& change, Sides sides = Si
   const std::vector<int> bones = bones_chosen_last(editor);
   Armature next = change(*before, sides == Sides::Mirrored ? with_other_sides(editor, bones) : bones);
   const std::vector<int> left = still(*before, next, bones);
-  editor.handling->part = Handling::Part::Whole;
+  editor.transform_settings->part = TransformSettings::Part::Whole;
   commit_rig(editor, naming_chosen(editor, verb), std::move(next), left);
 }
 
@@ -154,15 +154,15 @@ void hang(Editor& editor, Join join) {
 }
 
 void subdivide(Editor& editor) {
-  act_adjustably(editor, {number_of("Parts", "How many bones each chosen one becomes.", 2, 2, 100, "%.0f")},
-                 [](Editor& e, const std::vector<FormField>& fields) {
-                   edit(
-                       e, "Subdivide",
-                       [&](const Armature& rig, const std::vector<int>& bones) {
-                         return subdivided(rig, bones, static_cast<int>(std::round(fields[0].value)));
-                       },
-                       Sides::Mirrored);
-                 });
+  act_and_allow_redo(editor, {number_of("Parts", "How many bones each chosen one becomes.", 2, 2, 100, "%.0f")},
+                     [](Editor& e, const std::vector<FormField>& fields) {
+                       edit(
+                           e, "Subdivide",
+                           [&](const Armature& rig, const std::vector<int>& bones) {
+                             return subdivided(rig, bones, static_cast<int>(std::round(fields[0].value)));
+                           },
+                           Sides::Mirrored);
+                     });
 }
 
 void symmetrize(Editor& editor) {
@@ -171,17 +171,17 @@ void symmetrize(Editor& editor) {
   if (std::none_of(chosen.begin(), chosen.end(), [&](int bone) { return mirrored_name(all[bone].name).has_value(); }))
     throw Error("a bone without a side has no other side", all[chosen.back()].name,
                 "give it a name with a side first, as Arm.L or LeftArm");
-  act_adjustably(editor,
-                 {choice_of("From", "The side whose mirror image the other one becomes.", {"Chosen", "Not chosen"})},
-                 [](Editor& e, const std::vector<FormField>& fields) {
-                   edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
-                     std::vector<int> from = bones;
-                     const std::vector<int> pairs = mirror_pairs(rig);
-                     if (fields[0].chosen == 1)
-                       for (int& bone : from) bone = pairs[bone];
-                     return symmetrized(rig, from);
-                   });
-                 });
+  act_and_allow_redo(
+      editor, {choice_of("From", "The side whose mirror image the other one becomes.", {"Chosen", "Not chosen"})},
+      [](Editor& e, const std::vector<FormField>& fields) {
+        edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
+          std::vector<int> from = bones;
+          const std::vector<int> pairs = mirror_pairs(rig);
+          if (fields[0].chosen == 1)
+            for (int& bone : from) bone = pairs[bone];
+          return symmetrized(rig, from);
+        });
+      });
 }
 
 // The chosen bones with the limits of that joint, or where it is -1 of what their names mean; `left` are the names of
@@ -275,13 +275,13 @@ void ask_names(Editor& editor) {
        act}));
 }
 
-Operator edit_operator(const char* id, const char* label, const char* icon, const char* sentence, const char* verb,
+Operator edit_operator(const char* id, const char* label, const char* icon, const char* description, const char* verb,
                        Armature (*change)(const Armature&, const std::vector<int>&), Sides sides = Sides::Mirrored) {
   return {id,
           label,
           icon,
           "Bone",
-          sentence,
+          description,
           [verb, change, sides](Editor& e) { edit(e, verb, change, sides); },
           needs_rig_bone};
 }
@@ -317,7 +317,8 @@ void joints_to_voxels(Editor& editor) {
 }
 
 const glm::dvec3& chosen_joint(const Editor& editor) {
-  return place_of(*editor.document().armature, {*editor.selection.bone, editor.handling->part == Handling::Part::Tail});
+  return place_of(*editor.document().armature,
+                  {*editor.selection.bone, editor.transform_settings->part == TransformSettings::Part::Tail});
 }
 
 // A whole bone keeps its length and direction.
@@ -340,11 +341,11 @@ std::string needs_joint_in_volume(const Editor& editor) {
   return why.empty() ? needs_volume(editor) : why;
 }
 
-Operator snap_operator(const char* id, const char* label, const char* sentence, Snap snap) {
+Operator snap_operator(const char* id, const char* label, const char* description, Snap snap) {
   return {id,          label,
           icon::kSnap, "Bone",
-          sentence,    [snap](Editor& e) { e.handling->snap = snap; },
-          nullptr,     [snap](const Editor& e) { return e.handling->snap == snap; }};
+          description, [snap](Editor& e) { e.transform_settings->snap = snap; },
+          nullptr,     [snap](const Editor& e) { return e.transform_settings->snap == snap; }};
 }
 
 }  // namespace
@@ -422,11 +423,11 @@ std::vector<Operator> rig_operators() {
        show_next_leaving, needs_leaving},
       {"view.rig_check", "Where the rig leaves tissue", "", "View",
        "Marks bones and joints outside of tissue in the Rig workspace.",
-       [](Editor& e) { e.handling->rig_check_marks = !e.handling->rig_check_marks; }, nullptr,
-       [](const Editor& e) { return e.handling->rig_check_marks; }},
+       [](Editor& e) { e.transform_settings->rig_check_marks = !e.transform_settings->rig_check_marks; }, nullptr,
+       [](const Editor& e) { return e.transform_settings->rig_check_marks; }},
       {"rig.snap", "Snap without Ctrl", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.",
-       [](Editor& e) { e.handling->snapping = !e.handling->snapping; }, nullptr,
-       [](const Editor& e) { return e.handling->snapping; }},
+       [](Editor& e) { e.transform_settings->snapping = !e.transform_settings->snapping; }, nullptr,
+       [](const Editor& e) { return e.transform_settings->snapping; }},
       snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),
       snap_operator("snap.voxel", "Snap to voxels", "A moved joint goes to the centre of the nearest voxel.",
                     Snap::Voxel),

@@ -115,8 +115,9 @@ class RigTool final : public TransformTool {
 
   glm::dvec3 moved_to(const Editor& editor) {
     snapped_to_.clear();
-    const Snap snap = editor.handling->snap;
-    if (way_ || snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.handling->snapping || number_.typed())
+    const Snap snap = editor.transform_settings->snap;
+    if (way_ || snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.transform_settings->snapping ||
+        number_.typed())
       return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
     const glm::dvec3 free = dragged(editor, pivot_, 0, 0);
     const auto place = snap == Snap::Joint   ? joint_below(editor)
@@ -231,9 +232,9 @@ RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
                    *editor.document().armature,
                    {},
                    bones_chosen_last(editor)};
-  const Handling::Part part = editor.handling->part;
-  if (kind == RigChange::Kind::Move && part != Handling::Part::Whole)
-    change.ends = {{change.chosen.back(), part == Handling::Part::Tail}};
+  const TransformSettings::Part part = editor.transform_settings->part;
+  if (kind == RigChange::Kind::Move && part != TransformSettings::Part::Whole)
+    change.ends = {{change.chosen.back(), part == TransformSettings::Part::Tail}};
   // The active one first.
   else
     for (auto bone = change.chosen.rbegin(); bone != change.chosen.rend(); ++bone)
@@ -243,7 +244,7 @@ RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
 
 RigChange extrusion(const Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
-  const BoneEnd from{*editor.selection.bone, editor.handling->part != Handling::Part::Head};
+  const BoneEnd from{*editor.selection.bone, editor.transform_settings->part != TransformSettings::Part::Head};
   const int added = static_cast<int>(armature->bones.size());
   return {RigChange::Kind::Move,
           "Extrude " + armature->bones[from.bone].name,

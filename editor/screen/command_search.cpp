@@ -53,9 +53,9 @@ struct Ranked {
 std::optional<Ranked> rank(const Operator& op, const std::string& query) {
   if (auto match = fuzzy_match(query, op.label))
     return Ranked{{&op, std::move(match->letters), ""}, match->score, op.label.size()};
-  if (auto match = fuzzy_match(query, op.place + " " + op.label))
+  if (auto match = fuzzy_match(query, op.category + " " + op.label))
     return Ranked{{&op, {}, ""}, match->score - kPlacePenalty, op.label.size()};
-  if (query.size() < kLeastForSentence || !begins_words(query, op.sentence)) return std::nullopt;
+  if (query.size() < kLeastForSentence || !begins_words(query, op.description)) return std::nullopt;
   return Ranked{{&op, {}, ""}, -kSentencePenalty, op.label.size()};
 }
 
@@ -158,7 +158,7 @@ void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
   const float caps_left = rect.high.x - look.px(14) - width_of_key_caps(editor, caps);
   const float right =
       put_label(editor, {{rect.low.x + look.px(39), rect.low.y}, {caps_left, rect.high.y}}, command, chosen);
-  const std::string beside = command.reason.empty() ? command.op->place : command.reason;
+  const std::string beside = command.reason.empty() ? command.op->category : command.reason;
   put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
            Rect{{right + look.px(9), rect.low.y}, {caps_left - look.px(8), rect.high.y}}, beside);
   put_key_caps(editor, caps_left, rect.centre().y, caps);
@@ -179,7 +179,7 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
              command.op->label);
     put_text(editor, look.fonts.regular, look.theme.text2,
              Rect{{left, rect.low.y + look.px(28)}, {rect.high.x - look.px(14), rect.low.y + look.px(48)}},
-             command.op->sentence);
+             command.op->description);
   }
   float x = left;
   const float y = rect.high.y - look.px(18);
@@ -255,7 +255,7 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
     if (!can_be_searched(editor, op)) continue;
     auto one = any ? rank(op, query) : Ranked{{&op, {}, ""}, 0, place_by_use(editor.preferences, op.id)};
     if (!one) continue;
-    one->command.reason = why_not(editor, op);
+    one->command.reason = disabled_reason(editor, op);
     ranked.push_back(std::move(*one));
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {

@@ -11,10 +11,14 @@ namespace {
 
 using Entry = std::vector<std::string>::const_iterator;
 
-// The end of the submenu that begins at `entry`.
+// The end of the submenu that begins at `entry`; it may hold others.
 Entry end_of(Entry entry, Entry end) {
-  while (entry != end && *entry != "<") ++entry;
-  return entry;
+  int depth = 0;
+  for (; entry != end; ++entry) {
+    if (entry->starts_with("> ")) ++depth;
+    if (*entry == "<" && --depth == 0) return entry;
+  }
+  return end;
 }
 
 bool any_operator(const Editor& editor, Entry begin, Entry end) {
@@ -91,9 +95,10 @@ std::vector<Menu> menus() {
         "> Weights", "skin.heat", "skin.geodesic", "skin.rigid", "skin.compute", "skin.drop_weights", "-",
         "skin.find_seams", "skin.seam_brush", "skin.show_seams", "skin.clear_seams", "-", "skin.lock",
         "skin.lock_others", "skin.lock_all", "skin.unlock_all", "skin.invert_locks", "<",
-        "> Brush", "*", "-", "skin.radius", "skin.strength", "skin.value", "skin.sample", "-", "skin.falloff_smooth",
-        "skin.falloff_sphere", "skin.falloff_root", "skin.falloff_sharp", "skin.falloff_linear",
-        "skin.falloff_constant", "skin.falloff_own", "-", "skin.accumulate", "<",
+        "> Brush", "*", "-", "skin.radius", "skin.strength", "skin.value", "skin.sample", "-",
+        "> Falloff", "skin.falloff_smooth", "skin.falloff_sphere", "skin.falloff_root", "skin.falloff_sharp",
+        "skin.falloff_linear", "skin.falloff_constant", "skin.falloff_own", "<",
+        "skin.accumulate", "<",
         "> Brush reach", "skin.reach_surface", "skin.reach_depth", "skin.reach_through", "-", "skin.along_tissue",
         "-", "skin.paint_all", "skin.paint_soft", "skin.paint_chosen", "skin.paint_visible", "skin.subtree", "-",
         "skin.normalize_unlocked", "skin.normalize_all", "skin.normalize_off", "skin.relative_to_locks", "<",

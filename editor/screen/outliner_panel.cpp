@@ -226,14 +226,14 @@ void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
 // A row that is dragged hangs its bone, or all chosen ones with it, on the bone where it is let go; on the armature's
 // row on nothing. Escape leaves them.
 std::vector<int> dragged_bones(const Editor& editor) {
-  const auto bone = editor.document().armature->find(editor.handling->row_drag.bone);
+  const auto bone = editor.document().armature->find(editor.transform_settings->row_drag.bone);
   if (!bone) return {};
   const std::set<int>& chosen = editor.selection.bones;
   return chosen.contains(*bone) ? std::vector<int>(chosen.begin(), chosen.end()) : std::vector<int>{*bone};
 }
 
 void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
-  auto& drag = editor.handling->row_drag;
+  auto& drag = editor.transform_settings->row_drag;
   if (row.kind != Row::Kind::Bone || editor.workspace != Workspace::Rig) return;
   if (pressed.activated) drag = {row.name, editor.input.pointer, false};
   if (drag.bone == row.name && pressed.held)
@@ -254,7 +254,7 @@ void draw_dragged(Editor& editor, const std::string& words) {
 }
 
 void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
-  const auto& drag = editor.handling->row_drag;
+  const auto& drag = editor.transform_settings->row_drag;
   if (!drag.moved || !rect.contains(editor.input.pointer) ||
       (row.kind != Row::Kind::Bone && row.kind != Row::Kind::Armature))
     return;
@@ -310,7 +310,7 @@ void draw_row(Editor& editor, Column& column, int index, const Row& row) {
            Rect{{end - count, rect.low.y}, {end - look.px(4), rect.high.y}}, row.count, Align::Right);
   take_drag(editor, row, pressed);
   draw_drag(editor, row, rect);
-  if (pressed.clicked && !editor.handling->row_drag.moved) {
+  if (pressed.clicked && !editor.transform_settings->row_drag.moved) {
     focus_list(editor, kList, index);
     choose(editor, row, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
   }
@@ -423,7 +423,7 @@ void draw_outliner(Editor& editor, Column& column) {
     if (revealed) unfold_to(editor, *revealed);
     const std::vector<Row> rows = Tree(editor).rows;
     take_key(editor, rows);
-    auto& drag = editor.handling->row_drag;
+    auto& drag = editor.transform_settings->row_drag;
     if (editor.input.down(Key::Escape)) drag = {};
     const float whole = kRow * static_cast<float>(rows.size()), height = height_of_list(editor, column, whole);
     if (height >= whole) {

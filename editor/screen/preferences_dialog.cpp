@@ -40,12 +40,12 @@ class PreferencesDialog final : public Dialog {
   void draw_folders(Editor& editor, Column& column);
 
   // One row each; the label's sentence is its tool tip.
-  Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& sentence);
-  void number(Editor& editor, Column& column, const std::string& label, const std::string& sentence, double low,
+  Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& description);
+  void number(Editor& editor, Column& column, const std::string& label, const std::string& description, double low,
               double high, const char* format, const char* unit, const std::function<double&(Preferences&)>& value);
-  void whole_number(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+  void whole_number(Editor& editor, Column& column, const std::string& label, const std::string& description,
                     int Preferences::*value, int low, int high, const char* unit);
-  void check(Editor& editor, Column& column, const std::string& label, const std::string& sentence, bool& on);
+  void check(Editor& editor, Column& column, const std::string& label, const std::string& description, bool& on);
   void note(Editor& editor, Column& column, const std::string& text);
 
   PreferencesPage page_;
@@ -55,27 +55,27 @@ class PreferencesDialog final : public Dialog {
 };
 
 Rect PreferencesDialog::labelled(Editor& editor, Column& column, const std::string& label,
-                                 const std::string& sentence) {
+                                 const std::string& description) {
   const Look& look = editor.look;
   const Rect row = column.row(32);
   const Rect words{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(206), row.high.y}};
   put_text(editor, look.fonts.regular, look.theme.text2, words, label);
-  if (ImGui::IsWindowHovered() && words.contains(editor.input.pointer)) tooltip(editor, words, label, sentence);
+  if (ImGui::IsWindowHovered() && words.contains(editor.input.pointer)) tooltip(editor, words, label, description);
   return {{words.high.x + look.px(8), row.low.y + look.px(4)},
           {words.high.x + look.px(8 + 220), row.high.y - look.px(4)}};
 }
 
-void PreferencesDialog::number(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+void PreferencesDialog::number(Editor& editor, Column& column, const std::string& label, const std::string& description,
                                double low, double high, const char* format, const char* unit,
                                const std::function<double&(Preferences&)>& value) {
-  const Rect rect = labelled(editor, column, label, sentence);
+  const Rect rect = labelled(editor, column, label, description);
   double shown = edited_ == label ? edited_value_ : value(editor.preferences);
   bool committed = false;
   if (number_field(editor, label, rect, shown, low, high, format, unit, true, committed)) {
     edited_ = label;
     edited_value_ = shown;
   }
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence + "\nDrag it, or click it and type.");
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description + "\nDrag it, or click it and type.");
   if (!committed || edited_ != label) return;
   value(editor.preferences) = edited_value_;
   edited_.clear();
@@ -83,23 +83,23 @@ void PreferencesDialog::number(Editor& editor, Column& column, const std::string
 }
 
 void PreferencesDialog::whole_number(Editor& editor, Column& column, const std::string& label,
-                                     const std::string& sentence, int Preferences::*value, int low, int high,
+                                     const std::string& description, int Preferences::*value, int low, int high,
                                      const char* unit) {
   double real = editor.preferences.*value;
-  number(editor, column, label, sentence, low, high, "%.0f", unit, [&](Preferences&) -> double& { return real; });
+  number(editor, column, label, description, low, high, "%.0f", unit, [&](Preferences&) -> double& { return real; });
   const int rounded = static_cast<int>(std::lround(real));
   if (rounded == editor.preferences.*value) return;
   editor.preferences.*value = rounded;
   keep_preferences(editor);
 }
 
-void PreferencesDialog::check(Editor& editor, Column& column, const std::string& label, const std::string& sentence,
+void PreferencesDialog::check(Editor& editor, Column& column, const std::string& label, const std::string& description,
                               bool& on) {
   const Look& look = editor.look;
   const Rect row = column.row(30);
   const Rect rect{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(434), row.high.y}};
   if (checkbox(editor, label, rect, label, on)) keep_preferences(editor);
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, sentence);
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description);
 }
 
 void PreferencesDialog::note(Editor& editor, Column& column, const std::string& text) {
@@ -153,8 +153,8 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
   }
   column.space(6);
   Views& views = *editor.views;
-  const auto overlay = [&](const char* label, const char* sentence, bool Preferences::*kept, bool Views::*shown) {
-    check(editor, column, label, sentence, preferences.*kept);
+  const auto overlay = [&](const char* label, const char* description, bool Preferences::*kept, bool Views::*shown) {
+    check(editor, column, label, description, preferences.*kept);
     views.*shown = preferences.*kept;
   };
   overlay("Grid", "The ground grid of the 3D view.", &Preferences::grid, &Views::grid);

@@ -25,7 +25,7 @@ void draw_fields(Editor& editor, const Rect& rect) {
                    look.px(kLabel));
     y += look.px(kRow);
   }
-  if (changed) adjust(editor, std::vector(editor.last_operation->shown));
+  if (changed) redo_last_operator(editor, std::vector(editor.last_operation->shown));
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ void draw_last_operation(Editor& editor, const Rect& view) {
   LastOperation& last = *editor.last_operation;
   const Look& look = editor.look;
   const float height = last.unfolded ? height_of(last) : kHead;
-  if (!why_not_adjust(editor).empty() || view.width() < look.px(kWidth + 240) || view.height() < look.px(height + 120))
+  if (!why_not_redo(editor).empty() || view.width() < look.px(kWidth + 240) || view.height() < look.px(height + 120))
     return;
   const PathScope path(editor, "last operation");
   const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + height)};
@@ -64,7 +64,7 @@ void draw_last_operation_popup(Editor& editor) {
   push_path(editor, "adjust");
   const glm::vec2 low = from_im(ImGui::GetCursorScreenPos());
   const Rect box{low, low + size};
-  if (why_not_adjust(editor).empty()) {
+  if (why_not_redo(editor).empty()) {
     put_text(editor, look.fonts.semibold, look.theme.text,
              Rect{{box.low.x + look.px(10), box.low.y}, {box.high.x - look.px(10), box.low.y + look.px(kHead)}},
              last.label);

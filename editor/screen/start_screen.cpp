@@ -157,7 +157,7 @@ void locate(Editor& editor, const Path& lost) {
                   .action = "Open",
                   .takes_dicom = true,
                   .chosen = [lost](Editor& e, const Path& path) {
-                    forget_recent(e.remembered, lost);
+                    forget_recent(e.recent_files, lost);
                     open_files(e, {path});
                   }});
 }
@@ -240,7 +240,7 @@ void draw_first_file(Editor& editor, const Rect& rect) {
 void draw_recents(Editor& editor, const Plan& plan, float y, float first_end, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.second, y}, "Recent");
-  const auto& recents = editor.remembered.recents;
+  const auto& recents = editor.recent_files.recents;
   if (recents.empty())
     return draw_first_file(editor, {{plan.second, y + look.px(24)}, {plan.right, std::min(first_end, bottom)}});
   y += look.px(20);
@@ -322,7 +322,7 @@ void draw_foot(Editor& editor, const Plan& plan) {
   const Look& look = editor.look;
   const float middle = plan.card.high.y - look.px(plan.small ? 22 : 32), half = look.px(12);
   checkbox(editor, "Show at start", {{plan.left, middle - half}, {plan.left + look.px(130), middle + half}},
-           "Show at start", editor.remembered.show_start);
+           "Show at start", editor.recent_files.show_start);
   float right = plan.right;
   struct Link {
     const char *operator_id, *label;

@@ -37,7 +37,7 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
           std::find(seen.begin(), seen.end(), binding.chord) != seen.end())
         continue;
       seen.push_back(binding.chord);
-      if (!op || !why_not(editor, *op).empty()) continue;
+      if (!op || !disabled_reason(editor, *op).empty()) continue;
       Chord alone = binding.chord;
       alone.modifiers = {};
       all.push_back({key_caps(alone), op->label});
@@ -134,7 +134,7 @@ void draw_hints(Editor& editor, const Rect& bar, float right) {
 struct SavedState {
   const char* icon;
   Colour colour;
-  std::string words, sentence;
+  std::string words, description;
 };
 
 SavedState saved_state(const Editor& editor) {
@@ -167,8 +167,8 @@ float draw_saved(Editor& editor, const Rect& bar, float right) {
     put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
   put_text(editor, look.fonts.small, look.theme.text2,
            Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, state.words);
-  if (press_area(editor, "Saved", slot).hovered && !state.sentence.empty())
-    tooltip(editor, slot, state.words, state.sentence);
+  if (press_area(editor, "Saved", slot).hovered && !state.description.empty())
+    tooltip(editor, slot, state.words, state.description);
   return slot.low.x - look.px(12);
 }
 

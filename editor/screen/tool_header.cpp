@@ -103,7 +103,7 @@ class Header {
     const Operator* op = find_operator(editor_, id);
     const ButtonLook face{op->icon, op->label};
     place(id, face.label, width_of_button(editor_, face),
-          why_not(editor_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
+          disabled_reason(editor_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
     x_ += px(6);
   }
 

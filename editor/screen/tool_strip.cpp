@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The tools at the left edge, one of them active, and switches that belong to the views.
+#include <algorithm>
+#include <cmath>
+
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/skin/painting.h"
@@ -24,6 +27,11 @@ void draw_tool_strip(Editor& editor) {
   if (editor.workspace == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.scale", "-",
              "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane"};
+  // In a low window tools stand closer together, so that all of them are there.
+  const auto lines = static_cast<float>(std::count(tools.begin(), tools.end(), "-"));
+  const float rows = static_cast<float>(tools.size()) - lines;
+  const float room = std::floor((rect.height() - look.px(8) - lines * look.px(11)) / rows) - look.px(1);
+  const float height = std::clamp(room, look.px(18), look.px(34));
   for (const std::string& id : tools) {
     if (id == "-") {
       fill({{rect.low.x + look.px(8), y + look.px(5)}, {rect.high.x - look.px(9), y + look.px(5) + look.line()}},
@@ -32,12 +40,14 @@ void draw_tool_strip(Editor& editor) {
       continue;
     }
     const Operator* op = find_operator(editor, id);
-    const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + look.px(34)}};
-    const Pressed pressed = press_area(editor, id, place, why_not(editor, *op).empty());
+    const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + height}};
+    const Pressed pressed = press_area(editor, id, place, disabled_reason(editor, *op).empty());
     const bool on = op->checked && op->checked(editor);
     if (on) fill(place, look.theme.accent, look.px(5));
     else if (pressed.hovered) fill(place, look.theme.hover, look.px(5));
-    const Colour colour = on ? look.theme.on_accent : why_not(editor, *op).empty() ? look.theme.text : look.theme.text3;
+    const Colour colour = on                                     ? look.theme.on_accent
+                          : disabled_reason(editor, *op).empty() ? look.theme.text
+                                                                 : look.theme.text3;
     put_icon(look.fonts.icons, colour, place, op->icon);
     if (pressed.hovered) operator_tooltip(editor, *op, place);
     if (pressed.clicked) run(editor, *op);

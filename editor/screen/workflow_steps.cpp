@@ -131,7 +131,7 @@ void draw_step(Editor& editor, Column& column, const Step& step, int number) {
   put_text(editor, look.fonts.small, step.state == StepState::Warning ? look.theme.warn : look.theme.text2,
            Rect{{left, middle}, {right, middle + look.px(16)}}, step.line);
   if (width <= 0) return;
-  const bool enabled = why_not(editor, *op).empty();
+  const bool enabled = disabled_reason(editor, *op).empty();
   if (button(editor, step.button, place,
              {"", step.button, next && enabled ? ButtonStyle::Primary : ButtonStyle::Plain, enabled}))
     run(editor, *op);
@@ -154,7 +154,7 @@ void draw_more(Editor& editor, Column& column, const Step& step) {
       x = row.low.x + look.px(34);
     }
     const Rect place{{x, row.low.y + look.px(1)}, {x + width, row.high.y - look.px(1)}};
-    const bool enabled = why_not(editor, *op).empty();
+    const bool enabled = disabled_reason(editor, *op).empty();
     if (button(editor, id, place, {"", op->label, on ? ButtonStyle::Soft : ButtonStyle::Plain, enabled}))
       run(editor, *op);
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);

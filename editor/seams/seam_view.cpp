@@ -32,7 +32,7 @@ void draw_line(const Look& look, const glm::dvec2& a, const glm::dvec2& b, float
   canvas.AddLine(im(glm::vec2(a)), im(glm::vec2(b)), kSeam, width * look.scale);
 }
 
-void draw_in_body(const Look& look, const SeenFrom& seen, const SeamSheet& sheet) {
+void draw_in_body(const Look& look, const ViewProjection& seen, const SeamSheet& sheet) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   for (std::size_t i = 0; i < sheet.rectangles.size() && sheet.rectangles.size() <= kMostRectangles; ++i) {
     std::array<ImVec2, 4> corners;
@@ -61,7 +61,7 @@ std::optional<std::array<glm::dvec3, 2>> crossing(const std::array<glm::dvec3, 4
   return found == 2 ? std::optional(ends) : std::nullopt;
 }
 
-void draw_in_slice(const Editor& editor, const SeenFrom& seen, const SeamSheet& sheet) {
+void draw_in_slice(const Editor& editor, const ViewProjection& seen, const SeamSheet& sheet) {
   for (const auto& rectangle : sheet.rectangles)
     if (const auto line = crossing(rectangle, editor.views->cross_hair, seen.towards_eye)) {
       const auto from = seen.pixel_of((*line)[0]), to = seen.pixel_of((*line)[1]);
@@ -108,7 +108,7 @@ void draw_seams(Editor& editor, const ViewPlace& view) {
   const auto seams = shown_seams(editor);
   if (!seams || !*seams || (*seams)->empty()) return;
   const SeamSheet& sheet = drawn_sheet(editor, *seams, editor.seams->running ? editor.seams->running->faces : -1);
-  const SeenFrom seen(editor, view);
+  const ViewProjection seen(editor, view);
   if (view.id == ViewId::Body) draw_in_body(editor.look, seen, sheet);
   else draw_in_slice(editor, seen, sheet);
 }

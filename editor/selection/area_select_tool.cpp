@@ -24,7 +24,7 @@ struct SeenBone {
   std::vector<glm::dvec2> points;
 };
 
-std::vector<SeenBone> bones_seen(const Editor& editor, const SeenFrom& view) {
+std::vector<SeenBone> bones_seen(const Editor& editor, const ViewProjection& view) {
   const bool posed = editor.workspace == Workspace::Pose;
   const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
   const auto moved = posed_from_rest(*rig, posed ? seen_pose(editor) : rest_pose(*rig));
@@ -79,10 +79,10 @@ class AreaSelection : public Modal {
       selection.bone = selection.bones.empty() ? std::nullopt : std::optional(*selection.bones.begin());
     selection.tissues.clear();
     selection.tissue.reset();
-    editor.handling->part = Handling::Part::Whole;
+    editor.transform_settings->part = TransformSettings::Part::Whole;
   }
 
-  SeenFrom view_;
+  ViewProjection view_;
   const Selection before_;
   glm::vec2 pointer_;
 

@@ -28,7 +28,7 @@ struct SeenBone {
   bool chosen, active;
 };
 
-std::vector<SeenBone> seen_bones(const Editor& editor, const SeenFrom& view) {
+std::vector<SeenBone> seen_bones(const Editor& editor, const ViewProjection& view) {
   const render::Scene& scene = editor.views->scene;
   std::vector<SeenBone> seen;
   for (int b = 0; b < std::ssize(scene.armature->bones); ++b) {
@@ -57,7 +57,7 @@ struct Circle {
 
 class Names {
  public:
-  Names(Editor& editor, const SeenFrom& view) : editor_(editor), inside_(view.place.rect) {
+  Names(Editor& editor, const ViewProjection& view) : editor_(editor), inside_(view.place.rect) {
     const auto gizmo = gizmo_in(editor, view);
     const auto centre = gizmo ? view.pixel_of(gizmo->centre) : std::nullopt;
     if (centre)
@@ -122,7 +122,7 @@ class Names {
 };
 
 // From the tail, each with its letter.
-void draw_axes(Editor& editor, const SeenFrom& view, const SeenBone& seen) {
+void draw_axes(Editor& editor, const ViewProjection& view, const SeenBone& seen) {
   const render::Scene& scene = editor.views->scene;
   const Bone& bone = scene.armature->bones[seen.bone];
   const RigidTransform posed =
@@ -146,7 +146,7 @@ void draw_axes(Editor& editor, const SeenFrom& view, const SeenBone& seen) {
 
 }  // namespace
 
-void draw_bone_labels(Editor& editor, const SeenFrom& view) {
+void draw_bone_labels(Editor& editor, const ViewProjection& view) {
   const Views& views = *editor.views;
   if (view.place.id != ViewId::Body || !views.scene.armature || (!views.bone_names && !views.bone_axes)) return;
   const std::vector<SeenBone> bones = seen_bones(editor, view);

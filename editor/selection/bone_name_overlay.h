@@ -7,6 +7,6 @@
 
 namespace limber::editor {
 
-void draw_bone_labels(Editor& editor, const SeenFrom& view);
+void draw_bone_labels(Editor& editor, const ViewProjection& view);
 
 }  // namespace limber::editor

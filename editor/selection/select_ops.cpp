@@ -19,7 +19,7 @@ namespace {
 
 void pick(Editor& editor) {
   if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
-  editor.handling->part = Handling::Part::Whole;
+  editor.transform_settings->part = TransformSettings::Part::Whole;
   if (pick_bone_part(editor)) return;
   if (const auto bone = bone_at_pointer(editor)) return choose_bone(editor, *bone);
   const Hover& hover = editor.views->hover;
@@ -28,7 +28,7 @@ void pick(Editor& editor) {
 }
 
 void extend(Editor& editor) {
-  editor.handling->part = Handling::Part::Whole;
+  editor.transform_settings->part = TransformSettings::Part::Whole;
   if (const auto bone = bone_at_pointer(editor)) {
     // The active one pressed again is given up.
     if (editor.selection.bone == bone) {
@@ -166,18 +166,18 @@ void choose_alike(Editor& editor, const std::function<bool(const Armature&, int 
       editor.selection.bones.insert(other);
 }
 
-Operator alike_operator(const char* id, const char* label, const char* sentence,
+Operator alike_operator(const char* id, const char* label, const char* description,
                         bool (*alike)(const Armature&, int chosen, int other)) {
-  return {id, label, "", "Select", sentence, [alike](Editor& e) { choose_alike(e, alike); }, needs_bone};
+  return {id, label, "", "Select", description, [alike](Editor& e) { choose_alike(e, alike); }, needs_bone};
 }
 
 double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
 
-Operator tool_operator(const char* id, const char* label, const char* icon, const char* sentence, Tool tool) {
-  return {id,       label,
-          icon,     "Tool",
-          sentence, [tool](Editor& e) { e.tool = tool; },
-          nullptr,  [tool](const Editor& e) { return e.tool == tool; }};
+Operator tool_operator(const char* id, const char* label, const char* icon, const char* description, Tool tool) {
+  return {id,          label,
+          icon,        "Tool",
+          description, [tool](Editor& e) { e.tool = tool; },
+          nullptr,     [tool](const Editor& e) { return e.tool == tool; }};
 }
 
 }  // namespace

@@ -40,20 +40,20 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
 }
 
 // How steeply a plane is seen: the sine of its angle with the line of sight.
-double steepness(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+double steepness(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return std::abs(glm::dot(gizmo.axes[axis], view.direction_to_eye(gizmo.centre)));
 }
-float ring_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+float ring_alpha(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return static_cast<float>(glm::clamp((steepness(gizmo, view, axis) - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
 }
 // An arrow that points at the eye cannot be drawn along.
-float arrow_alpha(const Gizmo& gizmo, const SeenFrom& view, int axis) {
+float arrow_alpha(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   const double s = steepness(gizmo, view, axis), across = std::sqrt(std::max(0.0, 1 - s * s));
   return static_cast<float>(glm::clamp((across - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
 }
 
 // How near the eye the visible part of a ring is where the pixel touches it; nothing where it does not.
-std::optional<double> touched(const Ring& ring, const SeenFrom& view, const glm::dvec2& pixel, double reach) {
+std::optional<double> touched(const Ring& ring, const ViewProjection& view, const glm::dvec2& pixel, double reach) {
   const glm::dvec3 to_eye = view.direction_to_eye(ring.centre);
   const auto [begin, by] = ring.front(view);
   double best = reach;
@@ -75,8 +75,8 @@ std::optional<double> touched(const Ring& ring, const SeenFrom& view, const glm:
   return nearness;
 }
 
-std::optional<GizmoPart> rotating_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel,
-                                       const glm::dvec2& centre) {
+std::optional<GizmoPart> rotating_part(const Gizmo& gizmo, const ViewProjection& view, float scale,
+                                       const glm::dvec2& pixel, const glm::dvec2& centre) {
   std::optional<GizmoPart> found;
   double nearest = -1e300;
   for (int axis = 0; axis < 3; ++axis) {
@@ -99,8 +99,8 @@ glm::dvec3 middle_of_square(const Gizmo& gizmo, int axis, double unit) {
   return gizmo.centre + (gizmo.axes[(axis + 1) % 3] + gizmo.axes[(axis + 2) % 3]) * (kSquareAt * unit);
 }
 
-std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel,
-                                     const glm::dvec2& centre) {
+std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const ViewProjection& view, float scale,
+                                     const glm::dvec2& pixel, const glm::dvec2& centre) {
   if (glm::distance(pixel, centre) <= (kCentre + kHit / 2) * scale) return GizmoPart{GizmoPart::Kind::Centre};
   const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
   const glm::dvec3 to_eye = view.direction_to_eye(gizmo.centre);
@@ -127,7 +127,7 @@ std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const SeenFrom& view, f
 }
 
 // The tail nearest to the pointer, else the bone under it.
-std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+std::optional<int> joint_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const Armature& armature = *editor.document().armature;
   const auto posed = posed_from_rest(armature, seen_pose(editor));
   std::optional<int> found;
@@ -141,7 +141,7 @@ std::optional<int> joint_at(const Editor& editor, const SeenFrom& view, const gl
   return found ? found : bone_at_pointer(editor);
 }
 
-bool press_joint(Editor& editor, const SeenFrom& view) {
+bool press_joint(Editor& editor, const ViewProjection& view) {
   const auto bone = joint_at(editor, view, glm::dvec2(editor.input.pointer));
   if (!bone) return false;
   choose_bone(editor, *bone);
@@ -149,7 +149,7 @@ bool press_joint(Editor& editor, const SeenFrom& view) {
   return true;
 }
 
-void draw_rotating(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter,
+void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Editor& editor, const GizmoPainter& painter,
                    const std::optional<GizmoPart>& hovered) {
   const Theme& theme = editor.look.theme;
   const float scale = editor.look.scale;
@@ -174,7 +174,7 @@ void draw_rotating(const Gizmo& gizmo, const SeenFrom& view, const Editor& edito
   }
 }
 
-void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor, const GizmoPainter& painter,
+void draw_moving(const Gizmo& gizmo, const ViewProjection& view, const Editor& editor, const GizmoPainter& painter,
                  const std::optional<GizmoPart>& hovered) {
   const Theme& theme = editor.look.theme;
   const float scale = editor.look.scale;
@@ -197,11 +197,11 @@ void draw_moving(const Gizmo& gizmo, const SeenFrom& view, const Editor& editor,
 
 struct BonePart {
   int bone;
-  Handling::Part part;
+  TransformSettings::Part part;
 };
 
 // The joint nearest to the pointer, the active bone's before others'; else the bone under it.
-std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
   std::optional<BonePart> found;
@@ -215,12 +215,12 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const SeenFrom& view,
           seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
       if (distance > nearest) continue;
       nearest = distance;
-      found = BonePart{bone, tail ? Handling::Part::Tail : Handling::Part::Head};
+      found = BonePart{bone, tail ? TransformSettings::Part::Tail : TransformSettings::Part::Head};
     }
   if (found || view.place.id != ViewId::Body) return found;
   if (const auto bone =
           body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low))))
-    return BonePart{*bone, Handling::Part::Whole};
+    return BonePart{*bone, TransformSettings::Part::Whole};
   return std::nullopt;
 }
 
@@ -243,7 +243,7 @@ std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
 }
 
 // In slices as lines, fainter away from them; in the rig the chosen joint in every view.
-void draw_rig(Editor& editor, const SeenFrom& view) {
+void draw_rig(Editor& editor, const ViewProjection& view) {
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
   if (view.place.id != ViewId::Body)
@@ -257,18 +257,19 @@ void draw_rig(Editor& editor, const SeenFrom& view) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
   const auto bone = editor.selection.bone;
-  if (editor.handling->part == Handling::Part::Whole || !bone || *bone >= std::ssize(rig->bones)) return;
-  const glm::dvec3& place = place_of(*rig, {*bone, editor.handling->part == Handling::Part::Tail});
+  if (editor.transform_settings->part == TransformSettings::Part::Whole || !bone || *bone >= std::ssize(rig->bones))
+    return;
+  const glm::dvec3& place = place_of(*rig, {*bone, editor.transform_settings->part == TransformSettings::Part::Tail});
   if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
 }
 
 // Moves what is pressed, or draws a bone out of it.
-bool press_rig(Editor& editor, const SeenFrom& view) {
+bool press_rig(Editor& editor, const ViewProjection& view) {
   if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
   const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
   if (!part) return false;
   choose_bone(editor, part->bone);
-  editor.handling->part = part->part;
+  editor.transform_settings->part = part->part;
   begin_tool(editor,
              begin_rig_change(
                  editor, editor.tool == Tool::Move ? chosen_change(editor, RigChange::Kind::Move) : extrusion(editor),
@@ -287,14 +288,14 @@ std::vector<Pole> poles_of(const Editor& editor) {
   if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
   std::vector<Pole> poles;
   const auto posed = posed_from_rest(*armature, seen_pose(editor));
-  const auto& shown = editor.handling->shown_pole;
+  const auto& shown = editor.transform_settings->shown_pole;
   for (const auto& [name, point] : anchors_of(editor.document()).poles)
     if (const auto bone = armature->find(name))
       poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, shown.bone == name ? shown.place : point});
   return poles;
 }
 
-std::optional<int> pole_at(const Editor& editor, const SeenFrom& view, const glm::dvec2& pixel) {
+std::optional<int> pole_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   for (const Pole& pole : poles_of(editor))
     if (const auto seen = view.pixel_of(pole.point);
         seen && glm::distance(*seen, pixel) <= kJointHit * editor.look.scale)
@@ -303,7 +304,7 @@ std::optional<int> pole_at(const Editor& editor, const SeenFrom& view, const glm
 }
 
 // Pinned joints and poles.
-void draw_marks(Editor& editor, const SeenFrom& view) {
+void draw_marks(Editor& editor, const ViewProjection& view) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
   const GizmoPainter painter(editor, view);
@@ -323,7 +324,7 @@ constexpr double kLimits = 58, kTwist = 18;  // pixels at scale 1
 
 // What the joint at the active bone's head allows: a hinge's fan, a ball's cone and range of twist. About the bone at
 // rest, and in the Pose workspace about where the bone above carries it, while limits are kept.
-void draw_limits(Editor& editor, const SeenFrom& view) {
+void draw_limits(Editor& editor, const ViewProjection& view) {
   const bool posed = editor.workspace == Workspace::Pose;
   if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
   const std::shared_ptr<const Armature> armature = posed ? editor.document().armature : shown_rig(editor);
@@ -373,17 +374,19 @@ void draw_limits(Editor& editor, const SeenFrom& view) {
 
 }  // namespace
 
-std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
+std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view) {
   if (!editor.document().volume || !editor.views->bones) return std::nullopt;
   const std::shared_ptr<const Armature> armature = shown_rig(editor);
   const auto bone = editor.selection.bone;
   if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
   if (editor.workspace == Workspace::Rig &&
       (editor.tool == Tool::Move || editor.tool == Tool::Rotate || editor.tool == Tool::Scale)) {
-    const glm::dvec3& place =
-        place_of(*armature, {*bone, editor.tool == Tool::Move && editor.handling->part == Handling::Part::Tail});
+    const glm::dvec3& place = place_of(
+        *armature,
+        {*bone, editor.tool == Tool::Move && editor.transform_settings->part == TransformSettings::Part::Tail});
     if (!view.shows(place)) return std::nullopt;
-    return Gizmo{editor.tool, place, axes_of(editor.handling->space, *armature, rest_pose(*armature), *bone, view)};
+    return Gizmo{editor.tool, place,
+                 axes_of(editor.transform_settings->space, *armature, rest_pose(*armature), *bone, view)};
   }
   if (editor.workspace != Workspace::Pose || (editor.tool != Tool::Rotate && editor.tool != Tool::Move))
     return std::nullopt;
@@ -392,14 +395,14 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view) {
   const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
   const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);
   if (!view.shows(place)) return std::nullopt;
-  const Space space = editor.handling->space;
+  const Space space = editor.transform_settings->space;
   const bool rings = editor.tool == Tool::Rotate;
   return Gizmo{editor.tool, place,
                rings ? axes_of_rings(editor, space, *armature, pose, *bone, view)
                      : axes_of(space, *armature, pose, *bone, view)};
 }
 
-std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel) {
+std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel) {
   const auto centre = view.pixel_of(gizmo.centre);
   if (!centre) return std::nullopt;
   return gizmo.tool == Tool::Rotate ? rotating_part(gizmo, view, scale, pixel, *centre)
@@ -409,7 +412,7 @@ std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float
 bool press_gizmo(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || editor.input.down(Key::Alt)) return false;
-  const SeenFrom view(editor, *place);
+  const ViewProjection view(editor, *place);
   if (const auto pole =
           place->id == ViewId::Body ? pole_at(editor, view, glm::dvec2(editor.input.pointer)) : std::nullopt) {
     choose_bone(editor, *pole);
@@ -425,7 +428,7 @@ bool press_gizmo(Editor& editor) {
   if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
     return press_rig(editor, view);
   if (!part) return false;
-  const Grip grip{.lock = {part->axis, editor.handling->space, part->kind == GizmoPart::Kind::Plane},
+  const Grip grip{.lock = {part->axis, editor.transform_settings->space, part->kind == GizmoPart::Kind::Plane},
                   .held = MouseButton::Left,
                   .trackball = part->kind == GizmoPart::Kind::Trackball};
   if (editor.workspace == Workspace::Rig) {
@@ -461,7 +464,7 @@ std::vector<std::pair<double, int>> bones_below(const Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   std::vector<std::pair<double, int>> found;
   if (!place || !editor.views->scene.armature) return found;
-  const SeenFrom view(editor, *place);
+  const ViewProjection view(editor, *place);
   const glm::dvec2 pixel(editor.input.pointer);
   if (place->id == ViewId::Body) {
     for (const render::BoneHit& hit :
@@ -482,15 +485,15 @@ std::vector<std::pair<double, int>> bones_below(const Editor& editor) {
 bool pick_bone_part(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   const auto part =
-      place ? bone_part_at(editor, SeenFrom(editor, *place), glm::dvec2(editor.input.pointer)) : std::nullopt;
+      place ? bone_part_at(editor, ViewProjection(editor, *place), glm::dvec2(editor.input.pointer)) : std::nullopt;
   if (!part) return false;
   choose_bone(editor, part->bone);
-  editor.handling->part = part->part;
+  editor.transform_settings->part = part->part;
   return true;
 }
 
 void draw_gizmo(Editor& editor, const ViewPlace& place) {
-  const SeenFrom view(editor, place);
+  const ViewProjection view(editor, place);
   draw_rig(editor, view);
   draw_bone_labels(editor, view);
   draw_rig_check(editor, view);

@@ -29,9 +29,9 @@ struct Gizmo {
 };
 
 // Of the tool in use, where it stands in that view; nothing where it takes hold of nothing.
-std::optional<Gizmo> gizmo_in(const Editor& editor, const SeenFrom& view);
+std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view);
 // What of it lies under the pixel.
-std::optional<GizmoPart> part_at(const Gizmo& gizmo, const SeenFrom& view, float scale, const glm::dvec2& pixel);
+std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel);
 
 // That bone alone.
 void choose_bone(Editor& editor, int bone);

@@ -11,12 +11,13 @@ namespace limber::editor {
 
 namespace {
 
-Operator layout_operator(const char* id, const char* label, const char* icon, const char* sentence, ViewLayout views) {
+Operator layout_operator(const char* id, const char* label, const char* icon, const char* description,
+                         ViewLayout views) {
   return {id,
           label,
           icon,
           "View",
-          sentence,
+          description,
           [views](Editor& e) {
             e.arrangement().views = views;
             e.arrangement().maximized.reset();
@@ -25,25 +26,25 @@ Operator layout_operator(const char* id, const char* label, const char* icon, co
           [views](const Editor& e) { return e.arrangement().views == views && !e.arrangement().maximized; }};
 }
 
-Operator display_operator(const char* id, const char* label, const char* sentence, render::Display display) {
-  return {id,       label,
-          "",       "View",
-          sentence, [display](Editor& e) { e.views->display = display; },
-          nullptr,  [display](const Editor& e) { return e.views->display == display; }};
+Operator display_operator(const char* id, const char* label, const char* description, render::Display display) {
+  return {id,          label,
+          "",          "View",
+          description, [display](Editor& e) { e.views->display = display; },
+          nullptr,     [display](const Editor& e) { return e.views->display == display; }};
 }
 
-Operator overlay_operator(const char* id, const char* label, const char* sentence, bool Views::*shown) {
-  return {id,       label,
-          "",       "View",
-          sentence, [shown](Editor& e) { (*e.views).*shown = !((*e.views).*shown); },
-          nullptr,  [shown](const Editor& e) { return (*e.views).*shown; }};
+Operator overlay_operator(const char* id, const char* label, const char* description, bool Views::*shown) {
+  return {id,          label,
+          "",          "View",
+          description, [shown](Editor& e) { (*e.views).*shown = !((*e.views).*shown); },
+          nullptr,     [shown](const Editor& e) { return (*e.views).*shown; }};
 }
 
-Operator shape_operator(const char* id, const char* label, const char* sentence, render::BoneShape shape) {
-  return {id,       label,
-          "",       "View",
-          sentence, [shape](Editor& e) { e.views->bone_shape = shape; },
-          nullptr,  [shape](const Editor& e) { return e.views->bone_shape == shape; }};
+Operator shape_operator(const char* id, const char* label, const char* description, render::BoneShape shape) {
+  return {id,          label,
+          "",          "View",
+          description, [shape](Editor& e) { e.views->bone_shape = shape; },
+          nullptr,     [shape](const Editor& e) { return e.views->bone_shape == shape; }};
 }
 
 void maximize(Editor& editor) {

@@ -98,7 +98,7 @@ class BrushNumberTool final : public Modal {
   }
 
   BrushNumber which_;
-  SeenFrom view_;
+  ViewProjection view_;
   const double before_;
   double per_pixel_ = 1, now_ = 0;
   glm::dvec2 centre_{0}, pointer_{0};

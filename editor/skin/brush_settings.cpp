@@ -25,11 +25,12 @@ std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, con
   if (view.id == ViewId::Body) {
     const auto hit = editor.views->body.picture->pick(glm::ivec2(pixel - view.rect.low));
     if (!hit) return std::nullopt;
-    const glm::dvec3 normal =
-        glm::dot(hit->normal, hit->normal) > 0 ? hit->normal : SeenFrom(editor, view).direction_to_eye(hit->point);
+    const glm::dvec3 normal = glm::dot(hit->normal, hit->normal) > 0
+                                  ? hit->normal
+                                  : ViewProjection(editor, view).direction_to_eye(hit->point);
     return BrushPlace{view.id, hit->point, normal, scene.pose ? to_world * glm::dvec3(hit->voxel) : hit->point};
   }
-  const SeenFrom seen(editor, view);
+  const ViewProjection seen(editor, view);
   const glm::dvec3 point = world_of(slice_of(*editor.views, view.id).camera, pixel - view.rect.low, view.rect.size());
   const auto voxel = voxel_shown_at(scene, point);
   if (!voxel || scene.volume->at_or_air(*voxel) == 0) return std::nullopt;
@@ -134,7 +135,7 @@ StrokeSettings stroke_settings(const Editor& editor, BrushKind kind) {
     filter.allows = [region](std::int64_t place, const glm::ivec3&) {
       return (*region)[static_cast<std::size_t>(place)] != 0;
     };
-  if (editor.handling->x_mirror) settings.mirror = mirror_plane(*document.armature);
+  if (editor.transform_settings->x_mirror) settings.mirror = mirror_plane(*document.armature);
   return settings;
 }
 

@@ -12,9 +12,9 @@ std::string needs_rig(const Editor& editor) {
   return editor.document().armature ? "" : "Import a rig first";
 }
 
-Operator binding_operator(const char* id, const char* label, const char* sentence, BindingMethod method) {
-  return {id,        label,    icon::kSkin,
-          "Weights", sentence, [method](Editor& e) { start_binding(e, {.method = method}); },
+Operator binding_operator(const char* id, const char* label, const char* description, BindingMethod method) {
+  return {id,        label,       icon::kSkin,
+          "Weights", description, [method](Editor& e) { start_binding(e, {.method = method}); },
           needs_rig};
 }
 

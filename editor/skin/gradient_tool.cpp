@@ -112,8 +112,8 @@ class GradientTool final : public Modal {
   }
 
   glm::vec2 pointer_, begun_{0};
-  std::optional<SeenFrom> view_;  // once the button is down
-  glm::dvec3 from_{0}, to_{0};    // world, mm
+  std::optional<ViewProjection> view_;  // once the button is down
+  glm::dvec3 from_{0}, to_{0};          // world, mm
   bool radial_ = false;
 };
 

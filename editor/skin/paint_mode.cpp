@@ -88,7 +88,7 @@ void drop_stroke(Editor& editor) {
 void paint_to(Editor& editor, const glm::vec2& pixel) {
   Painting& painting = *editor.skin->painting;
   Painting::Running& running = *painting.running;
-  const SeenFrom seen(editor, running.view);
+  const ViewProjection seen(editor, running.view);
   const glm::dvec3 reference = painting.place ? painting.place->seen : editor.views->cross_hair;
   const double radius_seen = painting.radius / std::max(seen.millimetres_per_pixel(reference), 1e-6);
   const int steps = std::clamp(
@@ -220,14 +220,14 @@ void follow_brush(Editor& editor) {
   if (!painting.place) return;
   for (const ViewPlace& view : editor.layout.view_places)
     if (view.id == painting.place->view)
-      editor.skin->ring =
-          static_cast<float>(painting.radius / SeenFrom(editor, view).millimetres_per_pixel(painting.place->seen));
+      editor.skin->ring = static_cast<float>(painting.radius /
+                                             ViewProjection(editor, view).millimetres_per_pixel(painting.place->seen));
 }
 
 void draw_brush(Editor& editor, const ViewPlace& view) {
   const Painting& painting = *editor.skin->painting;
   if (!painting.place || painting.place->view != view.id || editor.modal) return;
-  const SeenFrom seen(editor, view);
+  const ViewProjection seen(editor, view);
   const GizmoPainter painter(editor, seen);
   const BrushPlace& place = *painting.place;
   // Upon the body, where the part that finds none of it is faint; in a slice a circle.
@@ -263,7 +263,7 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
     painter.line(place.seen,
                  place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)),
                  with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
-  if (editor.handling->x_mirror && !editor.views->scene.pose && !editor.seams->brush) {
+  if (editor.transform_settings->x_mirror && !editor.views->scene.pose && !editor.seams->brush) {
     const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
     if (seen.shows(other)) ring(other, 0.5f);
   }

@@ -22,8 +22,8 @@ std::string needs_paint_below(const Editor& editor) {
     const std::string why = why_not_cut(editor);
     return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
   }
-  for (const auto& why_not : {why_not_paint, why_brush_reaches_nothing})
-    if (std::string why = why_not(editor); !why.empty()) return why;
+  for (const auto& disabled_reason : {why_not_paint, why_brush_reaches_nothing})
+    if (std::string why = disabled_reason(editor); !why.empty()) return why;
   return editor.views->hover.view ? "" : "Put the pointer on the body";
 }
 
@@ -44,7 +44,7 @@ const char* icon_of(BrushKind kind) {
 std::vector<Operator> brush_operators() {
   std::vector<Operator> all;
   for (const BrushRule& rule : brush_rules())
-    all.push_back({operator_of(rule), rule.name, icon_of(rule.kind), "Brush", rule.sentence,
+    all.push_back({operator_of(rule), rule.name, icon_of(rule.kind), "Brush", rule.description,
                    [kind = rule.kind](Editor& e) { e.skin->painting->kind = kind, e.seams->brush = false; }, nullptr,
                    [kind = rule.kind](const Editor& e) { return e.skin->painting->kind == kind && !e.seams->brush; }});
   return all;
@@ -52,26 +52,26 @@ std::vector<Operator> brush_operators() {
 
 // One of several settings.
 template <class Value>
-Operator setting(const char* id, const char* label, const char* sentence, Value Painting::*member, Value value) {
-  return {id,       label,
-          "",       "Brush",
-          sentence, [=](Editor& e) { (*e.skin->painting).*member = value; },
-          nullptr,  [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
+Operator setting(const char* id, const char* label, const char* description, Value Painting::*member, Value value) {
+  return {id,          label,
+          "",          "Brush",
+          description, [=](Editor& e) { (*e.skin->painting).*member = value; },
+          nullptr,     [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
 }
 
-Operator normalizing(const char* id, const char* label, const char* sentence, Normalize how) {
-  return {id,       label,
-          "",       "Brush",
-          sentence, [how](Editor& e) { e.skin->painting->normalize = how; },
-          nullptr,  [how](const Editor& e) { return normalize_of(e) == how; }};
+Operator normalizing(const char* id, const char* label, const char* description, Normalize how) {
+  return {id,          label,
+          "",          "Brush",
+          description, [how](Editor& e) { e.skin->painting->normalize = how; },
+          nullptr,     [how](const Editor& e) { return normalize_of(e) == how; }};
 }
 
-Operator shape(const char* id, const char* label, const char* sentence, FalloffShape falloff) {
+Operator shape(const char* id, const char* label, const char* description, FalloffShape falloff) {
   return {id,
           label,
           "",
           "Brush",
-          sentence,
+          description,
           [falloff](Editor& e) {
             e.skin->painting->falloff = falloff;
             e.skin->painting->falloff_curve.clear();
@@ -93,7 +93,7 @@ Operator leaving_normalizing() {
       "Strokes leave the layer's other bones what they have: what lies below it makes room for the painted bone, and "
       "weights are normalized when the layers are put together. Edits of the whole body normalize all the same.",
       Normalize::WhenComposed);
-  off.why_not = needs_layer;
+  off.disabled_reason = needs_layer;
   return off;
 }
 

@@ -135,7 +135,7 @@ class RegionTool final : public Modal {
     if (lasso_) outline.push_back(end);
     else outline = {outline[0], {end.x, outline[0].y}, end, {outline[0].x, end.y}};
     if (area_of(outline) < kLeastArea) return;
-    const SeenFrom view = *view_;
+    const ViewProjection view = *view_;
     const auto stencil = std::make_shared<const Stencil>(view.place.rect, outline);
     change_region(editor, lasso_ ? "Region by a lasso" : "Region by a box", change_of(editor),
                   [view, stencil](const WeightsToEdit& what) {
@@ -149,7 +149,7 @@ class RegionTool final : public Modal {
 
   const bool lasso_;
   glm::vec2 pointer_;
-  std::optional<SeenFrom> view_;  // once the button is down
+  std::optional<ViewProjection> view_;  // once the button is down
   std::vector<glm::dvec2> outline_;
 };
 

@@ -16,14 +16,14 @@ namespace {
 constexpr double kPixelStep = 4;  // that a stroke is followed by, at scale 1
 
 // The knife's edge at a place: along the line of sight into the body, to both sides of a slice.
-Blade blade_at(const SeenFrom& seen, const BrushPlace& place, double radius, const Grid& grid) {
+Blade blade_at(const ViewProjection& seen, const BrushPlace& place, double radius, const Grid& grid) {
   if (place.view != ViewId::Body)
     return {place.rest + radius * seen.towards_eye, place.rest - radius * seen.towards_eye};
   const glm::dvec3 to_eye = seen.direction_to_eye(place.seen);
   return {place.rest + glm::length(grid.spacing) * to_eye, place.rest - radius * to_eye};
 }
 
-void change_at(SeamView::Running& running, const SeenFrom& seen, const BrushPlace& place, double radius) {
+void change_at(SeamView::Running& running, const ViewProjection& seen, const BrushPlace& place, double radius) {
   const Grid& grid = running.volume->grid;
   if (running.stroke == SeamStroke::Join) {
     running.faces += join_within(*running.seams, grid, place.rest, radius);
@@ -37,7 +37,7 @@ void change_at(SeamView::Running& running, const SeenFrom& seen, const BrushPlac
 void stroke_to(Editor& editor, const glm::vec2& pixel) {
   SeamView::Running& running = *editor.seams->running;
   Painting& painting = *editor.skin->painting;
-  const SeenFrom seen(editor, running.view);
+  const ViewProjection seen(editor, running.view);
   const int steps =
       std::max(1, static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / (kPixelStep * editor.look.scale))));
   for (int step = 1; step <= steps; ++step) {

@@ -40,12 +40,12 @@ std::string needs_locks(const Editor& editor) {
   return editor.document().locks && !editor.document().locks->bones.empty() ? "" : "No bone is locked";
 }
 
-Operator shows(const char* id, const char* label, const char* sentence, std::optional<WeightDisplay> display) {
+Operator shows(const char* id, const char* label, const char* description, std::optional<WeightDisplay> display) {
   return {id,
           label,
           "",
           "Weights",
-          sentence,
+          description,
           [display](Editor& e) { e.skin->display = display; },
           needs_skin_weights,
           [display](const Editor& e) { return e.skin->display == display; }};

@@ -108,7 +108,7 @@ void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& ma
                            .act = weight_act(make),
                            .revision = e.history.revision(),
                            .selection = selection,
-                           .part = e.handling->part,
+                           .part = e.transform_settings->part,
                            .unfolded = e.last_operation->unfolded};
     };
   });
@@ -128,7 +128,7 @@ ActWith weight_act(const MakeWeightOperation& make) {
 }
 
 void edit_weights(Editor& editor, const Fields& fields, const MakeWeightOperation& make) {
-  act_adjustably(editor, fields, weight_act(make));
+  act_and_allow_redo(editor, fields, weight_act(make));
 }
 
 std::vector<int> painted_bones(const Editor& editor) { return stroke_settings(editor, BrushKind::Set).bones; }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kLongestLog = 5000;  // lines
 
 // Errors begin with a small letter, as they follow a program's name on the command line.
-std::string sentence(std::string text) {
+std::string description(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
 }
@@ -30,8 +30,8 @@ ErrorMessage parts_of(const std::string& text) {
   } else if (first != std::string::npos) {
     message.where = text.substr(first + 2);
   }
-  message.what = sentence(message.what);
-  message.what_to_do = sentence(message.what_to_do);
+  message.what = description(message.what);
+  message.what_to_do = description(message.what_to_do);
   return message;
 }
 

@@ -9,7 +9,7 @@
 
 namespace limber::editor {
 
-void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& sentence,
+void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& description,
              const std::optional<Chord>& chord) {
   auto& tip = ui.tip;
   if (tip.widget != title || tip.rect != rect) {
@@ -18,7 +18,7 @@ void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::stri
     tip.since = ui.now;
   }
   tip.title = title;
-  tip.sentence = sentence;
+  tip.description = description;
   tip.chord = chord;
   tip.asked = true;
 }
@@ -37,14 +37,14 @@ void draw_tooltip(Ui& ui) {
   const std::vector<std::string> caps = tip.chord ? key_caps(*tip.chord) : std::vector<std::string>{};
   const float caps_width = caps.empty() ? 0 : look.px(12) + width_of_key_caps(ui, caps);
   const ImFont* font = look.fonts.regular;
-  const glm::vec2 body =
-      tip.sentence.empty()
-          ? glm::vec2(0)
-          : from_im(look.fonts.small->CalcTextSizeA(look.fonts.small->FontSize, FLT_MAX, widest, tip.sentence.c_str()));
+  const glm::vec2 body = tip.description.empty()
+                             ? glm::vec2(0)
+                             : from_im(look.fonts.small->CalcTextSizeA(look.fonts.small->FontSize, FLT_MAX, widest,
+                                                                       tip.description.c_str()));
   const glm::vec2 title = tip.title.empty()
                               ? glm::vec2(0)
                               : from_im(font->CalcTextSizeA(font->FontSize, FLT_MAX, widest, tip.title.c_str()));
-  const float gap = tip.title.empty() || tip.sentence.empty() ? 0 : look.px(4);
+  const float gap = tip.title.empty() || tip.description.empty() ? 0 : look.px(4);
   const glm::vec2 size{std::max(title.x + caps_width, body.x) + 2 * padding, title.y + gap + body.y + 2 * look.px(7)};
   glm::vec2 corner{tip.rect.low.x, tip.rect.high.y + look.px(6)};
   if (corner.y + size.y > ui.window.high.y) corner.y = tip.rect.low.y - look.px(6) - size.y;
@@ -63,10 +63,10 @@ void draw_tooltip(Ui& ui) {
   if (!tip.title.empty()) put_wrapped(ui, look.fonts.regular, look.theme.text, text, widest, tip.title);
   put_key_caps(ui, rect.high.x - padding - caps_width + (caps.empty() ? 0 : look.px(12)), text.y + font->FontSize / 2,
                caps);
-  if (!tip.sentence.empty())
+  if (!tip.description.empty())
     ImGui::GetWindowDrawList()->AddText(look.fonts.small, look.fonts.small->FontSize,
-                                        im(text + glm::vec2(0, title.y + gap)), look.theme.text2, tip.sentence.c_str(),
-                                        nullptr, widest);
+                                        im(text + glm::vec2(0, title.y + gap)), look.theme.text2,
+                                        tip.description.c_str(), nullptr, widest);
   ImGui::End();
   ImGui::PopStyleColor();
 }

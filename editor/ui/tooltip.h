@@ -10,7 +10,7 @@
 namespace limber::editor {
 
 // For the item just drawn, when it is pointed at.
-void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& sentence,
+void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& description,
              const std::optional<Chord>& chord = {});
 void draw_tooltip(Ui& ui);
 

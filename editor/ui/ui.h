@@ -66,7 +66,7 @@ struct Ui {
 
   // The tool tip to come: which widget is pointed at, since when.
   struct {
-    std::string widget, title, sentence;
+    std::string widget, title, description;
     std::optional<Chord> chord;
     Rect rect;
     double since = 0;

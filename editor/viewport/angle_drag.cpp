@@ -6,7 +6,7 @@
 
 namespace limber::editor {
 
-AngleDrag::AngleDrag(const SeenFrom& view, float scale, const glm::dvec3& pivot, bool on_ring)
+AngleDrag::AngleDrag(const ViewProjection& view, float scale, const glm::dvec3& pivot, bool on_ring)
     : view_(view),
       scale_(scale),
       on_ring_(on_ring) {

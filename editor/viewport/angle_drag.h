@@ -11,7 +11,7 @@ class AngleDrag {
   static constexpr double kRing = 86;  // pixels at scale 1
 
   // `on_ring`: measured round the ring as it is seen, not round the point.
-  AngleDrag(const SeenFrom& view, float scale, const glm::dvec3& pivot, bool on_ring);
+  AngleDrag(const ViewProjection& view, float scale, const glm::dvec3& pivot, bool on_ring);
 
   // Another axis from now on; what was swept as the point is seen stays.
   void about(const glm::dvec3& axis, const glm::dvec2& start, const glm::dvec2& pointer);
@@ -26,7 +26,7 @@ class AngleDrag {
   void draw(const GizmoPainter& painter, const Theme& theme, double degrees) const;
 
  private:
-  SeenFrom view_;
+  ViewProjection view_;
   float scale_;
   bool on_ring_;
   Ring ring_;

@@ -35,7 +35,8 @@ class Painter {
   }
 
   // A square of 9 pixels; returns what the pointer does with it.
-  Pressed handle(const std::string& name, const glm::dvec3& world, Colour colour, const std::string& sentence) const {
+  Pressed handle(const std::string& name, const glm::dvec3& world, Colour colour,
+                 const std::string& description) const {
     glm::vec2 at;
     if (!pixel_of(world, at)) return {};
     at = glm::round(at);
@@ -44,7 +45,7 @@ class Painter {
     const Pressed pressed = press_area(editor_, name, Rect{at - half, at + half}.grown(look.px(3)));
     fill(Rect{at - half, at + half}.grown(1), 0xA0000000);
     fill({at - half, at + half}, pressed.hovered || pressed.held ? 0xFFFFFFFF : colour);
-    if (pressed.hovered && !pressed.held) tooltip(editor_, {at - half, at + half}, name, sentence);
+    if (pressed.hovered && !pressed.held) tooltip(editor_, {at - half, at + half}, name, description);
     return pressed;
   }
 

@@ -23,14 +23,14 @@ ImDrawList& canvas() { return *ImGui::GetWindowDrawList(); }
 
 }  // namespace
 
-std::optional<double> Ring::angle_under(const SeenFrom& view, const glm::dvec2& pixel) const {
+std::optional<double> Ring::angle_under(const ViewProjection& view, const glm::dvec2& pixel) const {
   const auto point = view.in_plane(pixel, centre, axis);
   if (!point) return std::nullopt;
   const glm::dvec3 off = *point - centre;
   return std::atan2(glm::dot(off, glm::cross(axis, from)), glm::dot(off, from));
 }
 
-std::pair<double, double> Ring::front(const SeenFrom& view) const {
+std::pair<double, double> Ring::front(const ViewProjection& view) const {
   const glm::dvec3 to_eye = view.direction_to_eye(centre), nearest = to_eye - glm::dot(to_eye, axis) * axis;
   const double tilt = glm::length(nearest);  // sine of the angle between the axis and the line of sight
   if (tilt <= kBehind) return {0, 2 * kPi};
@@ -38,7 +38,7 @@ std::pair<double, double> Ring::front(const SeenFrom& view) const {
   return {std::atan2(glm::dot(nearest, glm::cross(axis, from)), glm::dot(nearest, from)) - half, 2 * half};
 }
 
-Ring ring_of(const SeenFrom& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels) {
+Ring ring_of(const ViewProjection& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels) {
   const glm::dvec3 other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   return {centre, axis, glm::normalize(glm::cross(other, axis)), pixels * scale * view.millimetres_per_pixel(centre)};
 }

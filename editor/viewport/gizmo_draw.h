@@ -22,14 +22,14 @@ struct Ring {
     return centre + radius * (std::cos(angle) * from + std::sin(angle) * glm::cross(axis, from));
   }
   // Of the point that is under the pixel in the ring's plane.
-  std::optional<double> angle_under(const SeenFrom& view, const glm::dvec2& pixel) const;
+  std::optional<double> angle_under(const ViewProjection& view, const glm::dvec2& pixel) const;
   // The half that faces the eye, and a little more, so that a ring seen from above is whole: where it begins, how far
   // it goes.
-  std::pair<double, double> front(const SeenFrom& view) const;
+  std::pair<double, double> front(const ViewProjection& view) const;
 };
 
 // `pixels` large on the screen.
-Ring ring_of(const SeenFrom& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels);
+Ring ring_of(const ViewProjection& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels);
 
 // Where a read-out stands: beside the point, at its other side near the view's edge, above or below it where neither
 // has room; inside the view, whatever the point.
@@ -37,7 +37,7 @@ Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& poin
 
 class GizmoPainter {
  public:
-  GizmoPainter(Editor& editor, const SeenFrom& view) : editor_(editor), view_(view) {}
+  GizmoPainter(Editor& editor, const ViewProjection& view) : editor_(editor), view_(view) {}
 
   enum class Part { Whole, Front };
   void ring(const Ring& ring, Colour colour, float width, Part part) const;
@@ -60,7 +60,7 @@ class GizmoPainter {
   void polyline(const std::vector<glm::dvec2>& pixels, Colour colour, float width) const;
 
   Editor& editor_;
-  const SeenFrom& view_;
+  const ViewProjection& view_;
 };
 
 constexpr Colour kGizmoActive = 0xFF8AE0FF;  // FFE08A, what is dragged

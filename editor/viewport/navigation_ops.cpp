@@ -105,8 +105,8 @@ const render::Camera& goal(const Editor& editor) {
   return body.move ? body.move->to : body.camera;
 }
 
-Operator standard_view(const char* id, const char* label, render::StandardView side, const char* sentence) {
-  return {id, label, icon::kCamera, "View", sentence, [label, side](Editor& e) {
+Operator standard_view(const char* id, const char* label, render::StandardView side, const char* description) {
+  return {id, label, icon::kCamera, "View", description, [label, side](Editor& e) {
             go_to(e, render::looking_from(side, goal(e)));
             e.views->body.name = label;
           }};

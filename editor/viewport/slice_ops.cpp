@@ -101,11 +101,11 @@ void toggle_outline(Editor& editor) {
   display = display == render::SliceDisplay::Labels ? render::SliceDisplay::Outline : render::SliceDisplay::Labels;
 }
 
-Operator display_operator(const char* id, const char* label, const char* sentence, render::SliceDisplay display) {
-  return {id,       label,
-          "",       "View",
-          sentence, [display](Editor& e) { e.views->slice_display = display; },
-          nullptr,  [display](const Editor& e) { return e.views->slice_display == display; }};
+Operator display_operator(const char* id, const char* label, const char* description, render::SliceDisplay display) {
+  return {id,          label,
+          "",          "View",
+          description, [display](Editor& e) { e.views->slice_display = display; },
+          nullptr,     [display](const Editor& e) { return e.views->slice_display == display; }};
 }
 
 }  // namespace

@@ -55,7 +55,8 @@ std::optional<glm::dvec3> middle_of_bone(const Document& document, const glm::dv
   return middle;
 }
 
-std::optional<glm::dvec3> middle_of_bone(const Document& document, const SeenFrom& view, const glm::dvec2& pixel) {
+std::optional<glm::dvec3> middle_of_bone(const Document& document, const ViewProjection& view,
+                                         const glm::dvec2& pixel) {
   if (!document.volume) return std::nullopt;
   const render::Ray sight = view.ray(pixel);
   if (view.place.id != ViewId::Body) return middle_of_bone(document, sight.origin, view.right, view.up);

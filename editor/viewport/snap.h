@@ -11,7 +11,7 @@ namespace limber::editor {
 
 // The middle of the bone tissue under a pixel: along the line of sight in the 3D view, in its plane in a slice. Nothing
 // where there is none.
-std::optional<glm::dvec3> middle_of_bone(const Document& document, const SeenFrom& view, const glm::dvec2& pixel);
+std::optional<glm::dvec3> middle_of_bone(const Document& document, const ViewProjection& view, const glm::dvec2& pixel);
 // The middle of the bone tissue that a point lies in, in the plane of two directions (unit).
 std::optional<glm::dvec3> middle_of_bone(const Document& document, const glm::dvec3& point, const glm::dvec3& right,
                                          const glm::dvec3& up);

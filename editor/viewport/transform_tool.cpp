@@ -53,7 +53,7 @@ bool TransformTool::moved(Editor& editor, const glm::vec2& pixels) {
 
 // The axis that runs most nearly as the pointer went.
 void TransformTool::lock_to_way(Editor& editor) {
-  const Space space = editor.handling->space;
+  const Space space = editor.transform_settings->space;
   const glm::dmat3 all = axes(space);
   const glm::dvec2 way = pointer_ - start_;
   double best = 0;
@@ -95,7 +95,8 @@ bool TransformTool::key(Editor& editor, const KeyChanged& event) {
   if (const int axis = axis_of_key(event.key); axis >= 0) {
     // The chosen space's, the other one's, none.
     const bool plane = editor.input.down(Key::Shift);
-    const Space first = editor.handling->space, second = first == Space::Global ? Space::Local : Space::Global;
+    const Space first = editor.transform_settings->space,
+                second = first == Space::Global ? Space::Local : Space::Global;
     if (lock_.axis != axis || lock_.plane != plane) lock_ = {axis, first, plane};
     else if (lock_.space == first) lock_.space = second;
     else lock_ = {};
@@ -112,7 +113,7 @@ bool TransformTool::confirm(Editor& editor) {
     self->set(fields);
     self->keep(e);
   };
-  act_adjustably(editor, parameters(), again, [this](Editor& e) { keep(e); });
+  act_and_allow_redo(editor, parameters(), again, [this](Editor& e) { keep(e); });
   return false;
 }
 
@@ -151,7 +152,7 @@ bool TransformTool::drop(Editor& editor) {
 
 double TransformTool::snapped(const Editor& editor, double value, double step, double fine) const {
   const double grid = editor.input.down(Key::Shift) ? fine : step;
-  if (grid <= 0 || editor.input.down(Key::Ctrl) == editor.handling->snapping) return value;
+  if (grid <= 0 || editor.input.down(Key::Ctrl) == editor.transform_settings->snapping) return value;
   return std::round(value / grid) * grid;
 }
 

@@ -37,7 +37,7 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   bool button(Editor& editor, const ButtonChanged& event) override;
   bool key(Editor& editor, const KeyChanged& event) override;
 
-  const SeenFrom& view() const { return view_; }
+  const ViewProjection& view() const { return view_; }
 
  protected:
   virtual void follow(Editor&, const glm::dvec2& /*from*/, const glm::dvec2& /*to*/) {}  // the pointer, slowed
@@ -67,7 +67,7 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   std::vector<FormField> fields_of_axis() const;
   void set_axis(const std::vector<FormField>& fields, std::size_t first);
 
-  SeenFrom view_;
+  ViewProjection view_;
   AxisLock lock_;
   std::optional<MouseButton> held_;
   TypedNumber number_;

@@ -52,12 +52,12 @@ void ask_regrid(Editor& editor) {
                                 act}));
 }
 
-Operator flip_operator(const char* id, const char* label, int axis, const char* sentence) {
+Operator flip_operator(const char* id, const char* label, int axis, const char* description) {
   return {id,
           label,
           icon::kMirror,
           "Prepare",
-          sentence,
+          description,
           [axis, label = std::string(label)](Editor& e) {
             start_preparation(e, {label, [axis](const LabelVolume& v, Progress&) { return flip(v, axis); }, true});
           },

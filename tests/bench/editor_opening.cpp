@@ -50,7 +50,7 @@ using Figures = std::array<double, kNames.size()>;
 Figures open_once(const Path& volume) {
   const auto host = open_offscreen({1280, 720});
   Editor editor(*host);
-  begin_sitting(editor, {}, {volume});
+  begin_editor_session(editor, {}, {volume});
   double longest = 0, first_picture = 0, progress = 0;
   const double begin = seconds(CLOCK_MONOTONIC);
   editor.frame(0);

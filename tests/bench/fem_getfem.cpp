@@ -70,12 +70,12 @@ int main(int count, char** arguments) try {
   const test::Flesh flesh = flesh_of(shape->model.fem, shape->V, arm.motions(1 + 7.5 / degrees));
 
   FemEnergy energy(flesh.rest, flesh.T, flesh.material, flesh.weak_barrier_kpa);
-  energy.hold(flesh.pins, {}, Places(0, 3));
-  Places step;
+  energy.set_constraints(flesh.pins, {}, NodePositions(0, 3));
+  NodePositions step;
   double slope = 0;
-  const bool definite = energy.newton_step(flesh.moved, Curvature::Exact, step, slope);
+  const bool definite = energy.newton_step(flesh.moved, HessianKind::Exact, step, slope);
   const FemSeconds first = energy.seconds();
-  energy.newton_step(flesh.moved, Curvature::Projected, step, slope);
+  energy.newton_step(flesh.moved, HessianKind::Projected, step, slope);
   const FemSeconds second = energy.seconds();
   const double ours = second.assembly - first.assembly + second.factorization - first.factorization;
   std::printf("h %g mm at %g degrees: %ld tets, %ld unknowns\n", spacing, degrees, long(flesh.T.rows()),
@@ -85,7 +85,7 @@ int main(int count, char** arguments) try {
 
   const test::GetfemAnswer theirs = test::ask_getfem(flesh, true);
   if (definite) {
-    energy.newton_step(flesh.moved, Curvature::Exact, step, slope);
+    energy.newton_step(flesh.moved, HessianKind::Exact, step, slope);
     std::printf("the exact steps differ by %.1e\n", (step - theirs.step).norm() / step.norm());
   } else {
     std::printf("the exact curvature is indefinite here\n");

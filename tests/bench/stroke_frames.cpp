@@ -86,7 +86,7 @@ class ArmPainted {
 
     const auto place = brush_place(editor_, view, path.front());
     const double step = painting.spacing * painting.radius /
-                        SeenFrom(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
+                        ViewProjection(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
     const std::size_t before = static_cast<std::size_t>(editor_.history.position());
     frame(ButtonChanged{MouseButton::Left, true});
     const double begin = seconds();

@@ -16,10 +16,10 @@ struct Sitting {
                    const glm::ivec2& size = {1280, 720})
       : test(size, {}, false) {
     ::setenv("HOME", home.c_str(), 1);
-    begin_sitting(*test.editor, {home / "config", home / "cache", home / "edits"}, std::move(files));
+    begin_editor_session(*test.editor, {home / "config", home / "cache", home / "edits"}, std::move(files));
     test.play("wait-job");
   }
-  ~Sitting() { end_sitting(*test.editor); }
+  ~Sitting() { end_editor_session(*test.editor); }
 
   void play(const std::string& script) { test.play(script); }
   editor::Editor& editor() { return *test.editor; }

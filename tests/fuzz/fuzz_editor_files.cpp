@@ -59,9 +59,9 @@ void read_keymap_text(const std::string& text) {
 
 void read_remembered_text(const std::string& text) {
   std::string warning;
-  const Remembered remembered = read_remembered(file_of(text), warning);
-  require(remembered.tour_step >= 0 && remembered.recents.size() <= 30);
-  for (const Recent& recent : remembered.recents) require(recent.path.is_absolute());
+  const RecentFiles recent_files = read_recent_files(file_of(text), warning);
+  require(recent_files.tour_step >= 0 && recent_files.recents.size() <= 30);
+  for (const Recent& recent : recent_files.recents) require(recent.path.is_absolute());
 }
 
 void read_arrangements_text(const std::string& text) {

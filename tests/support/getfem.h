@@ -17,7 +17,7 @@
 namespace limber::test {
 
 struct Flesh {
-  Places rest, moved;
+  NodePositions rest, moved;
   Eigen::MatrixX4i T;
   std::vector<TetMaterial> material;  // #T
   double weak_barrier_kpa = 0;
@@ -26,7 +26,7 @@ struct Flesh {
 
 struct GetfemAnswer {
   double energy = 0;                     // without the springs'
-  Places forces, step;                   // #V: gradient of the energy; a Newton step with the springs, where asked for
+  NodePositions forces, step;            // #V: gradient of the energy; a Newton step with the springs, where asked for
   std::map<std::string, double> number;  // what else was printed
 };
 
@@ -39,8 +39,8 @@ void write_numbers(const std::filesystem::path& path, const Number* first, std::
       .write(reinterpret_cast<const char*>(first), std::streamsize(count * sizeof(Number)));
 }
 
-inline Places read_places(const std::filesystem::path& path, Eigen::Index rows) {
-  Places places(rows, 3);
+inline NodePositions read_places(const std::filesystem::path& path, Eigen::Index rows) {
+  NodePositions places(rows, 3);
   std::ifstream file(path, std::ios::binary);
   file.read(reinterpret_cast<char*>(places.data()), std::streamsize(places.size() * sizeof(double)));
   if (!file) throw std::runtime_error(path.string() + " cannot be read");

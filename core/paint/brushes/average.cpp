@@ -42,10 +42,9 @@ class AverageSide final : public BrushSide {
 }  // namespace
 
 BrushRule average_brush() {
-  return {.kind = BrushKind::Average,
-          .id = "average",
+  return {.id = "average",
           .name = "Average",
-          .sentence = "Draws weights towards the mean under the brush.",
+          .description = "Draws weights towards the mean under the brush.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<AverageSide>(view);

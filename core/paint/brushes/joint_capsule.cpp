@@ -51,10 +51,9 @@ class JointCapsuleSide final : public BrushSide {
 }  // namespace
 
 BrushRule joint_capsule_brush() {
-  return {.kind = BrushKind::JointCapsule,
-          .id = "capsule",
+  return {.id = "capsule",
           .name = "Joint capsule",
-          .sentence = "Blends the active bone with its parent over so many mm about their joint.",
+          .description = "Blends the active bone with its parent over so many mm about their joint.",
           .one_bone = true,
           .side = [](const BrushView& view, std::span<const int> bones) -> std::unique_ptr<BrushSide> {
             return std::make_unique<JointCapsuleSide>(view, bones[0]);

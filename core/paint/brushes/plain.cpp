@@ -16,28 +16,25 @@ int drawn_to(double to, int before, int covered) {
 }  // namespace
 
 BrushRule add_brush() {
-  return {.kind = BrushKind::Add,
-          .id = "add",
+  return {.id = "add",
           .name = "Add",
-          .sentence = "Adds to the active bone's weight.",
+          .description = "Adds to the active bone's weight.",
           .paint = [](double before, double cover, double full, const Brush&) { return before + cover * full; },
           .paint_whole = [](int before, int covered, const Brush&) { return std::min(before + covered, kFullWeight); }};
 }
 
 BrushRule subtract_brush() {
-  return {.kind = BrushKind::Subtract,
-          .id = "subtract",
+  return {.id = "subtract",
           .name = "Subtract",
-          .sentence = "Takes from the active bone's weight.",
+          .description = "Takes from the active bone's weight.",
           .paint = [](double before, double cover, double full, const Brush&) { return before - cover * full; },
           .paint_whole = [](int before, int covered, const Brush&) { return std::max(before - covered, 0); }};
 }
 
 BrushRule set_brush() {
-  return {.kind = BrushKind::Set,
-          .id = "set",
+  return {.id = "set",
           .name = "Set",
-          .sentence = "Sets the active bone's weight to the brush's value.",
+          .description = "Sets the active bone's weight to the brush's value.",
           .takes_value = true,
           .paint = [](double before, double cover, double full,
                       const Brush& brush) { return before + (brush.value * full - before) * cover; },
@@ -46,10 +43,9 @@ BrushRule set_brush() {
 }
 
 BrushRule multiply_brush() {
-  return {.kind = BrushKind::Multiply,
-          .id = "multiply",
+  return {.id = "multiply",
           .name = "Multiply",
-          .sentence = "Multiplies the active bone's weight by the brush's value.",
+          .description = "Multiplies the active bone's weight by the brush's value.",
           .takes_value = true,
           .paint = [](double before, double cover, double,
                       const Brush& brush) { return before * (1 + (brush.value - 1) * cover); },

@@ -52,10 +52,9 @@ class SmearSide final : public BrushSide {
 }  // namespace
 
 BrushRule smear_brush() {
-  return {.kind = BrushKind::Smear,
-          .id = "smear",
+  return {.id = "smear",
           .name = "Smear",
-          .sentence = "Drags weights along.",
+          .description = "Drags weights along.",
           .looks_around = true,
           .accumulates = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {

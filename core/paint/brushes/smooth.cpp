@@ -45,10 +45,9 @@ class SharpenSide final : public SmoothSide {
 }  // namespace
 
 BrushRule smooth_brush() {
-  return {.kind = BrushKind::Smooth,
-          .id = "smooth",
+  return {.id = "smooth",
           .name = "Smooth",
-          .sentence = "Draws weights towards those around.",
+          .description = "Draws weights towards those around.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<SmoothSide>(view);
@@ -56,10 +55,9 @@ BrushRule smooth_brush() {
 }
 
 BrushRule sharpen_brush() {
-  return {.kind = BrushKind::Sharpen,
-          .id = "sharpen",
+  return {.id = "sharpen",
           .name = "Sharpen",
-          .sentence = "Draws weights away from those around.",
+          .description = "Draws weights away from those around.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<SharpenSide>(view);

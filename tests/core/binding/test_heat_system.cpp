@@ -103,7 +103,7 @@ std::vector<double> exact_temperatures(const RandomBody& body, int bone, int col
 // By bone and place.
 std::vector<std::vector<float>> solved_temperatures(const RandomBody& body, double residual,
                                                     int* iterations = nullptr) {
-  const SoftBody soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
+  const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
   const std::vector<std::int32_t> bricks = body.all_bricks();
   HeatSystem system;
   soft.fill(bricks, system);
@@ -173,7 +173,7 @@ TEST_CASE("heat system: 1, 2 and 4 threads give the same bits" * doctest::test_s
 TEST_CASE("heat system: bricks that are left out count as cold") {
   // Half of the bricks alone.
   const RandomBody body({16, 16, 32}, glm::dvec3(1), 5);
-  const SoftBody soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
+  const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
   std::vector<std::int32_t> lower;
   for (const std::int32_t b : body.all_bricks())
     if (body.tissue.bricks()[b].corner.z < 16) lower.push_back(b);

@@ -15,10 +15,10 @@ using namespace limber;
 namespace {
 using Kind = ContactPair::Kind;
 
-Places random_places(int count, double size, unsigned seed) {
+NodePositions random_places(int count, double size, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> share(-size, size);
-  Places places(count, 3);
+  NodePositions places(count, 3);
   for (double& each : places.reshaped()) each = share(random);
   return places;
 }
@@ -26,7 +26,7 @@ Places random_places(int count, double size, unsigned seed) {
 // Two boxes' skins, `gap` apart along z.
 struct TwoBoxes {
   TetMesh mesh = kuhn_box(3, 3, 2, {0, 0, 0}, {9, 9, 4});
-  Places rest;
+  NodePositions rest;
   Eigen::MatrixX4i T;
   Eigen::MatrixX3i F;
 
@@ -39,8 +39,8 @@ struct TwoBoxes {
     F = boundary_of(T);
   }
   std::vector<int> free() const { return std::vector<int>(rest.rows(), -1); }
-  Places upper_by(const Eigen::RowVector3d& by) const {
-    Places step = Places::Zero(rest.rows(), 3);
+  NodePositions upper_by(const Eigen::RowVector3d& by) const {
+    NodePositions step = NodePositions::Zero(rest.rows(), 3);
     step.bottomRows(rest.rows() / 2).rowwise() = by;
     return step;
   }
@@ -62,7 +62,7 @@ TEST_CASE("contact: the nearest points are the nearest of all, for points and tr
   std::mt19937 random(3);
   std::uniform_real_distribution<double> share(0, 1);
   for (unsigned seed = 0; seed < 200; ++seed) {
-    const Places x = random_places(4, 1, seed);
+    const NodePositions x = random_places(4, 1, seed);
     for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
       const NearestPoints nearest = nearest_points({{0, 1, 2, 3}, kind}, x);
       CHECK(std::abs(nearest.weight.sum()) < 1e-12);
@@ -79,10 +79,10 @@ TEST_CASE("contact: the nearest points are the nearest of all, for points and tr
 }
 
 TEST_CASE("contact: a step ends before two parts touch, and not long before") {
-  Places x(4, 3), step = Places::Zero(4, 3);
+  NodePositions x(4, 3), step = NodePositions::Zero(4, 3);
   x << 0.2, 0.2, 3, 0, 0, 0, 1, 0, 0, 0, 1, 0;
   step(0, 2) = -1;
-  const auto bound = [](const ContactPair& pair, const Places& from, const Places& by, double limit,
+  const auto bound = [](const ContactPair& pair, const NodePositions& from, const NodePositions& by, double limit,
                         double near = INFINITY) {
     return largest_step(pair, approach(pair, from, by), from, by, limit, near);
   };
@@ -95,7 +95,7 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));  // nearer than that already
   int too_far = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
-    const Places from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
+    const NodePositions from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
     for (const Kind kind : {Kind::PointTriangle, Kind::EdgeEdge}) {
       const ContactPair pair{{0, 1, 2, 3}, kind};
       const double before = nearest_points(pair, from).distance;
@@ -120,7 +120,7 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
 
 TEST_CASE("contact: the pairs that may come near are those that asking every pair finds, with one thread and two") {
   const TwoBoxes boxes(3);
-  const Places step = boxes.upper_by({0, 0, -5}) + random_places(int(boxes.rest.rows()), 0.2, 5);
+  const NodePositions step = boxes.upper_by({0, 0, -5}) + random_places(int(boxes.rest.rows()), 0.2, 5);
   std::vector<Key> expected;
   const auto consider = [&](Kind kind, const std::array<int, 4>& node) {
     const ContactPair pair{node, kind};
@@ -159,7 +159,7 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
 
 TEST_CASE("contact: pairs that keep a share of what they are apart at rest may be left out, and no others") {
   const TwoBoxes boxes(3);
-  const Places step = boxes.upper_by({0, 0, -2.8}) + random_places(int(boxes.rest.rows()), 0.5, 5);
+  const NodePositions step = boxes.upper_by({0, 0, -2.8}) + random_places(int(boxes.rest.rows()), 0.5, 5);
   const ContactSurface surface(boxes.F, boxes.rest, boxes.free());
   std::vector<Key> some;
   for (const ContactPair& pair : surface.near(boxes.rest, step, 1, {2, 0.5})) some.push_back(key(pair));
@@ -180,7 +180,7 @@ TEST_CASE("contact: pairs that keep a share of what they are apart at rest may b
 TEST_CASE("contact: what one bone carries is not watched against itself") {
   const TwoBoxes boxes(0.5);
   std::vector<int> rigid(boxes.rest.rows(), 0);
-  const Places still = Places::Zero(boxes.rest.rows(), 3);
+  const NodePositions still = NodePositions::Zero(boxes.rest.rows(), 3);
   CHECK(ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, {1}).empty());
   std::fill(rigid.begin() + std::ssize(rigid) / 2, rigid.end(), 1);
   CHECK(!ContactSurface(boxes.F, boxes.rest, rigid).near(boxes.rest, still, 0, {1}).empty());
@@ -191,11 +191,12 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // sums are exact, so that both ways end in the same bits
   ContactForm form(boxes.F, boxes.rest, boxes.free());
   // To a place high above from the side, which is free, and from below, through the other box.
-  const Places above = boxes.rest + boxes.upper_by({0, 0, 20}), beside = boxes.rest + boxes.upper_by({50, 0, 20}),
-               below = boxes.rest - boxes.upper_by({0, 0, 20});
-  form.watch(beside, above - beside, 1);
+  const NodePositions above = boxes.rest + boxes.upper_by({0, 0, 20}),
+                      beside = boxes.rest + boxes.upper_by({50, 0, 20}),
+                      below = boxes.rest - boxes.upper_by({0, 0, 20});
+  form.build_broad_phase(beside, above - beside, 1);
   CHECK(form.largest_step(beside, above - beside, 1).length == 1);
-  form.watch(below, above - below, 1);
+  form.build_broad_phase(below, above - below, 1);
   CHECK(form.largest_step(below, above - below, 1).length < 1);
 }
 
@@ -204,24 +205,24 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
   const TwoBoxes boxes(1);
   const int count = int(boxes.rest.rows());
   ContactForm form(boxes.F, boxes.rest, boxes.free());
-  Places x = boxes.rest;
+  NodePositions x = boxes.rest;
   std::mt19937 random(5);
   std::uniform_int_distribution<int> any_node(0, count - 1);
   std::int64_t touching = 0;
   for (unsigned k = 0; k < 60; ++k) {
     // Far, near, or as before but for a node or two; from where the last way led, or from elsewhere.
-    Places step = boxes.upper_by({0, 0,
-                                  k % 4 == 0   ? -0.9
-                                  : k % 4 == 2 ? 0.7
-                                               : -0.1}) +
-                  random_places(count, k % 3 ? 0.05 : 0.5, k);
+    NodePositions step = boxes.upper_by({0, 0,
+                                         k % 4 == 0   ? -0.9
+                                         : k % 4 == 2 ? 0.7
+                                                      : -0.1}) +
+                         random_places(count, k % 3 ? 0.05 : 0.5, k);
     if (k % 7 == 0) x += boxes.upper_by({0.4, 0, 0.1});
     double along = 0;
     for (int again = 0; again < 3; ++again, step.row(any_node(random)) *= -2) {
       const double limit = again == 1 ? 0.6 : 1;
-      form.watch(x, step, limit);
+      form.build_broad_phase(x, step, limit);
       ContactForm fresh(boxes.F, boxes.rest, boxes.free());
-      fresh.watch(x, step, limit);
+      fresh.build_broad_phase(x, step, limit);
       const double of_form = form.largest_step(x, step, limit).length,
                    of_fresh = fresh.largest_step(x, step, limit).length;
       CHECK((of_form < limit) == (of_fresh < limit));
@@ -229,9 +230,9 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
       CHECK(of_form < 2 * of_fresh);
       along = std::min(of_form, of_fresh);
       for (const double share : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
-        const Places there = x + share * along * step;
-        form.touch(there);
-        fresh.touch(there);
+        const NodePositions there = x + share * along * step;
+        form.update_active_pairs(there);
+        fresh.update_active_pairs(there);
         CHECK(form.touching() == fresh.touching());
         CHECK(form.value(there) == doctest::Approx(fresh.value(there)).epsilon(1e-12));
         touching += fresh.touching();
@@ -247,22 +248,23 @@ TEST_CASE(
     "energy") {
   const TwoBoxes boxes(0.3);
   ContactForm form(boxes.F, boxes.rest, boxes.free());
-  const Places still = Places::Zero(boxes.rest.rows(), 3);
-  form.watch(boxes.rest, still, 0);
-  form.touch(boxes.rest);
+  const NodePositions still = NodePositions::Zero(boxes.rest.rows(), 3);
+  form.build_broad_phase(boxes.rest, still, 0);
+  form.update_active_pairs(boxes.rest);
   CHECK(form.touching() == 0);
   CHECK(form.value(boxes.rest) == 0);
 
   // Nearly parallel edges too: the boxes' sides are, up to what `jitter` moves them.
   for (const double jitter : {0.02, 1e-4}) {
-    const Places x = boxes.rest + boxes.upper_by({0, 0, -0.22}) + random_places(int(boxes.rest.rows()), jitter, 11);
-    form.watch(x, still, 0);
-    form.touch(x);
+    const NodePositions x =
+        boxes.rest + boxes.upper_by({0, 0, -0.22}) + random_places(int(boxes.rest.rows()), jitter, 11);
+    form.build_broad_phase(x, still, 0);
+    form.update_active_pairs(x);
     REQUIRE(form.touching() > 20);
-    Places slope = still;
+    NodePositions slope = still;
     form.add_gradient(slope);
     CHECK(slope.bottomRows(boxes.rest.rows() / 2).col(2).sum() < 0);  // upwards is less
-    const Places way = random_places(int(boxes.rest.rows()), 1, 13);
+    const NodePositions way = random_places(int(boxes.rest.rows()), 1, 13);
     const double e = 1e-7, difference = (form.value(x + e * way) - form.value(x - e * way)) / (2 * e);
     CHECK(slope.cwiseProduct(way).sum() == doctest::Approx(difference).epsilon(1e-4));
   }
@@ -273,7 +275,7 @@ TEST_CASE("contact: a step that would press one fold shut yields there, and is t
   FemEnergy energy(boxes.rest, boxes.T, std::vector<TetMaterial>(boxes.T.rows(), {4, 0.3}), 0);
   energy.set_contact(ContactForm(boxes.F, boxes.rest, boxes.free()));
   // One corner of the upper box goes through the lower box, and all goes far aside.
-  Places step = boxes.upper_by({0, 0, 0});
+  NodePositions step = boxes.upper_by({0, 0, 0});
   step.col(0).setConstant(20);
   Eigen::Index low = 0;
   (boxes.rest.bottomRows(boxes.rest.rows() / 2) * Eigen::Vector3d(1, 1, 1)).minCoeff(&low);
@@ -281,10 +283,10 @@ TEST_CASE("contact: a step that would press one fold shut yields there, and is t
   const auto bound = energy.largest_step(boxes.rest, step, 1);
   CHECK(bound.length < 0.7);
   CHECK(bound.obstacle == FemEnergy::Obstacle::Contact);
-  const Places yielded = energy.yielding(boxes.rest, step, {});
+  const NodePositions yielded = energy.limit_step(boxes.rest, step, {});
   CHECK(energy.largest_step(boxes.rest, yielded, 1).length == 1);
   CHECK((yielded.col(0).array() - 20).abs().maxCoeff() < 1e-9);
   // The fixed stay.
   std::vector<char> fixed(boxes.rest.rows(), 1);
-  CHECK(energy.yielding(boxes.rest, step, fixed) == step);
+  CHECK(energy.limit_step(boxes.rest, step, fixed) == step);
 }

@@ -19,7 +19,7 @@ namespace {
 // A little box of several materials with patches and a barrier, shaken as far as no tet inverts.
 struct Shaken {
   TetMesh mesh = kuhn_box(2, 2, 2, {0, 0, 0}, {2, 2.5, 2.2});
-  Places rest = mesh.V, x;
+  NodePositions rest = mesh.V, x;
   ElasticForm tets;
   PatchForm patches;
   std::vector<int> unknown;
@@ -53,33 +53,33 @@ struct Shaken {
     patches = PatchForm(tets, order.first, ordered, filled);
     unknown.resize(27);
     std::iota(unknown.begin(), unknown.end(), 0);
-    tets.bind(matrix, unknown);
+    tets.assign_nodes(matrix, unknown);
 
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    const Places shake = Places::NullaryExpr(27, 3, [&] { return uniform(random); });
+    const NodePositions shake = NodePositions::NullaryExpr(27, 3, [&] { return uniform(random); });
     for (x = rest + by * shake; count_inverted(mesh.T, x) > 0; x = rest + by * shake) by *= 0.9;
   }
 
-  double value(const Places& at) const {
+  double value(const NodePositions& at) const {
     std::vector<double> J;
     tets.volume_ratios(at, J);
     return tets.value(at, J) + patches.value(J);
   }
-  Places gradient(const Places& at) const {
+  NodePositions gradient(const NodePositions& at) const {
     std::vector<double> J, pressure;
     tets.volume_ratios(at, J);
     patches.pressures(J, pressure);
-    Places g = Places::Zero(27, 3);
+    NodePositions g = NodePositions::Zero(27, 3);
     tets.add_gradient(at, pressure, g);
     return g;
   }
   // The matrix and, on the way, the forces.
-  Eigen::MatrixXd hessian(const Places& at, Curvature curvature, Places& g) {
+  Eigen::MatrixXd hessian(const NodePositions& at, HessianKind curvature, NodePositions& g) {
     std::vector<double> J, pressure;
     tets.volume_ratios(at, J);
     patches.pressures(J, pressure);
-    g = Places::Zero(27, 3);
+    g = NodePositions::Zero(27, 3);
     matrix.clear();
     tets.add_derivatives(at, pressure, patches.stiffness(), curvature, g, matrix.values());
     Eigen::MatrixXd H(81, 81);
@@ -99,12 +99,12 @@ struct Shaken {
 TEST_CASE("elastic form: forces are the slope of the energy") {
   for (const double by : {0.02, 0.3, 2.0}) {
     const Shaken shaken(by);
-    const Places g = shaken.gradient(shaken.x);
+    const NodePositions g = shaken.gradient(shaken.x);
     const double scale = g.cwiseAbs().maxCoeff();
     for (int v = 0; v < 27; ++v)
       for (int c = 0; c < 3; ++c) {
         const double h = 1e-6;
-        Places plus = shaken.x, minus = shaken.x;
+        NodePositions plus = shaken.x, minus = shaken.x;
         plus(v, c) += h;
         minus(v, c) -= h;
         CHECK(std::abs((shaken.value(plus) - shaken.value(minus)) / (2 * h) - g(v, c)) < 1e-6 * scale);
@@ -115,17 +115,17 @@ TEST_CASE("elastic form: forces are the slope of the energy") {
 TEST_CASE("elastic form: curvature is the slope of the forces, whether or not they are summed with it") {
   for (const double by : {0.02, 0.3, 2.0}) {
     Shaken shaken(by);
-    Places with;
-    const Eigen::MatrixXd H = shaken.hessian(shaken.x, Curvature::Exact, with);
+    NodePositions with;
+    const Eigen::MatrixXd H = shaken.hessian(shaken.x, HessianKind::Exact, with);
     CHECK((with - shaken.gradient(shaken.x)).norm() <= 1e-13 * with.norm());
     const double scale = H.cwiseAbs().maxCoeff();
     for (int v = 0; v < 27; ++v)
       for (int c = 0; c < 3; ++c) {
         const double h = 1e-6;
-        Places plus = shaken.x, minus = shaken.x;
+        NodePositions plus = shaken.x, minus = shaken.x;
         plus(v, c) += h;
         minus(v, c) -= h;
-        const Places slope = (shaken.gradient(plus) - shaken.gradient(minus)) / (2 * h);
+        const NodePositions slope = (shaken.gradient(plus) - shaken.gradient(minus)) / (2 * h);
         CHECK((slope.reshaped<Eigen::RowMajor>() - H.col(3 * v + c)).cwiseAbs().maxCoeff() < 1e-5 * scale);
       }
   }
@@ -136,9 +136,9 @@ TEST_CASE(
     "either") {
   for (unsigned seed = 0; seed < 6; ++seed) {
     Shaken shaken(seed < 3 ? 0.3 : 3.0, seed, 0.4);
-    Places g;
-    const Eigen::MatrixXd exact = shaken.hessian(shaken.x, Curvature::Exact, g),
-                          projected = shaken.hessian(shaken.x, Curvature::Projected, g);
+    NodePositions g;
+    const Eigen::MatrixXd exact = shaken.hessian(shaken.x, HessianKind::Exact, g),
+                          projected = shaken.hessian(shaken.x, HessianKind::Projected, g);
     const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected).eigenvalues();
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
     CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >=
@@ -148,16 +148,18 @@ TEST_CASE(
   // Nor with patches, whose pressures may be anything.
   for (unsigned seed = 0; seed < 3; ++seed) {
     Shaken shaken(2.0, seed);
-    Places g;
+    NodePositions g;
     const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shaken.hessian(shaken.x, Curvature::Projected, g)).eigenvalues();
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shaken.hessian(shaken.x, HessianKind::Projected, g))
+            .eigenvalues();
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
   }
   // Blown up a little and evenly, every curvature is positive: nothing to leave out.
   Shaken blown(0, 0, 0.4);
   blown.x = 1.001 * blown.rest;
-  Places g;
-  CHECK((blown.hessian(blown.x, Curvature::Projected, g) - blown.hessian(blown.x, Curvature::Exact, g)).norm() < 1e-10);
+  NodePositions g;
+  CHECK((blown.hessian(blown.x, HessianKind::Projected, g) - blown.hessian(blown.x, HessianKind::Exact, g)).norm() <
+        1e-10);
 }
 
 TEST_CASE(
@@ -177,44 +179,44 @@ TEST_CASE(
 
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const Places x = mesh.V + 0.08 * Places::NullaryExpr(nodes, 3, [&] { return uniform(random); });
+  const NodePositions x = mesh.V + 0.08 * NodePositions::NullaryExpr(nodes, 3, [&] { return uniform(random); });
   REQUIRE(count_inverted(T, x) == 0);
-  Places way = Places::NullaryExpr(nodes, 3, [&] { return uniform(random); });
+  NodePositions way = NodePositions::NullaryExpr(nodes, 3, [&] { return uniform(random); });
   for (int v = 0; v < nodes; ++v)
     if (unknown[v] < 0) way.row(v).setZero();
-  const auto gradient = [&](const Places& at) {
+  const auto gradient = [&](const NodePositions& at) {
     std::vector<double> J, pressure;
     tets.volume_ratios(at, J);
     patches.pressures(J, pressure);
-    Places g = Places::Zero(nodes, 3);
+    NodePositions g = NodePositions::Zero(nodes, 3);
     tets.add_gradient(at, pressure, g);
     return g;
   };
   const double h = 1e-6;
-  const Places slope = (gradient(x + h * way) - gradient(x - h * way)) / (2 * h);
+  const NodePositions slope = (gradient(x + h * way) - gradient(x - h * way)) / (2 * h);
 
   BlockGraphBuilder builder(int(node_of.size()));
-  tets.connect(builder, unknown);
+  tets.add_sparsity(builder, unknown);
   Cholesky matrix(builder.build());
   for (const bool once_more : {false, true}) {
     if (once_more) {
       for (int k = 0; k + 40 < std::ssize(node_of); k += 5) builder.add(std::array{k, k + 40});
       matrix.analyse(builder.build());
     }
-    tets.bind(matrix, unknown);
+    tets.assign_nodes(matrix, unknown);
     std::vector<double> first;
     for (const int threads : {1, 2}) {
       const ThreadCount count(threads);
       std::vector<double> J, pressure;
       tets.volume_ratios(x, J);
       patches.pressures(J, pressure);
-      Places g = Places::Zero(nodes, 3);
+      NodePositions g = NodePositions::Zero(nodes, 3);
       matrix.clear();
-      tets.add_derivatives(x, pressure, patches.stiffness(), Curvature::Exact, g, matrix.values());
+      tets.add_derivatives(x, pressure, patches.stiffness(), HessianKind::Exact, g, matrix.values());
       if (threads == 1) first.assign(matrix.values().begin(), matrix.values().end());
       else CHECK(std::equal(first.begin(), first.end(), matrix.values().begin()));
     }
-    Places product = Places::Zero(nodes, 3);
+    NodePositions product = NodePositions::Zero(nodes, 3);
     for (int a = 0; a < std::ssize(node_of); ++a)
       for (int b = 0; b < std::ssize(node_of); ++b) {
         if (matrix.rank(a) < matrix.rank(b)) continue;
@@ -236,14 +238,14 @@ TEST_CASE(
 TEST_CASE("elastic form: a rotation costs nothing and pulls at nothing") {
   const Shaken shaken(0);
   const Eigen::Matrix3d R = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.1).normalized().toRotationMatrix();
-  const Places turned = (shaken.rest * R.transpose()).rowwise() + Eigen::RowVector3d(3, -8, 1);
+  const NodePositions turned = (shaken.rest * R.transpose()).rowwise() + Eigen::RowVector3d(3, -8, 1);
   CHECK(std::abs(shaken.value(turned)) < 1e-12);
   CHECK(shaken.gradient(turned).cwiseAbs().maxCoeff() < 1e-12);
 }
 
 TEST_CASE("elastic form: an inverted tet costs infinitely much") {
   const Shaken shaken(0);
-  Places x = shaken.rest;
+  NodePositions x = shaken.rest;
   x.row(13) += Eigen::RowVector3d(9, 0, 0);
   CHECK(std::isinf(shaken.value(x)));
 }
@@ -285,9 +287,10 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const TetMesh mesh = kuhn_box(3, 3, 3, {0, 0, 0}, {3, 3, 3});
-  const Places x = mesh.V;
+  const NodePositions x = mesh.V;
   for (int round = 0; round < 60; ++round) {
-    const Places step = (round < 30 ? 0.15 : 2.0) * Places::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
+    const NodePositions step =
+        (round < 30 ? 0.15 : 2.0) * NodePositions::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
     const double limit = 8;
     for (const double must : {0.0, 0.3, 0.7}) {  // of its volume, of every other tet
       CAPTURE(must);
@@ -300,7 +303,7 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
       const StepBound bound = largest_step(mesh.T, x, step, limit, must > 0 ? keep : std::vector<double>());
       REQUIRE(bound.length > 0);
       const auto share = [&](Eigen::Index t, double length) {
-        const Places there = x + length * step;
+        const NodePositions there = x + length * step;
         return determinant(there, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) /
                determinant(x, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3));
       };

@@ -17,7 +17,7 @@ namespace {
 void compare_energies(const test::Flesh& flesh) {
   REQUIRE(count_inverted(flesh.T, flesh.moved) == 0);
   FemEnergy energy(flesh.rest, flesh.T, flesh.material, flesh.weak_barrier_kpa);
-  Places forces;
+  NodePositions forces;
   energy.gradient(flesh.moved, forces);
   const double ours = energy.value(flesh.moved);
   const test::GetfemAnswer theirs = test::ask_getfem(flesh);
@@ -47,7 +47,7 @@ TEST_CASE(
     flesh.material.push_back({1.0 + t / 500, t % 5 == 0 ? 0.3 : 0.499, 0.4 + 0.1 * double(t % 7)});
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-1.2, 1.2);
-  flesh.moved = flesh.rest + Places::NullaryExpr(flesh.rest.rows(), 3, [&] { return uniform(random); });
+  flesh.moved = flesh.rest + NodePositions::NullaryExpr(flesh.rest.rows(), 3, [&] { return uniform(random); });
   compare_energies(flesh);
 }
 

@@ -31,7 +31,7 @@ struct RandomTets {
       state.force_slope = 3 * uniform(random);
       state.slope = 4 * uniform(random);
       state.curvature = 5 * uniform(random);
-      axes[t] = principal(state.F);
+      axes[t] = signed_svd(state.F);
       state.axes = &axes[t];
       if (t % 3) state.negative = negative_curvature(state.shear, state.slope, state.curvature, axes[t].sigma);
     }

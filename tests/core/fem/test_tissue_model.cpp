@@ -28,7 +28,7 @@ struct Body {
       return bone_motions(tube.weights.bones(), tube.rig, part_of_pose(tube.pose(degrees), t));
     };
   }
-  MovingTissue moving(double degrees, const MovingSettings& settings = {}) const {
+  DeformingRegion moving(double degrees, const MovingSettings& settings = {}) const {
     return moving_tissue(tube.volume, tissue, tube.weights, path(degrees), settings);
   }
 };
@@ -44,7 +44,7 @@ bool has(const TissueMask& mask, const TissueVoxels& tissue, const glm::ivec3& v
   return mask[tissue.brick_at(v)][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1;
 }
 
-TissueModel model_of(const Body& body, const MovingTissue& moving, int side) {
+TissueModel model_of(const Body& body, const DeformingRegion& moving, int side) {
   const LabelVolume regions = regions_to_mesh(body.tube.volume, body.tissue, body.is_bone, body.tube.weights, moving);
   return tissue_model(body.tube.volume, body.tissue, body.tube.tissues, body.tube.weights, moving,
                       test::kuhn_mesh_of(regions, side));
@@ -61,7 +61,7 @@ TEST_CASE("moving tissue: nothing bends at rest or when the whole body turns") {
   const BonePath path = [&](double t) {
     return bone_motions(body.tube.weights.bones(), body.tube.rig, part_of_pose(turned, t));
   };
-  const MovingTissue moving = moving_tissue(body.tube.volume, body.tissue, body.tube.weights, path);
+  const DeformingRegion moving = moving_tissue(body.tube.volume, body.tissue, body.tube.weights, path);
   CHECK(moving.empty());
   CHECK(moving.moves_as == std::vector<int>{0, 0});
 }
@@ -70,7 +70,7 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
   std::vector<std::int64_t> free, meshed;
   for (int length : {120, 240}) {
     const Body body({}, length);
-    const MovingTissue moving = body.moving(50, {.margin_mm = 10, .rim_mm = 8});
+    const DeformingRegion moving = body.moving(50, {.margin_mm = 10, .rim_mm = 8});
     CHECK(moving.moves_as == std::vector<int>{0, 1});
     free.push_back(count(moving.free));
     meshed.push_back(count(moving.meshed));
@@ -113,7 +113,7 @@ TEST_CASE("moving tissue: with contact also what the pose brings together may be
   const MovingSettings without{.margin_mm = 8, .rim_mm = 8, .contact = false, .near_mm = 10};
   MovingSettings with = without;
   with.contact = true;
-  const MovingTissue apart = body.moving(165, without), close = body.moving(165, with), open = body.moving(40, with);
+  const DeformingRegion apart = body.moving(165, without), close = body.moving(165, with), open = body.moving(40, with);
   CHECK(count(close.free) > 1.5 * count(apart.free));
   CHECK(count(open.free) == count(body.moving(40, without).free));
 }
@@ -122,7 +122,7 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
   const Body body({}, 160);
   const MovingSettings settings{.margin_mm = 8, .rim_mm = 8, .contact = true, .near_mm = 10};
   constexpr double kWhole = 165;
-  const MovingTissue whole = body.moving(kWhole, settings);
+  const DeformingRegion whole = body.moving(kWhole, settings);
   std::map<float, std::int64_t> voxels;
   bool same = true;
   body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -136,7 +136,7 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
   for (const auto& [from, count] : voxels) {
     if (from == 0 || from == INFINITY) continue;
     // A pose no further than that has it not.
-    const MovingTissue part = body.moving(kWhole * from, settings);
+    const DeformingRegion part = body.moving(kWhole * from, settings);
     bool still = true;
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
       still &= whole.free_from_at(body.tissue, v) != from || !has(part.free, body.tissue, v);
@@ -157,7 +157,7 @@ TEST_CASE(
     "tissue model: bones hold the nodes of their tets, the rim is held, and what lies between two bones is the joint") {
   for (const Grid& grid : {Grid{}, test::oblique_grid()}) {
     const Body body(grid, 120);
-    const MovingTissue moving = body.moving(50, {.margin_mm = 12, .rim_mm = 10});
+    const DeformingRegion moving = body.moving(50, {.margin_mm = 12, .rim_mm = 10});
     const TissueModel model = model_of(body, moving, 4);
     const TetMesh& mesh = model.fem.mesh;
     REQUIRE(model.fem.held_by.size() == std::size_t(mesh.V.rows()));

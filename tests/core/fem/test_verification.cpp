@@ -16,7 +16,7 @@ constexpr double kStiff = 1e7;  // of a spring that holds a place, kPa mm
 
 // Springs that hold the axes of nodes for which `hold(place)` gives a target; NaN leaves an axis free.
 template <class Hold>
-PinForm held(const Places& rest, const Hold& hold) {
+PinForm held(const NodePositions& rest, const Hold& hold) {
   std::vector<int> node;
   std::vector<Eigen::RowVector3d> target;
   for (int v = 0; v < int(rest.rows()); ++v) {
@@ -25,7 +25,7 @@ PinForm held(const Places& rest, const Hold& hold) {
     node.push_back(v);
     target.push_back(t);
   }
-  PinForm pins{node, Places(node.size(), 3), Places(node.size(), 3)};
+  PinForm pins{node, NodePositions(node.size(), 3), NodePositions(node.size(), 3)};
   for (std::size_t k = 0; k < node.size(); ++k)
     for (int c = 0; c < 3; ++c) {
       pins.stiffness(k, c) = std::isnan(target[k][c]) ? 0 : kStiff;
@@ -35,8 +35,8 @@ PinForm held(const Places& rest, const Hold& hold) {
 }
 
 // What the springs pull with, against their nodes.
-Places pull(const PinForm& pins, const Places& x) {
-  Places force = Places::Zero(x.rows(), 3);
+NodePositions pull(const PinForm& pins, const NodePositions& x) {
+  NodePositions force = NodePositions::Zero(x.rows(), 3);
   pins.add_gradient(x, force);
   return -force;
 }
@@ -47,9 +47,9 @@ constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 // volume gained, on the shell as meshed.
 //   axial  a tube that does not get longer; else an eighth of a sphere, its cuts held in their planes
 double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int patch_size, bool axial) {
-  const Places rest = mesh.V;
+  const NodePositions rest = mesh.V;
   FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, nu}), 0, patch_size);
-  Places x = rest;
+  NodePositions x = rest;
   PinForm pins;
   const auto radius = [&](const Eigen::RowVector3d& p) { return axial ? std::hypot(p[0], p[1]) : p.norm(); };
   const double steps = std::ceil((a / inner - 1) / 0.1);
@@ -63,11 +63,11 @@ double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int p
         if (std::abs(p[c]) < 1e-9) target[c] = 0;
       return target;
     });
-    energy.hold(pins, {}, {});
+    energy.set_constraints(pins, {}, {});
     const NewtonResult solved = minimise(energy, x, {.tolerance_mm = 1e-8});
     REQUIRE(solved.converged);
   }
-  const Places force = pull(pins, x);
+  const NodePositions force = pull(pins, x);
   double work = 0;  // of the springs when a grows by one
   for (const int v : pins.node)
     if (radius(rest.row(v)) < inner * (1 + 1e-6))
@@ -91,15 +91,15 @@ TEST_CASE("verification: a bar pulled out or pressed has the stress and the volu
                          Row{.49, 1.5, 1.05259220, 1.00666755}, Row{.49, 2, 1.74749950, 1.01000198}}) {
     INFO("Poisson ratio ", row.nu, ", stretch ", row.stretch);
     const TetMesh mesh = kuhn_box(3, 3, 3, {0, 0, 0}, {1, 1, 1});
-    const Places rest = mesh.V;
+    const NodePositions rest = mesh.V;
     FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, row.nu}), 5);
-    Places x = rest;
+    NodePositions x = rest;
     PinForm pins = held(rest, [&](const Eigen::RowVector3d& p) -> Eigen::RowVector3d {
       return {p[0] == 0 ? 0 : kFree, p[1] == 0 ? 0 : kFree, p[2] == 0 ? 0 : p[2] == 1 ? row.stretch : kFree};
     });
-    energy.hold(pins, {}, {});
+    energy.set_constraints(pins, {}, {});
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-12}).converged);
-    const Places force = pull(pins, x);
+    const NodePositions force = pull(pins, x);
     double top = 0, volume = 0;
     for (const int v : pins.node)
       if (rest(v, 2) == 1) top += force(v, 2);
@@ -112,7 +112,7 @@ TEST_CASE("verification: a bar pulled out or pressed has the stress and the volu
 
 TEST_CASE("verification: a patch of tets held by its skin in an affine shape takes it inside too") {
   const TetMesh mesh = kuhn_box(4, 4, 4, {0, 0, 0}, {1, 1, 1});
-  Places rest = mesh.V;
+  NodePositions rest = mesh.V;
   for (Eigen::Index v = 0; v < rest.rows(); ++v)
     if ((rest.row(v).array() > 0).all() && (rest.row(v).array() < 1).all())
       for (int c = 0; c < 3; ++c) rest(v, c) += 0.05 * std::sin(double(7 * v + 3 * c));
@@ -124,8 +124,8 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
     PinForm pins = held(rest, [&](const Eigen::RowVector3d& p) {
       return skin(p) ? Eigen::RowVector3d(p * A.transpose()) : Eigen::RowVector3d::Constant(kFree);
     });
-    energy.hold(pins, {}, {});
-    Places x = rest;
+    energy.set_constraints(pins, {}, {});
+    NodePositions x = rest;
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-11, .iterations = 80}).converged);
     // The skin's springs give way by what the stress there is over their stiffness.
     CHECK((x - rest * A.transpose()).cwiseAbs().maxCoeff() < 1e-5);

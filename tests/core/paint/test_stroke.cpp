@@ -28,7 +28,7 @@ StrokeSettings brush_of(BrushKind kind, double radius, int bone = 1) {
 }
 
 SkinWeights one_dab(const Painted& painted, const StrokeSettings& settings, const glm::dvec3& point) {
-  Stroke stroke(painted.stroke_body(), painted.weights, settings);
+  Stroke stroke(painted.weighted_body(), painted.weights, settings);
   stroke.to(point);
   return stroke.finish();
 }
@@ -109,7 +109,7 @@ TEST_CASE(
     for (auto& lock : settings.locked) lock = random() % 4 == 0;
     if (random() % 2) settings.mirror = mirror_plane(arm.armature);
     if (random() % 3 == 0) settings.bones.push_back((settings.bones[0] + 1) % bones);
-    Stroke stroke(painted.stroke_body(), painted.weights, settings);
+    Stroke stroke(painted.weighted_body(), painted.weights, settings);
     const Bone& bone = arm.armature.bones[random() % bones];
     stroke.to(bone.head);
     stroke.to(bone.tail, 0.7);
@@ -148,7 +148,7 @@ TEST_CASE("stroke: without accumulation going over a place again changes nothing
     mixed.set([](const glm::ivec3& v) { return v.z < 22 ? rigid_influence(0) : quantize({{0, 0.5}, {1, 0.5}}); });
     const Painted& on = kind == BrushKind::Add ? painted : mixed;
     const SkinWeights once = one_dab(on, settings, {6, 6, 44});
-    Stroke stroke(on.stroke_body(), on.weights, settings);
+    Stroke stroke(on.weighted_body(), on.weights, settings);
     for (int i = 0; i < 40; ++i) stroke.to({6, 6, 44 + 0.001 * i});
     stroke.to({6, 6, 44});
     for (int i = 0; i < 10; ++i) {
@@ -159,7 +159,7 @@ TEST_CASE("stroke: without accumulation going over a place again changes nothing
     CHECK(at(on.tissue, stroke.weights(), {3, 3, 22}) == at(on.tissue, once, {3, 3, 22}));
 
     settings.brush.accumulate = true;
-    Stroke growing(on.stroke_body(), on.weights, settings);
+    Stroke growing(on.weighted_body(), on.weights, settings);
     for (int i = 0; i < 10; ++i) {
       growing.to({6, 6, 44 + (i % 2) * 3.01});
       growing.to({6, 6, 44});
@@ -185,7 +185,7 @@ TEST_CASE("stroke: the same for one and two threads") {
     settings.locked[1] = kind == 4 || kind == 0;
     const auto run = [&](int threads) {
       const ThreadCount count(threads);
-      Stroke stroke(painted.stroke_body(), painted.weights, settings);
+      Stroke stroke(painted.weighted_body(), painted.weights, settings);
       stroke.to(arm.armature.bones[2].head);
       stroke.to(arm.armature.bones[2].tail);
       return std::tuple(stroke.weights(), stroke.blocked_count(), stroke.blocked_by());
@@ -211,7 +211,7 @@ TEST_CASE("stroke: with a mirror both sides of a symmetric body stay mirror imag
       settings.brush.value = 0.8;
       settings.brush.accumulate = accumulate;
       settings.mirror = mirror_plane(mixed.body.armature);
-      Stroke stroke(mixed.stroke_body(), mixed.weights, settings);
+      Stroke stroke(mixed.weighted_body(), mixed.weights, settings);
       stroke.to({50, 14, 14});
       stroke.to({42, 16, 12});
       const SkinWeights after = stroke.finish();
@@ -252,10 +252,10 @@ TEST_CASE("stroke: a joint capsule blends the two bones over the width asked for
   }
   CHECK(worst < 1e-4);
   settings.bones = {0};
-  CHECK_THROWS_AS(Stroke(painted.stroke_body(), painted.weights, settings), Error);
+  CHECK_THROWS_AS(Stroke(painted.weighted_body(), painted.weights, settings), Error);
   settings.bones = {1};
   settings.locked = {1, 0};
-  Stroke locked(painted.stroke_body(), painted.weights, settings);
+  Stroke locked(painted.weighted_body(), painted.weights, settings);
   locked.to(painted.body.armature.bones[1].head);
   CHECK(locked.empty());
   CHECK(locked.blocked_by() == 0);
@@ -282,7 +282,7 @@ TEST_CASE(
     CHECK(std::abs(step(average)) < 1e-4);
     CHECK(at(painted.tissue, average, {2, 2, 22}).of(1) == doctest::Approx(0.4).epsilon(0.1));
     settings.brush.kind = BrushKind::Smear;
-    Stroke smear(painted.stroke_body(), painted.weights, settings);
+    Stroke smear(painted.weighted_body(), painted.weights, settings);
     smear.to({4, 4, 36});
     smear.to({4, 4, 60});
     CHECK(at(painted.tissue, smear.weights(), {2, 2, 22}).of(1) < 0.01);
@@ -312,7 +312,7 @@ TEST_CASE("stroke: no brush reaches the finger beside it, nor tissue that is not
       settings.brush.value = 0.5;
       settings.filter.labels.assign(4, 0);
       settings.filter.labels[kMuscle] = 1;
-      Stroke stroke(painted.stroke_body(), painted.weights, settings);
+      Stroke stroke(painted.weighted_body(), painted.weights, settings);
       stroke.to({11, 6, 10});
       stroke.to({10, 6, 44});
       stroke.to({11, 6, 30});
@@ -331,8 +331,8 @@ TEST_CASE("stroke: dabs stand a spacing apart however the way is cut up, and pre
   StrokeSettings settings = brush_of(BrushKind::Add, 8);
   settings.brush.spacing = 0.5;
   settings.brush.strength = 0.4;
-  Stroke straight(painted.stroke_body(), painted.weights, settings),
-      cut(painted.stroke_body(), painted.weights, settings);
+  Stroke straight(painted.weighted_body(), painted.weights, settings),
+      cut(painted.weighted_body(), painted.weights, settings);
   straight.to({6, 6, 10});
   straight.to({6, 6, 70});
   cut.to({6, 6, 10});
@@ -340,7 +340,7 @@ TEST_CASE("stroke: dabs stand a spacing apart however the way is cut up, and pre
   CHECK(straight.dab_count() == 16);
   CHECK(cut.dab_count() == 16);
   CHECK(straight.weights() == cut.weights());
-  Stroke pressed(painted.stroke_body(), painted.weights, settings);
+  Stroke pressed(painted.weighted_body(), painted.weights, settings);
   pressed.to({6, 6, 10}, 0.5);
   CHECK(at(painted.tissue, pressed.weights(), {3, 3, 5}).of(1) == doctest::Approx(0.2).epsilon(1e-3));
 }
@@ -350,7 +350,7 @@ TEST_CASE(
   const Painted painted = bar();
   const SkinWeights before = *painted.weights;
   StrokeSettings settings = brush_of(BrushKind::Add, 6);
-  Stroke stroke(painted.stroke_body(), painted.weights, settings);
+  Stroke stroke(painted.weighted_body(), painted.weights, settings);
   CHECK(stroke.empty());
   stroke.to({6, 6, 20});
   CHECK(!stroke.empty());
@@ -366,7 +366,7 @@ TEST_CASE(
   CHECK(*painted.weights == before);
 
   settings.brush.kind = BrushKind::Subtract;  // of what is not there
-  Stroke nothing(painted.stroke_body(), painted.weights, settings);
+  Stroke nothing(painted.weighted_body(), painted.weights, settings);
   nothing.to({6, 6, 20});
   CHECK(nothing.empty());
   CHECK(nothing.blocked_by() == -1);
@@ -375,7 +375,7 @@ TEST_CASE(
 
   settings.brush.kind = BrushKind::Add;
   settings.locked = {1, 0};
-  Stroke blocked(painted.stroke_body(), painted.weights, settings);
+  Stroke blocked(painted.weighted_body(), painted.weights, settings);
   blocked.to({6, 6, 20});
   CHECK(blocked.empty());
   CHECK(blocked.blocked_by() == 0);
@@ -383,13 +383,13 @@ TEST_CASE(
   CHECK(kept > 0);
   // The same voxels again count once.
   settings.brush.accumulate = true;
-  Stroke again(painted.stroke_body(), painted.weights, settings);
+  Stroke again(painted.weighted_body(), painted.weights, settings);
   for (int i = 0; i < 3; ++i) again.dab({6, 6, 20});
   CHECK(again.blocked_count() == kept);
   CHECK(lock_message(painted.body.armature, blocked.blocked_by()) == "Upper is locked");
 
   settings.bones = {2};
-  CHECK_THROWS_AS(Stroke(painted.stroke_body(), painted.weights, settings), std::logic_error);
+  CHECK_THROWS_AS(Stroke(painted.weighted_body(), painted.weights, settings), std::logic_error);
 }
 
 TEST_CASE(
@@ -399,7 +399,7 @@ TEST_CASE(
   for (const bool accumulate : {false, true}) {
     StrokeSettings settings = brush_of(BrushKind::Add, 6 * 8.0, 2);
     settings.brush.accumulate = accumulate;
-    Stroke stroke(painted.stroke_body(), painted.weights, settings);
+    Stroke stroke(painted.weighted_body(), painted.weights, settings);
     const Bone& bone = phantom.armature.bones[2];
     SkinWeights last = stroke.weights();
     std::size_t all = 0, most = 0;
@@ -431,7 +431,7 @@ TEST_CASE("stroke: on a whole body one of 200 dabs takes less than 5 MB, and lea
   StrokeSettings settings = brush_of(BrushKind::Add, 16 * 8.0, 2);
   settings.brush.falloff = FalloffShape::Smooth;
   settings.brush.spacing = 0.1;
-  Stroke stroke(painted.stroke_body(), painted.weights, settings);
+  Stroke stroke(painted.weighted_body(), painted.weights, settings);
   const Bone& bone = phantom.armature.bones[2];
   for (int i = 0; stroke.dab_count() < 200; ++i) stroke.to(i % 2 ? bone.tail : bone.head);
   MESSAGE("of ", painted.tissue.size(), " voxels of tissue: ", stroke.memory_bytes() / 1000, " kB");

@@ -118,7 +118,8 @@ TEST_CASE("worker: what it tells of a solve comes whole") {
   Progress quiet;
   run_worker("job.json", quiet,
              {.program = script(folder, R"(echo '{"stage": "mesh", "fraction": 0.25}' >&2
-echo '{"stage":"solving","fraction":0.5,"angle_degrees":45.5,"iteration":7,"residual_mm":0.125,"seconds_left":12}' >&2)"),
+echo '{"stage":"solving","fraction":0.5,"angle_degrees":45.5,)"
+                                        R"("iteration":7,"residual_mm":0.125,"seconds_left":12}' >&2)"),
               .on_progress = [&](const WorkerProgress& progress) { told.push_back(progress); }});
   REQUIRE(told.size() == 2);
   CHECK(told[0].stage == "mesh");

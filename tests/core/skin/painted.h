@@ -20,7 +20,7 @@ struct Painted {
     for (const Bone& bone : body.armature.bones) names.push_back(bone.name);
     weights = std::make_shared<const SkinWeights>(names, tissue);
   }
-  WeightedBody stroke_body() const { return {body.volume, tissue, body.tissues, body.armature}; }
+  WeightedBody weighted_body() const { return {body.volume, tissue, body.tissues, body.armature}; }
   void set(const std::function<Influence(const glm::ivec3&)>& of) {
     SkinWeights all = *weights;
     for (std::int64_t b = 0; b < all.chunk_count(); ++b) {

@@ -34,8 +34,8 @@ SkinWeights computed_for(const Painted& painted) {
 TEST_CASE("recomputed weights: all of them become what was computed, and nothing else changes where that is the same") {
   const Painted painted = even();
   const SkinWeights computed = computed_for(painted);
-  CHECK(recomputed(painted.stroke_body(), *painted.weights, computed).weights == computed);
-  const WeightEdit again = recomputed(painted.stroke_body(), computed, computed);
+  CHECK(recomputed(painted.weighted_body(), *painted.weights, computed).weights == computed);
+  const WeightEdit again = recomputed(painted.weighted_body(), computed, computed);
   CHECK(again.changed == 0);
   for (std::int64_t b = 0; b < computed.chunk_count(); ++b)
     CHECK(again.weights.shared_chunk(b) == computed.shared_chunk(b));
@@ -43,7 +43,7 @@ TEST_CASE("recomputed weights: all of them become what was computed, and nothing
 
 TEST_CASE("recomputed weights: one bone's alone, the others share the rest as they did") {
   const Painted painted = even();
-  const SkinWeights now = recomputed(painted.stroke_body(), *painted.weights, computed_for(painted), {2}).weights;
+  const SkinWeights now = recomputed(painted.weighted_body(), *painted.weights, computed_for(painted), {2}).weights;
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
     const Influence& influence = at(painted.tissue, now, v);
     CHECK(std::abs(influence.of(2) - (v.x < 10 ? 0.6 : 0)) < 1e-4);
@@ -53,7 +53,8 @@ TEST_CASE("recomputed weights: one bone's alone, the others share the rest as th
   // Where a bone has to give up all and no other had any, the computed ones come in.
   Painted all_right = even();
   all_right.set([](const glm::ivec3&) { return rigid_influence(2); });
-  const SkinWeights taken = recomputed(all_right.stroke_body(), *all_right.weights, computed_for(painted), {2}).weights;
+  const SkinWeights taken =
+      recomputed(all_right.weighted_body(), *all_right.weights, computed_for(painted), {2}).weights;
   CHECK(at(painted.tissue, taken, {15, 5, 5}) == rigid_influence(0));
   CHECK(std::abs(at(painted.tissue, taken, {5, 5, 5}).of(0) - 0.4) < 1e-4);
 }
@@ -63,7 +64,8 @@ TEST_CASE("recomputed weights: a locked bone keeps every bit, and so does all ti
   EditScope scope{.rigid_bone_tissue = false};
   scope.locked = {0, 1, 0};
   scope.region = region_where(painted.tissue, [](std::int64_t, const glm::ivec3& v) { return v.y < 6; });
-  const SkinWeights now = recomputed(painted.stroke_body(), *painted.weights, computed_for(painted), {}, scope).weights;
+  const SkinWeights now =
+      recomputed(painted.weighted_body(), *painted.weights, computed_for(painted), {}, scope).weights;
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
     const Influence &before = at(painted.tissue, *painted.weights, v), &after = at(painted.tissue, now, v);
     if (v.y >= 6) CHECK(after == before);

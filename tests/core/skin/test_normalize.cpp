@@ -278,7 +278,7 @@ TEST_CASE("weight rules: what is shared out adds up, in proportion") {
     share[0] += 1;
     std::vector<int> out(share.size());
     const int total = i % 2 ? random() % 8 : random() % 70000;
-    share_out(share, total, out);
+    distribute(share, total, out);
     CHECK(std::accumulate(out.begin(), out.end(), 0) == total);
     const double sum = std::accumulate(share.begin(), share.end(), 0.0);
     for (std::size_t k = 0; k < out.size(); ++k) {

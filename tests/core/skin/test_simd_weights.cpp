@@ -64,7 +64,7 @@ TEST_CASE("weights of many voxels at once: to the bit what comes of one after th
         // One in four stays as it is.
         if (i % 4 == 3) asked[i] = found[i];
       }
-      set_weights(made, bone, rules.heir(bone), asked, width);
+      set_weights(made, bone, rules.fallback_bone(bone), asked, width);
       for (std::size_t i = 0; i < influences.size(); ++i) {
         Influence alone = influences[i];
         rules.set(alone, bone, asked[i]);

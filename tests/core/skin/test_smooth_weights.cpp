@@ -137,7 +137,7 @@ TEST_CASE("smooth weights: a stroke widens a blend by as many mm at 1 mm as at 2
     const double middle = body.body.volume.grid.spacing.x * (body.body.volume.grid.size.x / 2);
     const auto painted = [&](int threads) {
       const ThreadCount limit(threads);
-      Stroke stroke(body.stroke_body(), body.weights, settings);
+      Stroke stroke(body.weighted_body(), body.weights, settings);
       for (int i = 0; i <= 4; ++i) stroke.to({middle, middle - kRadius + 1, 60 + i * 30.0});
       return stroke.finish();
     };

@@ -57,7 +57,7 @@ TEST_CASE(
     "weight edits: whatever is done, sums stay exact, locks and bone tissue keep every bit, and counts are true") {
   std::mt19937 random(1);
   const Painted painted = random_arm(6, 1);
-  const WeightedBody body = painted.stroke_body();
+  const WeightedBody body = painted.weighted_body();
   const SkinWeights& before = *painted.weights;
   const int bones = static_cast<int>(painted.body.armature.bones.size());
   const std::vector<TissueKind> kinds = painted.body.tissues.kinds();
@@ -109,10 +109,10 @@ TEST_CASE("weight edits: the same for one and two threads, and nothing is copied
   const Painted painted = random_arm(6, 2);
   const auto run = [&](int threads) {
     const ThreadCount count(threads);
-    return smoothed(painted.stroke_body(), *painted.weights, 3).weights;
+    return smoothed(painted.weighted_body(), *painted.weights, 3).weights;
   };
   CHECK(run(1) == run(2));
-  const WeightEdit none = flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Add, 0);
+  const WeightEdit none = flooded(painted.weighted_body(), *painted.weights, std::vector<int>{1}, Flood::Add, 0);
   CHECK(none.changed == 0);
   for (std::int64_t b = 0; b < none.weights.chunk_count(); ++b)
     CHECK(none.weights.shared_chunk(b) == painted.weights->shared_chunk(b));
@@ -121,7 +121,7 @@ TEST_CASE("weight edits: the same for one and two threads, and nothing is copied
 TEST_CASE("weight edits: a flood sets what it says everywhere, a label goes to a bone") {
   Painted painted(two_bone_bar());
   painted.set([](const glm::ivec3&) { return quantize({{0, 0.75}, {1, 0.25}}); });
-  const WeightedBody body = painted.stroke_body();
+  const WeightedBody body = painted.weighted_body();
   const std::vector<int> bone{1};
   const glm::ivec3 flesh(2, 2, 20), inner(8, 8, 8);
   const auto flooded_to = [&](Flood kind, double value) {
@@ -148,7 +148,7 @@ TEST_CASE("weight edits: a flood sets what it says everywhere, a label goes to a
 
 TEST_CASE("weight edits: gradients fall along a line or from a point outwards") {
   Painted painted(two_bone_bar());
-  const WeightedBody body = painted.stroke_body();
+  const WeightedBody body = painted.weighted_body();
   const std::vector<int> bone{1};
   const SkinWeights line = with_gradient(body, *painted.weights, bone, {{0, 0, 20}, {0, 0, 60}, false, 0, 1}).weights;
   for (int z = 2; z < 42; ++z)
@@ -175,7 +175,7 @@ TEST_CASE("weight edits: a part of the tissue hangs together through faces, all 
 
 TEST_CASE("weight edits: weights are copied, moved and swapped between bones, swapped twice they are what they were") {
   const Painted painted = random_arm(6, 3);
-  const WeightedBody body = painted.stroke_body();
+  const WeightedBody body = painted.weighted_body();
   EditScope scope;
   scope.rigid_bone_tissue = false;
   const SkinWeights& before = *painted.weights;
@@ -203,7 +203,7 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
   });
   const MirrorPlane plane = mirror_plane(painted.body.armature);
   const double sign = plane.normal.x;
-  const MirrorEdit edit = mirrored(painted.stroke_body(), *painted.weights, {plane, 3});
+  const MirrorEdit edit = mirrored(painted.weighted_body(), *painted.weights, {plane, 3});
   CHECK(edit.unmatched.empty());
   int wrong = 0;
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -225,7 +225,7 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
       for (int i = 2; i < 6; ++i) short_arm.volume.at({side == 0 ? i : 31 - i, y, z}) = 0;
   Painted asymmetric(std::move(short_arm));
   asymmetric.set([&](const glm::ivec3&) { return quantize({{0, 1 + random() % 9}, {1, 1 + random() % 9}}); });
-  const MirrorEdit partly = mirrored(asymmetric.stroke_body(), *asymmetric.weights, {plane, 4.5});
+  const MirrorEdit partly = mirrored(asymmetric.weighted_body(), *asymmetric.weights, {plane, 4.5});
   CHECK(partly.unmatched.size() == 2 * 10 * 10);
   std::vector<std::uint8_t> is_unmatched(asymmetric.tissue.size(), 0);
   for (const auto place : partly.unmatched) is_unmatched[place] = 1;
@@ -244,7 +244,7 @@ TEST_CASE("weight edits: weights of the same volume come over as they are, those
   blend_along_bones(fine, 8);
   EditScope scope;
   scope.rigid_bone_tissue = false;
-  const WeightedBody fine_body = fine.stroke_body(), coarse_body = coarse.stroke_body();
+  const WeightedBody fine_body = fine.weighted_body(), coarse_body = coarse.weighted_body();
   const SkinWeights blank(fine.weights->bones(), fine.tissue);
   const TransferSource of_fine{fine_body.volume, fine_body.tissue, fine_body.armature, *fine.weights};
   const TransferEdit same = transferred(fine_body, blank, of_fine, scope);
@@ -270,7 +270,7 @@ TEST_CASE(
   SkinWeights source(names, from.tissue);
   for (std::int64_t b = 0; b < source.chunk_count(); ++b)
     source.set_chunk(b, SkinWeights::Influences(source.chunk(b).size(), quantize({{0, 0.5}, {2, 0.5}})));
-  const WeightedBody body = to.stroke_body();
+  const WeightedBody body = to.weighted_body();
   const TransferEdit edit = transferred(body, *to.weights, {from.body.volume, from.tissue, from.body.armature, source});
   CHECK(edit.missing == std::vector<std::string>{"Hand"});
   CHECK(at(to.tissue, edit.weights, {2, 2, 20}).of(1) == doctest::Approx(0.5).epsilon(1e-4));

@@ -30,7 +30,7 @@ WeightLayers painted_at(const Painted& painted, const WeightLayers& layers, std:
   settings.brush.falloff = FalloffShape::Linear;
   settings.bones = {bone};
   const auto before = std::make_shared<const SkinWeights>(canvas(layers, layer));
-  Stroke stroke(painted.stroke_body(), before, settings);
+  Stroke stroke(painted.weighted_body(), before, settings);
   stroke.to(point);
   return with(layers, layer, painted_on(*layers.layers[layer], *before, stroke.finish()));
 }
@@ -60,7 +60,7 @@ TEST_CASE(
   settings.brush.radius = 9;
   settings.brush.falloff = FalloffShape::Linear;
   settings.bones = {1};
-  Stroke direct(painted.stroke_body(), painted.weights, settings);
+  Stroke direct(painted.weighted_body(), painted.weights, settings);
   direct.to({6, 6, 40});
   const SkinWeights expected = direct.finish();
   CHECK(composed(layers) == expected);
@@ -83,7 +83,7 @@ TEST_CASE("weight layers: the base may change below a layer, which keeps what it
   WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   const SkinWeights before = composed(layers);
   layers.base = std::make_shared<const SkinWeights>(
-      flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+      flooded(painted.weighted_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
   const SkinWeights after = composed(layers);
   CHECK(at(painted.tissue, after, {3, 3, 20}) == at(painted.tissue, before, {3, 3, 20}));
   CHECK(at(painted.tissue, after, {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
@@ -221,7 +221,7 @@ TEST_CASE(
   body.armature.bones.push_back(bone_between("Hand", 1, {15, 15, 70}, {15, 15, 84}));
   const Painted painted(std::move(body));
   WeightLayers layers = with_new_layer({painted.weights, {}}, "Elbow");
-  const WeightedBody plain = painted.stroke_body();
+  const WeightedBody plain = painted.weighted_body();
   const Armature bones = with_below(plain.armature);
   const WeightedBody with_what_lies_below{plain.volume, plain.tissue, plain.tissues, bones};
   const glm::ivec3 middle(2, 2, 22);
@@ -268,7 +268,7 @@ TEST_CASE("weight layers: another base shows through where nothing covers, and n
   const Painted painted(two_bone_bar());
   const WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   const auto base = std::make_shared<const SkinWeights>(
-      flooded(painted.stroke_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
+      flooded(painted.weighted_body(), *painted.weights, std::vector<int>{1}, Flood::Set, 0.25).weights);
   const WeightLayers over = over_base(layers, base);
   CHECK(over.base == base);
   const SkinWeights out = composed(over);

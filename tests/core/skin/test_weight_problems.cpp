@@ -48,7 +48,7 @@ Armature chain(int count) {
 
 TEST_CASE("weight problems: good weights have none") {
   const Painted painted = good_bar();
-  CHECK(find_problems(painted.stroke_body(), *painted.weights).empty());
+  CHECK(find_problems(painted.weighted_body(), *painted.weights).empty());
 }
 
 TEST_CASE("weight problems: a piece that no bone reaches follows, repaired, what is nearest to it") {
@@ -63,13 +63,13 @@ TEST_CASE("weight problems: a piece that no bone reaches follows, repaired, what
     return volume.at(v) == kBone || v.z < 20 || v.z > 24 ? rigid_influence(v.z < 22 ? 0 : 1)
                                                          : quantize({{0, 25.0 - v.z}, {1, v.z - 19.0}});
   });
-  const auto problems = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::Unreached);
+  const auto problems = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::Unreached);
   REQUIRE(problems.size() == 1);
   CHECK(problems[0].voxels.size() == 2);
   CHECK(problems[0].bone == 0);
   CHECK(problems[0].place.x == doctest::Approx(30));
   CHECK(describe(problems[0], painted.body.armature) == "2 voxels that no bone reaches, given to Upper");
-  const WeightEdit edit = repaired(painted.stroke_body(), *painted.weights, problems[0]);
+  const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, problems[0]);
   CHECK(edit.changed == 2);
   CHECK(at(painted.tissue, edit.weights, {15, 15, 36}) == rigid_influence(1));
 }
@@ -81,20 +81,20 @@ TEST_CASE("weight problems: an island is found with its place and filled in from
     const bool island = v.x >= 2 && v.x < 4 && v.y >= 5 && v.y < 9 && v.z >= 5 && v.z < 9;
     return island ? rigid_influence(1) : at(painted.tissue, good, v);
   });
-  const auto problems = find_problems(painted.stroke_body(), *painted.weights);
+  const auto problems = find_problems(painted.weighted_body(), *painted.weights);
   const auto islands = of_kind(problems, Kind::Island);
   REQUIRE(islands.size() == 1);
   CHECK(islands[0].bone == 1);
   CHECK(islands[0].voxels.size() == 2 * 4 * 4);
   CHECK(glm::length(islands[0].place - glm::dvec3(5, 13, 13)) < 3);
-  const WeightEdit edit = repaired(painted.stroke_body(), *painted.weights, islands[0]);
+  const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, islands[0]);
   CHECK(edit.changed == 32);
   CHECK(edit.weights == good);
-  CHECK(find_problems(painted.stroke_body(), edit.weights).empty());
+  CHECK(find_problems(painted.weighted_body(), edit.weights).empty());
   // Its lock is in the way.
   EditScope scope;
   scope.locked = {0, 1};
-  const WeightEdit blocked = repaired(painted.stroke_body(), *painted.weights, islands[0], scope);
+  const WeightEdit blocked = repaired(painted.weighted_body(), *painted.weights, islands[0], scope);
   CHECK(blocked.changed == 0);
   CHECK(blocked.blocked_by == 1);
 }
@@ -108,15 +108,15 @@ TEST_CASE("weight problems: bones far apart in the rig are found in pairs, and t
     if (v.z < 6) return quantize({{0, 0.985}, {5, 0.015}});
     return v.z == 41 ? quantize({{3, 0.5}, {5, 0.5}}) : rigid_influence(0);
   });
-  const auto far = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::FarBones);
+  const auto far = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::FarBones);
   REQUIRE(far.size() == 2);  // 0 with 5, 1 with 5
   for (const WeightProblem& problem : far) CHECK(problem.voxels.size() == 2 * 12 * 12);
   CHECK(far[0].other == 5);
   EditScope scope;
   scope.rigid_bone_tissue = false;
-  const WeightEdit edit = repaired(painted.stroke_body(), *painted.weights, far[0], scope);
+  const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, far[0], scope);
   CHECK(at(painted.tissue, edit.weights, {5, 5, 2}).of(5) == 0);
-  CHECK(of_kind(find_problems(painted.stroke_body(), edit.weights), Kind::FarBones).empty());
+  CHECK(of_kind(find_problems(painted.weighted_body(), edit.weights), Kind::FarBones).empty());
 }
 
 TEST_CASE("weight problems: bone that bends is found and made rigid with what it follows most") {
@@ -126,11 +126,11 @@ TEST_CASE("weight problems: bone that bends is found and made rigid with what it
     const bool bends = v == glm::ivec3(8, 8, 8) || v == glm::ivec3(8, 8, 9);
     return bends ? quantize({{0, 0.7}, {1, 0.3}}) : at(painted.tissue, good, v);
   });
-  const auto soft = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone);
+  const auto soft = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::SoftBone);
   REQUIRE(soft.size() == 1);
   CHECK(soft[0].voxels.size() == 2);
   CHECK(soft[0].bone == 0);
-  const WeightEdit edit = repaired(painted.stroke_body(), *painted.weights, soft[0]);
+  const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, soft[0]);
   CHECK(edit.weights == good);
 }
 
@@ -144,12 +144,12 @@ TEST_CASE(
   };
   for (const Influence& wrong : {rigid_influence(1), quantize({{0, 0.2}, {1, 0.8}})}) {
     painted.set([&](const glm::ivec3& v) { return patch(v) ? wrong : at(painted.tissue, good, v); });
-    const auto soft = of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone);
+    const auto soft = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::SoftBone);
     REQUIRE(soft.size() == 1);
     CHECK(soft[0].voxels.size() == 2 * 2 * 3);
     CHECK(soft[0].bone == 0);
     CHECK(describe(soft[0], painted.body.armature) == "12 voxels of bone not rigid with Upper");
-    CHECK(repaired(painted.stroke_body(), *painted.weights, soft[0]).weights == good);
+    CHECK(repaired(painted.weighted_body(), *painted.weights, soft[0]).weights == good);
   }
 }
 
@@ -167,29 +167,29 @@ TEST_CASE("weight problems: a small bone with air or flesh all around stays with
     for (int y = 0; y < volume.grid.size.y; ++y)
       for (int x = 0; x < volume.grid.size.x; ++x)
         if (volume.at({x, y, z}) == kBone) volume.at({x, y, z}) = kMuscle;
-  CHECK(of_kind(find_problems(painted.stroke_body(), *painted.weights), Kind::SoftBone).empty());
+  CHECK(of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::SoftBone).empty());
 }
 
 TEST_CASE("weight problems: the search can be cancelled") {
   const Painted painted = good_bar();
   Progress stop;
   stop.cancel();
-  CHECK_THROWS_AS(find_problems(painted.stroke_body(), *painted.weights, {}, stop), Cancelled);
+  CHECK_THROWS_AS(find_problems(painted.weighted_body(), *painted.weights, {}, stop), Cancelled);
 }
 
 TEST_CASE("weight problems: a clean cut through flesh is steep, and smooth once repaired") {
   Painted painted = good_bar();
   const auto& volume = painted.body.volume;
   painted.set([&](const glm::ivec3& v) { return rigid_influence(v.z < 22 ? 0 : 1); });
-  const auto problems = find_problems(painted.stroke_body(), *painted.weights);
+  const auto problems = find_problems(painted.weighted_body(), *painted.weights);
   const auto steep = of_kind(problems, Kind::Steep);
   REQUIRE(steep.size() == 1);
   CHECK(steep[0].voxels.size() == 2 * 12 * 12);
   CHECK(steep[0].bone + steep[0].other == 1);
   CHECK(steep[0].place.z == doctest::Approx(43).epsilon(0.03));
-  const WeightEdit edit = repaired(painted.stroke_body(), *painted.weights, steep[0]);
+  const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, steep[0]);
   CHECK(edit.changed > 0);
-  CHECK(of_kind(find_problems(painted.stroke_body(), edit.weights), Kind::Steep).empty());
+  CHECK(of_kind(find_problems(painted.weighted_body(), edit.weights), Kind::Steep).empty());
   painted.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
     if (volume.at(v) == kBone || v.z < 18 || v.z > 25)
       CHECK(at(painted.tissue, edit.weights, v) == at(painted.tissue, *painted.weights, v));

@@ -14,19 +14,19 @@ using namespace limber::editor;
 
 TEST_CASE("remembered: what is written is read back") {
   const TemporaryFolder folder;
-  Remembered remembered;
-  add_recent(remembered, "/a/one.limber", 10);
-  add_recent(remembered, "/a/two.limber", 20);
-  add_recent(remembered, "/a/one.limber", 30);
-  remembered.folders["open"] = "/a";
-  remembered.show_start = false;
-  remembered.tour_step = 3;
-  write_remembered(remembered, folder / "config/remembered.json");
+  RecentFiles recent_files;
+  add_recent(recent_files, "/a/one.limber", 10);
+  add_recent(recent_files, "/a/two.limber", 20);
+  add_recent(recent_files, "/a/one.limber", 30);
+  recent_files.folders["open"] = "/a";
+  recent_files.show_start = false;
+  recent_files.tour_step = 3;
+  write_recent_files(recent_files, folder / "config/remembered.json");
   std::string warning;
-  CHECK(read_remembered(folder / "config/remembered.json", warning) == remembered);
+  CHECK(read_recent_files(folder / "config/remembered.json", warning) == recent_files);
   CHECK(warning.empty());
-  CHECK(remembered.recents.size() == 2);
-  CHECK(remembered.recents[0].path == "/a/one.limber");
+  CHECK(recent_files.recents.size() == 2);
+  CHECK(recent_files.recents[0].path == "/a/one.limber");
 }
 
 TEST_CASE("remembered: a damaged file is set aside with a message, and odd values are left out") {
@@ -34,7 +34,7 @@ TEST_CASE("remembered: a damaged file is set aside with a message, and odd value
   for (const char* text : {"", "{", "[]", "{\"schema\": \"other\"}", "\xff\xfe nothing"}) {
     std::ofstream(folder / "remembered.json") << text;
     std::string warning;
-    CHECK(read_remembered(folder / "remembered.json", warning) == Remembered{});
+    CHECK(read_recent_files(folder / "remembered.json", warning) == RecentFiles{});
     CHECK_FALSE(warning.empty());
     CHECK_FALSE(std::filesystem::exists(folder / "remembered.json"));
     CHECK(std::filesystem::exists(folder / "remembered.json.damaged"));
@@ -43,12 +43,12 @@ TEST_CASE("remembered: a damaged file is set aside with a message, and odd value
       << R"({"schema": "limber-remembered/1", "recent": [3, {"path": 4}, {"path": "not/absolute"}, {"path": "/ok"}],
     "folders": {"open": 7}, "show_start": "yes", "tour_step": 1.5})";
   std::string warning;
-  const Remembered remembered = read_remembered(folder / "remembered.json", warning);
+  const RecentFiles recent_files = read_recent_files(folder / "remembered.json", warning);
   CHECK(warning.empty());
-  REQUIRE(remembered.recents.size() == 1);
-  CHECK(remembered.recents[0].path == "/ok");
-  CHECK(remembered.show_start);
-  CHECK(remembered.tour_step == 0);
+  REQUIRE(recent_files.recents.size() == 1);
+  CHECK(recent_files.recents[0].path == "/ok");
+  CHECK(recent_files.show_start);
+  CHECK(recent_files.tour_step == 0);
 }
 
 TEST_CASE("remembered: the tour has no step before its first") {
@@ -56,6 +56,6 @@ TEST_CASE("remembered: the tour has no step before its first") {
   for (const auto& [kept, step] : {std::pair{"-4", 0}, {"4", 4}}) {
     std::ofstream(folder / "remembered.json") << R"({"schema": "limber-remembered/1", "tour_step": )" << kept << "}";
     std::string warning;
-    CHECK(read_remembered(folder / "remembered.json", warning).tour_step == step);
+    CHECK(read_recent_files(folder / "remembered.json", warning).tour_step == step);
   }
 }

@@ -18,16 +18,16 @@ struct AdjustingEditor : LimbEditor {
     editor->selection = {};
     editor->selection.bone = editor->document().armature->find(bone).value();
     editor->selection.bones = {*editor->selection.bone};
-    editor->handling->part = Handling::Part::Whole;
+    editor->transform_settings->part = TransformSettings::Part::Whole;
   }
   // Of what was done last; a number, or the number of a choice.
   void change(const std::string& label, double value) {
-    REQUIRE(why_not_adjust(*editor) == "");
+    REQUIRE(why_not_redo(*editor) == "");
     std::vector<FormField> fields = editor->last_operation->fields;
     for (FormField& field : fields)
       if (field.label == label)
         (field.kind == FormField::Kind::Choice ? field.chosen = static_cast<int>(value) : field.value = value);
-    adjust(*editor, fields);
+    redo_last_operator(*editor, fields);
   }
   std::int64_t position() const { return editor->history.position(); }
   const Armature& rig() const { return *editor->document().armature; }
@@ -83,7 +83,7 @@ TEST_CASE("adjust: what was done with a number is as if it had been done with th
                           test.editor->selection.bones};
       test.play("key Ctrl+Z");
       CHECK(test.position() == before);
-      CHECK(why_not_adjust(*test.editor) != "");
+      CHECK(why_not_redo(*test.editor) != "");
       return found;
     };
     const Outcome one = outcome(true), two = outcome(false);
@@ -134,19 +134,19 @@ TEST_CASE("adjust: numbers that come to nothing take the step away, others bring
 
 TEST_CASE("adjust: what has no numbers says so, and what fails leaves all as it was") {
   AdjustingEditor test;
-  CHECK(why_not_adjust(*test.editor) == "Nothing has been done yet");
+  CHECK(why_not_redo(*test.editor) == "Nothing has been done yet");
   test.play("key Ctrl+1\nwait-idle");
   test.choose("Fore");
   test.play("key Shift+A");
-  CHECK(why_not_adjust(*test.editor) == "Add bone has nothing to adjust");
+  CHECK(why_not_redo(*test.editor) == "Add bone has nothing to adjust");
 
-  act_adjustably(*test.editor, {number_of("Bones", "", 1, 0, 9, "%.0f")},
-                 [](Editor& e, const std::vector<FormField>& fields) {
-                   if (fields[0].value > 5) throw Error("too many", "bones", "take fewer");
-                   Document next = e.document();
-                   next.frame = static_cast<int>(fields[0].value);
-                   commit(e, "Step", std::move(next));
-                 });
+  act_and_allow_redo(*test.editor, {number_of("Bones", "", 1, 0, 9, "%.0f")},
+                     [](Editor& e, const std::vector<FormField>& fields) {
+                       if (fields[0].value > 5) throw Error("too many", "bones", "take fewer");
+                       Document next = e.document();
+                       next.frame = static_cast<int>(fields[0].value);
+                       commit(e, "Step", std::move(next));
+                     });
   test.change("Bones", 4);
   CHECK(test.editor->document().frame == 4);
   test.change("Bones", 7);

@@ -120,7 +120,7 @@ void make_ten_recent(Stage& s) {
     write_volume(*small_body().volume, path, *small_body().tissues);
     recents.push_back({path, 1000 - k});
   }
-  s.editor().remembered.recents = recents;
+  s.editor().recent_files.recents = recents;
 }
 
 Proof sample(const char* id, const std::string& name, Effect effect) {

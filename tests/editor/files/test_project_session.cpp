@@ -71,7 +71,7 @@ TEST_CASE("project: saved, closed and opened again it is the same document with 
   sitting.play("expect layout four\n expect display xray\n expect hidden 1\n expect unsaved no");
   CHECK(sitting.test.fact("document") == hash);
   CHECK(editor_state(sitting.editor()) == state);
-  CHECK(sitting.editor().remembered.recents[0].path == home / "ball.limber");
+  CHECK(sitting.editor().recent_files.recents[0].path == home / "ball.limber");
 }
 
 TEST_CASE(

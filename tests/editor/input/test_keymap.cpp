@@ -22,14 +22,14 @@ TEST_CASE("keymap: every binding starts an operator that exists, and no key has 
     }
 }
 
-TEST_CASE("operators: each has a name of its own, words and a sentence") {
+TEST_CASE("operators: each has a name of its own, words and a description") {
   std::set<std::string> ids;
   for (const Operator& op : gather_operators()) {
     INFO(op.id);
     CHECK(ids.insert(op.id).second);
     CHECK_FALSE(op.label.empty());
-    CHECK_FALSE(op.place.empty());
-    CHECK(op.sentence.ends_with('.'));
+    CHECK_FALSE(op.category.empty());
+    CHECK(op.description.ends_with('.'));
     CHECK(op.run);
   }
 }

@@ -294,7 +294,7 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
   }
   next.armature = std::make_shared<const Armature>(rig);
   test.editor->history.commit("Two arms", next);
-  test.editor->handling->x_mirror = true;
+  test.editor->transform_settings->x_mirror = true;
   test.choose(2);
   test.play("move \"3D view/view\"\n key Shift+P");
   CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.L", "Fore.R"});
@@ -318,7 +318,7 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
   test.play("key Shift+I");
   CHECK(anchors_of(test.editor->document()).pins.size() == 2);
   CHECK(poles().size() == 2);
-  test.editor->handling->x_mirror = false;
+  test.editor->transform_settings->x_mirror = false;
   test.play("key Shift+P");
   CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.R"});
 }

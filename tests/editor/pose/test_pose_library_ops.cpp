@@ -85,8 +85,9 @@ TEST_CASE(
   std::vector<std::string> warnings;
   const Armature& rig = *s.document().armature;
   CHECK(pose_of(s.document()) == with_request(rig, rest_pose(rig), {"sit", {}}, warnings));
-  CHECK(find_operator(s.editor(), "pose.library_delete")->why_not(s.editor()) == "This pose comes with the program");
-  CHECK(find_operator(s.editor(), "pose.library_apply")->why_not(s.editor()).empty());
+  CHECK(find_operator(s.editor(), "pose.library_delete")->disabled_reason(s.editor()) ==
+        "This pose comes with the program");
+  CHECK(find_operator(s.editor(), "pose.library_apply")->disabled_reason(s.editor()).empty());
 
   // A pose of the user's of the same name is another one.
   run(s.editor(), "pose.library_add");
@@ -96,7 +97,7 @@ TEST_CASE(
   own.rotation.clear();
   named.poses[0] = std::make_shared<const NamedPose>(own);
   commit(s.editor(), "Rename", std::move(named));
-  s.editor().handling->library_pose = "sit";
+  s.editor().transform_settings->library_pose = "sit";
   CHECK(chosen_pose(s.editor())->rotation.empty());
 }
 

@@ -31,8 +31,10 @@ struct RiggingEditor : LimbEditor {
     editor->selection.bone = bone;
     editor->selection.bones = {bone};
   }
-  SeenFrom view(ViewId id = ViewId::Body) const { return SeenFrom(*editor, {id, *editor->layout.place_of(id)}); }
-  void drag(const SeenFrom& view, const glm::dvec3& from, const glm::dvec3& to) {
+  ViewProjection view(ViewId id = ViewId::Body) const {
+    return ViewProjection(*editor, {id, *editor->layout.place_of(id)});
+  }
+  void drag(const ViewProjection& view, const glm::dvec3& from, const glm::dvec3& to) {
     pointer_to(view.pixel_of(from).value());
     host->events.push(ButtonChanged{MouseButton::Left, true});
     player.settle();
@@ -56,7 +58,7 @@ TEST_CASE("rigging: a joint is dragged in the 3D view and in a slice, and what i
   test.editor->selection = {};
   test.drag(test.view(), {0, 0, -36}, {10, 0, -30});
   CHECK(test.editor->selection.bone == 1);
-  CHECK(test.editor->handling->part == Handling::Part::Tail);
+  CHECK(test.editor->transform_settings->part == TransformSettings::Part::Tail);
   CHECK(glm::distance(test.rig().bones[1].tail, glm::dvec3(10, 0, -30)) < 0.05);
   test.play("key Ctrl+Z\nclick view.split\nwait-idle");
   test.editor->views->cross_hair = {0, 0, 0};
@@ -93,8 +95,8 @@ TEST_CASE("rigging: with Ctrl a joint snaps to steps, to another joint, or to th
   test.play("key Ctrl+Z");
 
   // The ball's core is bone, 12 mm large about the middle of the world.
-  test.editor->handling->snap = Snap::BoneMiddle;
-  const SeenFrom view = test.view();
+  test.editor->transform_settings->snap = Snap::BoneMiddle;
+  const ViewProjection view = test.view();
   const auto middle = middle_of_bone(test.editor->document(), view, view.pixel_of({3, 0, 4}).value());
   REQUIRE(middle);
   CHECK(glm::length(*middle) < 5);
@@ -184,7 +186,7 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     CHECK(rig_check(*test.editor)->bones.empty());
     CHECK(test.fact("text:All in tissue") == "shown");
     // The ball ends 40 mm below its middle: of the new 72 mm the last 32 are outside. Live, and gone again with Escape.
-    test.editor->handling->part = Handling::Part::Tail;
+    test.editor->transform_settings->part = TransformSettings::Part::Tail;
     test.play("move \"3D view/view\"\n key G\n key Z\n key -\n key 3\n key 6");
     CHECK(rig_check(*test.editor)->bones[0].share == doctest::Approx(40.0 / 72).epsilon(0.03));
     CHECK(test.fact("text:tail") == "shown");
@@ -194,7 +196,7 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     test.editor->selection = {};
     test.play("click \"Fit check/Fore/name\"\n wait-idle\n wait 1");
     CHECK(test.editor->selection.bone == 1);
-    CHECK(test.editor->handling->part == Handling::Part::Tail);
+    CHECK(test.editor->transform_settings->part == TransformSettings::Part::Tail);
     CHECK(glm::distance(test.editor->views->body.camera.centre, glm::dvec3(0, 0, -72)) < 1e-6);
     test.play("key Ctrl+Z\n wait-idle");
     CHECK(rig_check(*test.editor)->bones.empty());
@@ -212,7 +214,7 @@ TEST_CASE(
       test.editor->views->cross_hair = {0, 0, 0};
       if (id != ViewId::Body) test.play("click view.four\nwait-idle");
       const auto snapped = [&](Snap snap, const glm::dvec3& to) {
-        test.editor->handling->snap = snap;
+        test.editor->transform_settings->snap = snap;
         test.editor->selection = {};
         test.pointer_to(test.view(id).pixel_of({0, 0, -36}).value());
         test.host->events.push(ButtonChanged{MouseButton::Left, true});
@@ -257,8 +259,8 @@ void give_two_arms(RiggingEditor& test) {
 TEST_CASE("rigging: with X-mirror both sides extrude") {
   RiggingEditor test;
   give_two_arms(test);
-  test.editor->handling->x_mirror = true;
-  test.editor->handling->part = Handling::Part::Tail;
+  test.editor->transform_settings->x_mirror = true;
+  test.editor->transform_settings->part = TransformSettings::Part::Tail;
   test.play("move \"3D view/view\"\n key E\n key X\n key 9");
   CHECK(shown_rig(*test.editor)->bones.size() == 5);
   test.play("key Return\n wait-idle");
@@ -351,7 +353,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
     rig.bones.push_back({side > 0 ? "Hand.L" : "Hand.R", 0, {side * 24, 0, 4}, {side * 30, 0, 4}, 0, {}});
   next.armature = std::make_shared<const Armature>(rig);
   test.editor->history.commit("Hands", next);
-  test.editor->handling->x_mirror = true;
+  test.editor->transform_settings->x_mirror = true;
   const auto parent_of = [&](const std::string& name) {
     const int parent = test.rig().bones[test.rig().find(name).value()].parent;
     return parent < 0 ? std::string() : test.rig().bones[parent].name;
@@ -419,7 +421,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     INFO("scale ", scale);
     test.editor->tool = Tool::Rotate;
     test.player.settle();
-    const SeenFrom view = test.view();
+    const ViewProjection view = test.view();
     const glm::dvec3 head = test.rig().bones[1].head, handle = hinge_handle(*test.editor, view).value();
     CHECK(glm::distance(glm::normalize(handle - head), {1, 0, 0}) < 1e-9);
     // From the x axis by 30 degrees towards z, in the plane of the front view.

@@ -146,7 +146,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   commit(stage.editor(), "Longer", other);
   stage.play("wait-idle");
   CHECK_FALSE(scene.weights);
-  CHECK_FALSE(why_not(stage.editor(), *find_operator(stage.editor(), "rig.take_joint_fit")).empty());
+  CHECK_FALSE(disabled_reason(stage.editor(), *find_operator(stage.editor(), "rig.take_joint_fit")).empty());
 }
 
 TEST_CASE(

@@ -17,7 +17,7 @@ std::function<void(Stage&)> choose(std::set<int> bones, int active) {
     s.editor().selection = {};
     s.editor().selection.bone = active;
     s.editor().selection.bones = bones;
-    s.editor().handling->part = Handling::Part::Whole;
+    s.editor().transform_settings->part = TransformSettings::Part::Whole;
     s.play("key Ctrl+1\n move \"3D view/view\"\n wait-idle");
   };
 }
@@ -46,11 +46,11 @@ const Bone& named(const Armature& rig, const std::string& name) {
 
 void tail_of_upper(Stage& s) {
   anew({0}, 0)(s);
-  s.editor().handling->part = Handling::Part::Tail;
+  s.editor().transform_settings->part = TransformSettings::Part::Tail;
 }
 
 Effect snaps(Snap snap) {
-  return [=](Stage& s, const Seen&) { return s.editor().handling->snap == snap; };
+  return [=](Stage& s, const Seen&) { return s.editor().transform_settings->snap == snap; };
 }
 
 }  // namespace
@@ -173,11 +173,11 @@ std::vector<Proof> proofs_of_rigging() {
        Shows::Nothing, "", anew({1}, 1)},
       {"rig.next_leaving", "click \"Edit/Rig/Next bone outside tissue\"",
        [](Stage& s, const Seen&) {
-         return s.editor().selection.bone == 1 && s.editor().handling->part == Handling::Part::Tail;
+         return s.editor().selection.bone == 1 && s.editor().transform_settings->part == TransformSettings::Part::Tail;
        },
        Shows::Nothing, "key G\n key Z\n key -\n key 3\n key 0\n key Return\n wait-idle", anew({1}, 1)},
       {"view.rig_check", "click \"View/Overlays/Where the rig leaves tissue\"",
-       [](Stage& s, const Seen&) { return !s.editor().handling->rig_check_marks; }},
+       [](Stage& s, const Seen&) { return !s.editor().transform_settings->rig_check_marks; }},
       {"rig.batch_rename",
        "key Ctrl+F2\n click Bones/All\n click Find/text\n type \"er\"\n click \"Replace with/text\"\n type \"ER\"\n "
        "click Suffix/text\n type \".L\"\n wait-idle\n key Return",
@@ -186,7 +186,7 @@ std::vector<Proof> proofs_of_rigging() {
        Shows::Nothing, "", anew({1}, 1)},
       {"rig.delete", "key X", edited("Delete Fore", [](const Armature& r) { return r.bones.size() == 1; }),
        Shows::InBody, "", anew({1}, 1)},
-      {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().handling->snapping; }},
+      {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().transform_settings->snapping; }},
       {"rig.snap_pie", "key Shift+S", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Snap"; },
        Shows::Nothing, "move \"3D view/view\""},
       {"snap.voxel", "move \"3D view/view\"\n key Shift+S\n wait-idle\n click \"Snap/Snap to voxels\"",

@@ -35,7 +35,7 @@ TEST_CASE(
     expect name moved
   )");
   CHECK_FALSE(sitting.editor().start_screen);
-  CHECK(sitting.editor().remembered.recents.size() == 2);
+  CHECK(sitting.editor().recent_files.recents.size() == 2);
 }
 
 TEST_CASE("start screen: arrows and Return choose a recent file, the menu lists them too") {
@@ -103,7 +103,7 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     )");
   }
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
-  CHECK(sitting.editor().remembered.tour_step == 3);
+  CHECK(sitting.editor().recent_files.tour_step == 3);
   sitting.play(R"(
     click Help/Tour
     expect "text:Hide a tissue"
@@ -126,5 +126,5 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     click "Skip step"
     expect "toast" "That was the tour"
   )");
-  CHECK(sitting.editor().remembered.tour_step == 0);
+  CHECK(sitting.editor().recent_files.tour_step == 0);
 }

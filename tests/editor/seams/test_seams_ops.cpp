@@ -132,7 +132,7 @@ TEST_CASE("seams: a stroke in a slice cuts to both sides of it, and what was cut
   for (const ViewPlace& place : test.editor->layout.view_places)
     if (place.id == ViewId::Axial) axial = &place;
   REQUIRE(axial);
-  const SeenFrom seen(*test.editor, *axial);
+  const ViewProjection seen(*test.editor, *axial);
   const auto pixel = [&](const glm::dvec3& point) {
     const glm::dvec2 at = *seen.pixel_of(point) / 2.0;
     return std::to_string(at.x) + " " + std::to_string(at.y);

@@ -249,7 +249,7 @@ TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and
   test.editor->views->cross_hair = {0, 0, 15};
   slice_of(*test.editor->views, slice->id).fitted = false;
   test.play("wait-idle");
-  const SeenFrom seen(*test.editor, *slice);
+  const ViewProjection seen(*test.editor, *slice);
   const glm::dvec3 point(18, 0, glm::dot(seen.slice.centre, glm::dvec3(0, 0, 1)));
   const glm::dvec2 pixel = seen.pixel_of(point).value();
   const int steps = test.steps();

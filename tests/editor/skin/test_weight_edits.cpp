@@ -88,7 +88,7 @@ TEST_CASE("weight editing: a flood does what the brush does in all it may reach,
   REQUIRE(fields.size() == 3);
   fields[0].chosen = 3;
   fields[1].value = 0.5;
-  adjust(*test.editor, fields);
+  redo_last_operator(*test.editor, fields);
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : before(p) / 2; }) == 0);
   test.play("key Ctrl+Z");
@@ -144,7 +144,7 @@ TEST_CASE("weight editing: the part under the pointer, or all of a tissue, follo
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kSkin ? 1 : before(p); }) == 0);
   std::vector<FormField> fields = test.editor->last_operation->fields;
   fields[0].chosen = 1;
-  adjust(*test.editor, fields);
+  redo_last_operator(*test.editor, fields);
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3&, Label) { return 1; }) == 0);
   test.play("key Ctrl+Z");
@@ -168,12 +168,12 @@ TEST_CASE(
   CHECK(test.last_edit() == "Flood Fore");
   const auto quarter = [](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.25; };
   CHECK(test.wrong(quarter) == 0);
-  REQUIRE(why_not_adjust(*test.editor).empty());
+  REQUIRE(why_not_redo(*test.editor).empty());
   std::vector<FormField> fields = test.editor->last_operation->fields;
   fields[1].value = 0.75;
-  adjust(*test.editor, fields);
+  redo_last_operator(*test.editor, fields);
   fields[1].value = 0.5;
-  adjust(*test.editor, fields);  // the first is cancelled
+  redo_last_operator(*test.editor, fields);  // the first is cancelled
   test.play("wait-job\nwait-idle");
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.5; }) == 0);
@@ -227,7 +227,7 @@ TEST_CASE(
   CHECK(away([](const glm::dvec3& p) { return std::clamp((p.z + 20) / 40, 0.0, 1.0); }) < allowed);
   std::vector<FormField> fields = test.editor->last_operation->fields;
   fields[0].chosen = 1;
-  adjust(*test.editor, fields);
+  redo_last_operator(*test.editor, fields);
   CHECK(test.steps() == steps + 1);
   // Its beginning lies on the skin, where it was pressed.
   const glm::dvec3 from(0, -std::sqrt(1600 - 400), 20);
@@ -401,7 +401,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   test.play("key Ctrl+2\nwait-idle");
   Painting& painting = *test.editor->skin->painting;
   const Falloff smooth = falloff_of(painting);
-  test.play("click \"Edit/Brush/Own falloff\"\nwait-idle");
+  test.play("click \"Edit/Brush/Falloff/Own falloff\"\nwait-idle");
   REQUIRE(painting.falloff_curve.size() == 5);
   CHECK(std::abs(falloff_of(painting)(0.5f) - smooth(0.5f)) < 1e-3);
   // Its middle point, half as high as the box, goes down to the bottom.
@@ -428,7 +428,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   drag({box.low.x + box.width() * 0.16f, box.centre().y}, {box.high.x - 10, box.centre().y});
   CHECK(painting.falloff_curve[1].x < painting.falloff_curve[2].x);
   CHECK(painting.falloff_curve[1].x > painting.falloff_curve[0].x);
-  test.play("click \"Edit/Brush/Smooth falloff\"\nwait-idle");
+  test.play("click \"Edit/Brush/Falloff/Smooth falloff\"\nwait-idle");
   CHECK(painting.falloff_curve.empty());
   CHECK(falloff_of(painting) == smooth);
 }
@@ -445,7 +445,7 @@ TEST_CASE("painting: with X-mirror a stroke paints the bone of the other side th
                                                      TissueVoxels(*next.volume));
   test.editor->history.commit("Two arms", next);
   test.choose(1);
-  test.editor->handling->x_mirror = true;
+  test.editor->transform_settings->x_mirror = true;
   test.painting().kind = BrushKind::Add;
   test.painting().strength = 0.5;
   test.painting().radius = 12;

@@ -163,7 +163,7 @@ TEST_CASE(
   // The base has nothing to leave it to.
   choose_layer(*test.editor, std::nullopt);
   CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
-  CHECK(!why_not(*test.editor, *find_operator(*test.editor, "skin.normalize_off")).empty());
+  CHECK(!disabled_reason(*test.editor, *find_operator(*test.editor, "skin.normalize_off")).empty());
 }
 
 TEST_CASE("layers: the base is painted below a layer, which keeps what it covers") {

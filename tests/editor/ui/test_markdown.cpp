@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/ui/markdown.h"
 
+#include "editor/dialogs/text_viewer.h"
 #include "editor/ui/asset_path.h"
 #include "tests/editor/small_editor.h"
 
@@ -24,6 +25,13 @@ TEST_CASE("markdown: headings, paragraphs over several lines, points, marks and 
   CHECK(blocks[4].kind == Block::Kind::Heading);
 }
 
+TEST_CASE("user guide: its lists of formats, exporters and brushes are the program's tables") {
+  const std::string guide = with_tables(read_file(asset("docs/guide.md")));
+  CHECK(guide.find("{table.") == std::string::npos);
+  for (const char* word : {"VTK image", ".gprmax.h5 (gprMax geometry)", "Smear: Drags weights along."})
+    CHECK(guide.find(word) != std::string::npos);
+}
+
 TEST_CASE("user guide: it opens by F1, goes to a chapter, and names only operators that exist and have a key") {
   SmallEditor test({1280, 720});
   test.play(R"(
@@ -40,7 +48,7 @@ TEST_CASE("user guide: it opens by F1, goes to a chapter, and names only operato
     key Escape
   )");
   for (const char* name : {"docs/guide.md", "docs/new.md"})
-    parse_markdown(read_file(asset(name)), [&](const std::string& id) {
+    parse_markdown(with_tables(read_file(asset(name))), [&](const std::string& id) {
       INFO(name, ": ", id);
       CHECK(find_operator(*test.editor, id));
       CHECK(test.editor->keymap.chord_of(id));

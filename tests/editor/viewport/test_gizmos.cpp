@@ -43,7 +43,7 @@ struct GizmoEditor : LimbEditor {
     return preferences;
   }
 
-  SeenFrom view() const { return body_seen(*editor).value(); }
+  ViewProjection view() const { return body_seen(*editor).value(); }
   Gizmo gizmo() const {
     const auto gizmo = gizmo_in(*editor, view());
     REQUIRE(gizmo);
@@ -133,7 +133,7 @@ TEST_CASE("gizmos: a hinge that lies askew has a ring of its own, and turns by t
     next.armature = std::make_shared<const Armature>(armature);
     test.editor->history.commit("Hinge", next);
     test.editor->posing.keep_limits = true;
-    test.editor->handling->space = local ? Space::Local : Space::Global;
+    test.editor->transform_settings->space = local ? Space::Local : Space::Global;
     test.play("click \"strip/tool.rotate\"\nwait-idle");
     int along = -1;
     for (int axis = 0; axis < 3; ++axis)
@@ -273,11 +273,11 @@ TEST_CASE("gizmos: rings and locks go by the chosen space") {
   test.editor->tool = Tool::Rotate;
   test.play("move \"3D view/view\"\nkey R\nkey Z\nkey 3\nkey 0\nkey Return");
   const auto posed = posed_from_rest(*test.editor->document().armature, test.pose());
-  test.editor->handling->space = Space::Local;
+  test.editor->transform_settings->space = Space::Local;
   CHECK(glm::distance(test.gizmo().axes[1], posed[1].rotation * glm::dvec3(0, 0, -1)) < 1e-9);
-  test.editor->handling->space = Space::Parent;
+  test.editor->transform_settings->space = Space::Parent;
   CHECK(glm::distance(test.gizmo().axes[1], glm::dvec3(0, 0, -1)) < 1e-9);
-  test.editor->handling->space = Space::View;
+  test.editor->transform_settings->space = Space::View;
   CHECK(glm::distance(test.gizmo().axes[2], test.view().towards_eye) < 1e-9);
 
   // The first press of the key takes the chosen space, the second the world where that is another.
@@ -397,7 +397,7 @@ TEST_CASE("gizmos: with X-mirror the other side does the same") {
   test.editor->history.commit("Two arms", next);
   test.editor->selection.bone = 0;
   test.editor->selection.bones = {0};
-  test.editor->handling->x_mirror = true;
+  test.editor->transform_settings->x_mirror = true;
   test.play("move \"3D view/view\"\nkey R\nkey Y\nkey 3\nkey 0\nkey Return");
   const auto posed = posed_from_rest(armature, test.pose());
   const glm::dvec3 left = posed[0] * glm::dvec3(30, 0, 0), right = posed[1] * glm::dvec3(-30, 0, 0);
@@ -478,7 +478,7 @@ TEST_CASE(
   for (SliceState& slice : test.editor->views->slices) slice.camera.centre = {0, 0, 0};
   test.play("wait-idle");
   const ViewPlace sagittal{ViewId::Sagittal, *test.editor->layout.place_of(ViewId::Sagittal)};
-  const SeenFrom view(*test.editor, sagittal);
+  const ViewProjection view(*test.editor, sagittal);
   const auto posed = posed_from_rest(*test.editor->document().armature, bent);
   const auto point_at = [&](const glm::dvec2& pixel) {
     test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");

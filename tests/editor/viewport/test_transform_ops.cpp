@@ -24,7 +24,7 @@ Effect tool_is(const char* tool) {
 }
 
 Effect space_is(Space space) {
-  return [=](Stage& s, const Seen&) { return s.editor().handling->space == space; };
+  return [=](Stage& s, const Seen&) { return s.editor().transform_settings->space == space; };
 }
 
 // The edit's name, and how far the fore limb is bent.
@@ -49,9 +49,9 @@ std::vector<Proof> proofs_of_handling() {
       {"space.view", "click \"Edit/Axes/View axes\"", space_is(Space::View)},
       {"space.global", "click \"Edit/Axes/Global axes\"", space_is(Space::Global)},
       {"edit.x_mirror", "click \"Edit/Pose/X-mirror\"",
-       [](Stage& s, const Seen&) { return s.editor().handling->x_mirror; }},
+       [](Stage& s, const Seen&) { return s.editor().transform_settings->x_mirror; }},
       {"pose.auto_ik", "click \"Edit/IK/Auto-IK\"",
-       [](Stage& s, const Seen&) { return !s.editor().handling->auto_ik; }},
+       [](Stage& s, const Seen&) { return !s.editor().transform_settings->auto_ik; }},
       {"pose.pin", "key Shift+P", [](Stage& s, const Seen&) { return anchors_of(s.document()).pins.contains("Fore"); },
        Shows::Nothing, "", choose_fore},
       {"pose.pole", "click \"Edit/IK/Pole\"",

@@ -95,7 +95,7 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
 
 TEST_CASE("prepare: crop to the clip box keeps what is seen, a form says what is wrong and waits") {
   LimbEditor test;
-  CHECK_FALSE(why_not(*test.editor, *find_operator(*test.editor, "prepare.crop_to_clip_box")).empty());
+  CHECK_FALSE(disabled_reason(*test.editor, *find_operator(*test.editor, "prepare.crop_to_clip_box")).empty());
   run(*test.editor, "view.clip_box");
   const ClipBox box = test.editor->document().visibility->clip_box;
   const LabelVolume expected =

@@ -29,7 +29,7 @@ struct MovingSettings {
   std::vector<double> places{0.25, 0.5, 0.75, 1};  // of the path that are looked at
 };
 
-struct MovingTissue {
+struct DeformingRegion {
   std::vector<int> moves_as;  // per bone of the weights: the first bone that moves as it does, all along the path
   TissueMask free;            // may bend
   std::vector<std::array<float, 8>>
@@ -42,11 +42,11 @@ struct MovingTissue {
 };
 
 //   weights  bone tissue follows one bone wholly       path  of the bones of the weights
-MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
-                           const BonePath& path, const MovingSettings& settings = {},
-                           Progress& progress = no_progress());
+DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                              const BonePath& path, const MovingSettings& settings = {},
+                              Progress& progress = no_progress());
 
 // The weights of what is not free made whole: each voxel of it on the one bone that its motion is.
-SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const MovingTissue& moving);
+SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const DeformingRegion& moving);
 
 }  // namespace limber

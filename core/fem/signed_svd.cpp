@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/fem/principal.h"
+#include "core/fem/signed_svd.h"
 
 #include <algorithm>
 #include <array>
@@ -115,14 +115,14 @@ void all_by_two(const Eigen::Matrix3d* F, Principal* result, std::size_t count) 
 
 }  // namespace
 
-void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result, MatrixLanes width) {
+void signed_svd(std::span<const Eigen::Matrix3d> F, std::span<Principal> result, MatrixLanes width) {
   assert(F.size() == result.size());
   (takes_four(width) ? all_by_four : all_by_two)(F.data(), result.data(), F.size());
 }
 
-Principal principal(const Eigen::Matrix3d& F) {
+Principal signed_svd(const Eigen::Matrix3d& F) {
   Principal result;
-  principal({&F, 1}, {&result, 1});
+  signed_svd({&F, 1}, {&result, 1});
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/fem/moving_tissue.h"
+#include "core/fem/deforming_region.h"
 
 #include <algorithm>
 #include <cmath>
@@ -204,19 +204,19 @@ class Cells {
 
 }  // namespace
 
-bool MovingTissue::empty() const {
+bool DeformingRegion::empty() const {
   return std::all_of(free.begin(), free.end(),
                      [](const auto& brick) { return brick == std::array<std::uint64_t, 8>{}; });
 }
 
-float MovingTissue::free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const {
+float DeformingRegion::free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const {
   const glm::ivec3 cell = (voxel & (TissueVoxels::kBrick - 1)) / kCell;
   return free_from[tissue.brick_at(voxel)][cell.x + 2 * cell.y + 4 * cell.z];
 }
 
-MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
-                           const BonePath& path, const MovingSettings& settings, Progress& progress) {
-  MovingTissue result;
+DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
+                              const BonePath& path, const MovingSettings& settings, Progress& progress) {
+  DeformingRegion result;
   result.moves_as = first_alike_on_path(path, settings.places);
   const Cells cells(volume, tissue, weights, result.moves_as);
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
@@ -245,7 +245,7 @@ MovingTissue moving_tissue(const LabelVolume& volume, const TissueVoxels& tissue
   return result;
 }
 
-SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const MovingTissue& moving) {
+SkinWeights with_rigid_rest(const SkinWeights& weights, const TissueVoxels& tissue, const DeformingRegion& moving) {
   SkinWeights rigid = weights;
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
     const TissueVoxels::Brick& cells = tissue.bricks()[brick];

@@ -19,8 +19,8 @@ struct Principal {
 enum class MatrixLanes { Widest, Two };  // the same comes out, to the bit
 
 // Of each F, as many as there are.
-void principal(std::span<const Eigen::Matrix3d> F, std::span<Principal> result,
-               MatrixLanes width = MatrixLanes::Widest);
-Principal principal(const Eigen::Matrix3d& F);
+void signed_svd(std::span<const Eigen::Matrix3d> F, std::span<Principal> result,
+                MatrixLanes width = MatrixLanes::Widest);
+Principal signed_svd(const Eigen::Matrix3d& F);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/resample/mend.h"
+#include "core/resample/preserve_connectivity.h"
 
 #include <algorithm>
 
@@ -42,7 +42,7 @@ void cut(LabelVolume& volume, int first, int last, Label label) {
 }
 
 std::int64_t mend_in_place(LabelVolume& posed, const LabelVolume& rest) {
-  return mend(posed, rest, soft(), [](const glm::ivec3& v) { return glm::dvec3(v); });
+  return preserve_connectivity(posed, rest, soft(), [](const glm::ivec3& v) { return glm::dvec3(v); });
 }
 
 int parts(const LabelVolume& volume, Label label) { return take_census(volume, kSmallestPart).components[label]; }
@@ -55,7 +55,7 @@ std::int64_t changes(const LabelVolume& a, const LabelVolume& b) {
 
 }  // namespace
 
-TEST_CASE("mend: a torn strand is rejoined by the fewest voxels, and nothing else changes") {
+TEST_CASE("connectivity: a torn strand is rejoined by the fewest voxels, and nothing else changes") {
   const LabelVolume rest = block_with_strand();
   for (int gap = 1; gap <= 4; ++gap) {
     LabelVolume posed = rest;
@@ -69,21 +69,21 @@ TEST_CASE("mend: a torn strand is rejoined by the fewest voxels, and nothing els
   }
 }
 
-TEST_CASE("mend: what is whole stays as it is") {
+TEST_CASE("connectivity: what is whole stays as it is") {
   const LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   CHECK(mend_in_place(posed, rest) == 0);
   CHECK(posed.voxels == rest.voxels);
 }
 
-TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apart") {
+TEST_CASE("connectivity: pieces that were apart at rest, or lie too far apart, stay apart") {
   LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 13, kFlesh);
   const auto carried_apart = [](const glm::ivec3& v) {
     return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 13 ? 8 : 0, 0, 0);
   };
-  CHECK(mend(posed, rest, soft(), carried_apart) == 0);
+  CHECK(preserve_connectivity(posed, rest, soft(), carried_apart) == 0);
 
   // Two strands at rest, and one piece more that comes from elsewhere.
   cut(rest, 11, 11, kFlesh);
@@ -93,11 +93,11 @@ TEST_CASE("mend: pieces that were apart at rest, or lie too far apart, stay apar
       for (int x = 9; x < 12; ++x) posed.at({x, y, z}) = kStrand;
   const LabelVolume before = posed;
   const auto elsewhere = [](const glm::ivec3& v) { return glm::dvec3(v.x > 8 ? glm::ivec3(100) : v); };
-  CHECK(mend(posed, rest, soft(), elsewhere) == 0);
+  CHECK(preserve_connectivity(posed, rest, soft(), elsewhere) == 0);
   CHECK(posed.voxels == before.voxels);
 }
 
-TEST_CASE("mend: a strand that fell between the voxels' centres is traced along its way") {
+TEST_CASE("connectivity: a strand that fell between the voxels' centres is traced along its way") {
   const LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 14, kFlesh);
@@ -105,11 +105,11 @@ TEST_CASE("mend: a strand that fell between the voxels' centres is traced along 
   const auto beside = [](const glm::ivec3& v) {
     return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 14 ? 2 : 0, 0, 0);
   };
-  CHECK(mend(posed, rest, soft(), beside) == 6);
+  CHECK(preserve_connectivity(posed, rest, soft(), beside) == 6);
   CHECK(parts(posed, kStrand) == 1);
 }
 
-TEST_CASE("mend: bridges take neither bone, nor what lies beside air, nor what would split another tissue") {
+TEST_CASE("connectivity: bridges take neither bone, nor what lies beside air, nor what would split another tissue") {
   const LabelVolume rest = block_with_strand();
   LabelVolume walled = rest;
   for (int y = 1; y < 12; ++y)
@@ -133,7 +133,8 @@ TEST_CASE("mend: bridges take neither bone, nor what lies beside air, nor what w
   CHECK(posed.voxels == walled.voxels);
 }
 
-TEST_CASE("mend: a bone that comes apart is rejoined through soft tissue, one that was two pieces at rest is not") {
+TEST_CASE(
+    "connectivity: a bone that comes apart is rejoined through soft tissue, one that was two pieces at rest is not") {
   LabelVolume tissue = block_with_strand();
   cut(tissue, 3, 20, kHard);
   LabelVolume rest = tissue;
@@ -186,12 +187,12 @@ const LabelSet& not_bone() {
 }
 
 std::int64_t mend_bone_tissue(LabelVolume& posed, const LabelVolume& rest) {
-  return mend(posed, rest, not_bone(), [](const glm::ivec3& v) { return glm::dvec3(v); });
+  return preserve_connectivity(posed, rest, not_bone(), [](const glm::ivec3& v) { return glm::dvec3(v); });
 }
 
 }  // namespace
 
-TEST_CASE("mend: a hole in the wall between two marrows is closed, the whole wall's loss too") {
+TEST_CASE("connectivity: a hole in the wall between two marrows is closed, the whole wall's loss too") {
   const LabelVolume rest = bone_with_two_marrows();
   for (int width : {1, 3, 5}) {
     LabelVolume posed = rest;
@@ -207,7 +208,9 @@ TEST_CASE("mend: a hole in the wall between two marrows is closed, the whole wal
   }
 }
 
-TEST_CASE("mend: bone tissue that came out a few voxels too small is filled up, one that lost most of itself is not") {
+TEST_CASE(
+    "connectivity: bone tissue that came out a few voxels too small is filled up, one that lost most of itself is "
+    "not") {
   LabelVolume rest = bone_with_two_marrows();
   for (int z = 13; z < 15; ++z)
     for (int y = 5; y < 10; ++y)
@@ -225,7 +228,7 @@ TEST_CASE("mend: bone tissue that came out a few voxels too small is filled up, 
   }
 }
 
-TEST_CASE("mend: bone tissue that the grid made large enough to count gives back what it gained") {
+TEST_CASE("connectivity: bone tissue that the grid made large enough to count gives back what it gained") {
   LabelVolume rest = bone_with_two_marrows();
   for (int z = 13; z < 15; ++z)
     for (int y = 5; y < 10; ++y)
@@ -240,7 +243,7 @@ TEST_CASE("mend: bone tissue that the grid made large enough to count gives back
   CHECK(parts(posed, kShell) == 1);
 }
 
-TEST_CASE("mend: a small bone that lost a few voxels takes them back from soft tissue") {
+TEST_CASE("connectivity: a small bone that lost a few voxels takes them back from soft tissue") {
   LabelVolume tissue = block_with_strand();
   LabelVolume rest = tissue;
   for (Label& label : rest.voxels) label = 0;

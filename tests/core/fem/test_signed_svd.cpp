@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/fem/principal.h"
+#include "core/fem/signed_svd.h"
 
 #include <random>
 #include <utility>
@@ -19,7 +19,7 @@ TEST_CASE("principal: singular values are exact, falling, and only the last is n
     Eigen::Matrix3d F = Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); });
     if (k % 4 == 1) F.col(2) = F.col(0) + 1e-9 * F.col(2);
     if (k % 4 == 2) F = Eigen::Quaterniond(1, uniform(random), uniform(random), 0).normalized().toRotationMatrix();
-    const Principal p = principal(F);
+    const Principal p = signed_svd(F);
     CHECK((p.U * p.sigma.asDiagonal() * p.V.transpose() - F).norm() < 1e-14);
     CHECK((p.U.transpose() * p.U - Eigen::Matrix3d::Identity()).norm() < 1e-13);
     CHECK((p.V.transpose() * p.V - Eigen::Matrix3d::Identity()).norm() < 1e-13);
@@ -39,10 +39,10 @@ TEST_CASE("principal: two at once, four at once and one by one come out the same
     for (auto& each : F) each = Eigen::Matrix3d::NullaryExpr([&] { return uniform(random); });
     if (count > 2) F[1].setIdentity(), F[2].setZero();
     std::vector<Principal> wide(count), narrow(count);
-    principal(F, wide);
-    principal(F, narrow, MatrixLanes::Two);
+    signed_svd(F, wide);
+    signed_svd(F, narrow, MatrixLanes::Two);
     for (std::size_t k = 0; k < count; ++k) {
-      const Principal one = principal(F[k]);
+      const Principal one = signed_svd(F[k]);
       for (const Principal* other : {std::as_const(narrow).data() + k, &one}) {
         CHECK(wide[k].U == other->U);
         CHECK(wide[k].V == other->V);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/resample/mend.h"
+#include "core/resample/preserve_connectivity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ class Mending {
     for (const auto& [label, before] : large_parts(of_rest_)) {
       const auto& parts = after[label];
       if (!parts.empty() && parts.size() > before.size()) {
-        const std::int64_t too_many = mend(label, parts, parts.size() - before.size());
+        const std::int64_t too_many = preserve_connectivity(label, parts, parts.size() - before.size());
         if (in_tissue_ && !soft_[label]) trim(label, parts, too_many);
       }
       if (parts.size() < before.size()) grow(label, parts, before.size() - parts.size());
@@ -78,7 +78,7 @@ class Mending {
   };
 
   // Returns how many there still are.
-  std::int64_t mend(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
+  std::int64_t preserve_connectivity(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     find_stretches(label);
     const std::vector<bool> is_torn = torn(label, parts);
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0; ++i) {
@@ -141,7 +141,7 @@ class Mending {
       glm::ivec3 best(0);
       Label taker = 0;
       for (const glm::ivec3& v : voxels) {
-        if (posed_.at(v) != label || !can_spare(posed_, v)) continue;
+        if (posed_.at(v) != label || !is_simple_point(posed_, v)) continue;
         std::map<Label, int> touches;
         for (const glm::ivec3& step : neighbours())
           if (const Label there = posed_.at_or_air(v + step); there != label && !soft_[there]) ++touches[there];
@@ -382,8 +382,8 @@ class Mending {
 
 }  // namespace
 
-std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point,
-                  const MendRows& rows, const MendRows& bone_rows) {
+std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft,
+                                   const RestPoint& rest_point, const MendRows& rows, const MendRows& bone_rows) {
   LabelSet asked(soft.size());
   for (size_t label = 1; label < soft.size(); ++label) asked[label] = !soft[label];
   const std::int64_t parted = part_bones(posed, connected_components(posed, bone_rows.posed, &asked), rest,

@@ -6,6 +6,6 @@
 
 namespace limber {
 
-using Places = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3
+using NodePositions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3
 
 }  // namespace limber

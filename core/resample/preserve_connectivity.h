@@ -30,8 +30,9 @@ struct MendRows {
 //   posed    voxels of bridges are changed
 //   bone_rows  that hold bone tissue
 //   returns  the number of voxels changed
-std::int64_t mend(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft, const RestPoint& rest_point,
-                  const MendRows& rows = {}, const MendRows& bone_rows = {});
+std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft,
+                                   const RestPoint& rest_point, const MendRows& rows = {},
+                                   const MendRows& bone_rows = {});
 
 // The same for rigid bones as wholes: they take soft voxels.
 //   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere; what is taken is added

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Names that the field does not know, and that were replaced by its own, do not come back as names of functions, types,
+// fields or files. As words in sentences they may stand.
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "tests/layers/sources.h"
+
+using namespace limber::layers;
+
+namespace {
+
+struct Replaced {
+  std::string name, by;
+  std::string below = "";  // the folder where it is no name; empty: everywhere
+};
+
+const std::vector<Replaced> kReplaced = {
+    {"Handling", "TransformSettings"},
+    {"handling", "transform_settings"},
+    {"SeenFrom", "ViewProjection"},
+    {"Remembered", "RecentFiles"},
+    {"remembered", "recent_files"},
+    {"why_not", "disabled_reason"},
+    {"sentence", "description", "editor/context/"},
+    {"Places", "NodePositions", "core/"},
+    {"Curvature", "HessianKind"},
+    {"can_spare", "is_simple_point"},
+    {"hang_together", "is_connected_26"},
+    {"SoftBody", "HeatGraph"},
+    {"bone_holding", "fixed_bone"},
+    {"heir", "fallback_bone"},
+    {"share_out", "distribute"},
+    {"principal", "signed_svd", "core/fem/"},
+    {"MovingTissue", "DeformingRegion"},
+    {"yielding", "limit_step", "core/fem/"},
+    {"guard", "add_inversion_guard", "core/fem/"},
+    {"draw_inside", "pull_inside"},
+    {"fit_starts", "initial_guess"},
+    {"joint_reading", "joint_angle"},
+    {"misfit", "residual"},
+    {"DeckFormat", "Exporter"},
+    {"kWithIt", "what it limits"},
+    {"kLonger", "what it limits"},
+};
+
+const std::vector<std::string> kFiles = {"sitting",     "facts",      "handling",      "adjust", "remembered",
+                                         "seen_from",   "places",     "soft_body",     "mend",   "principal",
+                                         "draw_inside", "fit_starts", "joint_reading", "decks",  "moving_tissue"};
+
+// The code of a line: without what stands in quotes, and without a comment.
+std::string code_of(const std::string& line) {
+  static const std::regex quoted(R"("([^"\\]|\\.)*"|'([^'\\]|\\.)+')");
+  const std::string plain = std::regex_replace(line, quoted, "");
+  return plain.substr(0, plain.find("//"));
+}
+
+}  // namespace
+
+TEST_CASE("names: what was replaced by the field's own words is no name again") {
+  std::map<std::string, const Replaced*> replaced;
+  for (const Replaced& one : kReplaced) replaced[one.name] = &one;
+  static const std::regex word(R"([A-Za-z_][A-Za-z0-9_]*)");
+  for (const fs::path& file : sources({"core", "render", "editor"})) {
+    const std::string name = file.generic_string();
+    for (const std::string& line : lines_of(file)) {
+      const std::string code = line.starts_with("#include") ? "" : code_of(line);
+      for (std::sregex_iterator it(code.begin(), code.end(), word), end; it != end; ++it) {
+        const auto found = replaced.find(it->str());
+        if (found == replaced.end() || !name.starts_with(found->second->below)) continue;
+        INFO(name, ": ", line);
+        INFO("say ", found->second->by);
+        CHECK(found == replaced.end());
+      }
+    }
+  }
+}
+
+TEST_CASE("names: no file has a name that was replaced") {
+  for (const fs::path& file : sources({"core", "render", "editor"}))
+    for (const std::string& name : kFiles) {
+      INFO(file.generic_string());
+      CHECK(file.stem() != name);
+    }
+}
