@@ -13,6 +13,7 @@ BrushRule sharpen_brush();
 BrushRule average_brush();
 BrushRule smear_brush();
 BrushRule joint_capsule_brush();
+BrushRule clone_brush();
 
 namespace {
 
@@ -34,6 +35,7 @@ std::span<const BrushRule> brush_rules() {
       average_brush(),
       smear_brush(),
       joint_capsule_brush(),
+      clone_brush(),
   });
   return kBrushes;
 }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Copies the weights around a place of the user's to where the stroke goes: the way from that place to where the stroke
+// began stays the same all along it.
+#include "core/paint/brush_rule.h"
+#include "core/paint/weights_nearby.h"
+
+namespace limber {
+
+namespace {
+
+class CloneSide final : public BrushSide {
+ public:
+  explicit CloneSide(const BrushView& view)
+      : view_(view),
+        nearby_(view_),
+        voxel_from_world_(voxel_from_world(view.body.volume.grid)) {}
+
+  void begin_dab(const DabView& dab) override {
+    if (shift_) return;
+    const glm::dvec3 from = view_.mirror ? view_.mirror->place(view_.brush.reference) : view_.brush.reference;
+    shift_ = voxel_from_world_.linear * (dab.centre - from);
+  }
+
+  // Nothing where the copied place is air.
+  bool target_at(const VoxelView& at, WeightSum& target) const override {
+    nearby_.add_between(glm::dvec3(at.voxel) - *shift_, target);
+    return !target.empty();
+  }
+
+ private:
+  const BrushView view_;
+  const WeightsNearby nearby_;
+  const AffineTransform voxel_from_world_;
+  std::optional<glm::dvec3> shift_;  // voxels
+};
+
+}  // namespace
+
+BrushRule clone_brush() {
+  return {.id = "clone",
+          .name = "Clone",
+          .description = "Copies the weights around the cross-hair, at the same distance all along the stroke.",
+          .looks_around = true,
+          .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
+            return std::make_unique<CloneSide>(view);
+          }};
+}
+
+}  // namespace limber
