@@ -14,11 +14,12 @@ Exporter disc_material_exporter();
 Exporter gprmax_exporter();
 Exporter icrp_slices_exporter();
 Exporter tetgen_exporter();
+Exporter vtu_exporter();
 
 std::span<const Exporter> exporters() {
   static const std::vector<Exporter> kExporters = {
-      surface_exporter(), openems_exporter(),     disc_material_exporter(),
-      gprmax_exporter(),  icrp_slices_exporter(), tetgen_exporter(),
+      surface_exporter(),     openems_exporter(), disc_material_exporter(), gprmax_exporter(),
+      icrp_slices_exporter(), tetgen_exporter(),  vtu_exporter(),
   };
   return kExporters;
 }
