@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::filesystem::create_directories(path);
     return path;
   }();
-  for (const char* name : {"a.nrrd", "a.nii"}) {
+  for (const char* name : {"a.nrrd", "a.nii", "a.vti"}) {
     const limber::Path path = folder / name;
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
