@@ -2,7 +2,9 @@
 // VTK's XML unstructured grid (.vtu) [VTK File Formats], as ParaView and meshio read it: the tets of a mesh where there
 // is one, else every tissue voxel as a cell. World coordinates (LPS), millimetres; `Label` of each cell is the number
 // that the label has in files, or the organ number of a mesh. Data are appended, raw, little endian.
+#include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/text_parse.h"
@@ -38,7 +40,11 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
   };
   std::vector<std::int32_t> file_value(65536);
   for (std::size_t label = 0; label < file_value.size(); ++label) file_value[label] = static_cast<std::int32_t>(label);
-  for (const Tissue& tissue : tissues.tissues) file_value[tissue.label] = static_cast<std::int32_t>(tissue.file_value);
+  for (const Tissue& tissue : tissues.tissues) {
+    if (std::abs(tissue.file_value) > std::numeric_limits<std::int32_t>::max())
+      throw Error("the label " + text_of(tissue.file_value) + " does not fit into 32 bits", "Label", "renumber it");
+    file_value[tissue.label] = static_cast<std::int32_t>(tissue.file_value);
+  }
   std::vector<std::int64_t> point_of(static_cast<std::size_t>(corner_index(size) + 1), -1);
   const AffineTransform world = world_from_voxel(volume.grid);
   Cells cells{{}, {}, {}, 8, kVoxel};

@@ -25,6 +25,7 @@
 #include "editor/context/editor.h"
 #include "editor/motion/timeline.h"
 #include "editor/motion/timeline_tool.h"
+#include "editor/shown/frame_all.h"
 
 namespace {
 

@@ -28,6 +28,7 @@
 #include "editor/context/frame_timing.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
+#include "editor/shown/frame_all.h"
 #include "tests/bench/arm_document.h"
 
 namespace {

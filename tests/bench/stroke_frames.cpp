@@ -28,10 +28,10 @@
 #include "editor/app/script_player.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/frame_timing.h"
+#include "editor/context/view_projection.h"
 #include "editor/motion/timeline.h"
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/weight_display.h"
-#include "editor/viewport/view_projection.h"
 #include "tests/bench/arm_document.h"
 
 namespace {

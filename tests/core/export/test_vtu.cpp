@@ -68,6 +68,8 @@ TEST_CASE("vtu: each tissue voxel is a cell between its faces, with its label in
   CHECK(point(grid, grid.corners[0]) == glm::dvec3(9, 18.5, 28));
   CHECK(point(grid, grid.corners[7]) == glm::dvec3(11, 21.5, 32));
   CHECK(point(grid, grid.corners[15]) == glm::dvec3(13, 21.5, 32));
+  tissues.tissues[0].file_value = 3e9;  // no silent wrap
+  CHECK_THROWS_AS(exported(volume, tissues, nullptr), Error);
 }
 
 TEST_CASE("vtu: a mesh goes in place of the voxels") {
