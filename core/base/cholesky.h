@@ -2,8 +2,8 @@
 // Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky
 // factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis &
 // Kumar 1998, METIS]. Ordered and analysed once per graph, factorized for as many values as one likes; for a graph that
-// is much like the one before the order is mended (elimination.h), and found anew when that has made factorizations a
-// quarter dearer. Works on one thread, so that its results do not depend on how many there are.
+// is much like the one before the order is mended (elimination_tree.h), and found anew when that has made
+// factorizations a quarter dearer. Works on one thread, so that its results do not depend on how many there are.
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // Weights by heat diffusion through the tissue itself [after Baran & Popovic 2007, in the volume]: every bone part is
 // held at 1 for its own rig bone and at 0 for the others, heat flows through soft tissue (never through air) with a
 // conductivity by tissue kind, and the steady temperatures are the weights. Flesh is also warmed by the bone nearest to
-// it through tissue, which keeps joints as wide as the limb is thick (soft_body.h says how strongly, and which bone
+// it through tissue, which keeps joints as wide as the limb is thick (flesh_graph.h says how strongly, and which bone
 // that is beside a hinge or a link). A rig bone without bone tissue holds the flesh around its axis.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Rigid weights: every voxel follows one bone, the one nearest to it on ways inside the tissue (a geodesic Voronoi
-// diagram of the bones' own voxels; see soft_body.h for bones without any).
+// diagram of the bones' own voxels; see flesh_graph.h for bones without any).
 #pragma once
 
 #include "core/binding/heat_diffusion.h"

@@ -19,7 +19,7 @@
 
 namespace limber::cmd {
 
-// What motion and rig rest in: words of rest_stance.h; "": as the map says.
+// What motion and rig rest in: words of rest_pose_kind.h; "": as the map says.
 struct RestWords {
   std::string motion, rig;
 };

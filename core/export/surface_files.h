@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Surfaces of tissues as files: Wavefront OBJ, all tissues in one file as groups that share their vertices; glTF
 // (.glb), all in one file, a node with a name and a colour each; STL (binary) and PLY (binary, with the tissue's
-// colour), a file a tissue. World coordinates (LPS), millimetres; those of glTF are its own [glb.h].
+// colour), a file a tissue. World coordinates (LPS), millimetres; those of glTF are its own [glb_writer.h].
 #pragma once
 
 #include <string>

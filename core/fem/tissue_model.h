@@ -8,8 +8,8 @@
 // of 1 GPa is a cord that slides in its sheath and buckles; as a solid as thick as a tet it would be a strut from bone
 // to bone, against which no joint can turn.
 //
-// Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (moving_tissue.h) by the bone
-// that tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the
+// Bones. Nodes of a bone's tets are held by it; nodes of what is meshed but does not bend (deforming_region.h) by the
+// bone that tissue goes with. A node of two bones that move differently is held by none. Tets between two bones are the
 // joint: soft and compressible, for there the mesh is far coarser than the gap and fluid that let a joint turn. Bones
 // slide along each other by more than a tet, which no single layer of tets can follow: so the ends of bones that lie
 // within `joint_mm` of another bone are part of the joint too and not held. What of them is bone is painted rigidly in

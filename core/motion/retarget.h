@@ -9,10 +9,10 @@
 //     either skeleton rests in), each by the shortest turn from where the bone above carries it; palms get its facing;
 //   - feet keep their pitch to the ground and get its heading; pelvis, spine, neck, head and collars, whose bones run
 //     differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
-// What the source's joints do not tell then may be said (rest_stance.h): limbs that lie otherwise than said are laid so
-// first, and palms that have no fingers face as said. The body faces where the actor faces. Bones of the trunk between
-// matched ones share the bend; all others follow the bone they hang from. Lengths stay the rig's; travel is scaled by
-// the legs' lengths. In a motion of the rig itself each joint is its bone.
+// What the source's joints do not tell then may be said (rest_pose_kind.h): limbs that lie otherwise than said are laid
+// so first, and palms that have no fingers face as said. The body faces where the actor faces. Bones of the trunk
+// between matched ones share the bend; all others follow the bone they hang from. Lengths stay the rig's; travel is
+// scaled by the legs' lengths. In a motion of the rig itself each joint is its bone.
 #pragma once
 
 #include <map>

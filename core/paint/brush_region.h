@@ -6,8 +6,8 @@
 // tissue has its straight distance; visibility spreads outwards row by row, 64 voxels at a time: a voxel is seen when
 // those that surround its line of sight one step nearer are, and where these differ the line is walked. Behind corners
 // a front goes on from voxel to voxel through faces, each remembering the corner its way last came round (as
-// tissue_front.h, but here the way from the corner is walked, since gaps may be as thin as a voxel). Near a seam of the
-// tissue the front alone finds ways, and none crosses it: a dab on a hand does not reach the hip that it lies on.
+// geodesic_front.h, but here the way from the corner is walked, since gaps may be as thin as a voxel). Near a seam of
+// the tissue the front alone finds ways, and none crosses it: a dab on a hand does not reach the hip that it lies on.
 //
 // All memory is kept between dabs and follows the ball, not the volume (but for four bytes a brick).
 #pragma once

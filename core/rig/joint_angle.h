@@ -2,7 +2,7 @@
 // What a joint's limits say of a turn about one axis: the anatomical angle that the turn changes, and how far it may
 // go. A hinge has one angle, a ball its twist about the bone and its swing across it; which of them is meant is told by
 // the axis nearest to the turn's. Angles count from the anatomical position where `at_rest` tells how far rest is from
-// it (anatomical_zero.h), else from rest. Radians; axes and rotations as in joint_limits.h.
+// it (anatomical_position.h), else from rest. Radians; axes and rotations as in joint_limits.h.
 #pragma once
 
 #include <optional>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Usual ranges of motion of the joints of an adult, as limits of a rig's bones. Angles are those of the American
 // Academy of Orthopaedic Surgeons [Joint Motion: Method of Measuring and Recording, 1965], counted from the anatomical
-// position as the rig's bones tell it (anatomical_zero.h); limits are what is left of them from the rest pose on, which
-// is always allowed. A bone's limits are those of the joint at its head.
+// position as the rig's bones tell it (anatomical_position.h); limits are what is left of them from the rest pose on,
+// which is always allowed. A bone's limits are those of the joint at its head.
 //
 // A cone is as wide as what is left of the joint's widest motion, and reaches back to the anatomical position, so a
 // ball allows more to the other sides than the body does. Forearms turn about themselves at the wrist here, since a

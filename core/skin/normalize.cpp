@@ -257,7 +257,7 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
       return {true, -1};
     }
   }
-  // Without jumps, which would go either way as often. (weight_lanes.h does the same for several voxels at once.)
+  // Without jumps, which would go either way as often. (simd_weights.h does the same for several voxels at once.)
   const Influence unsorted = influence;
   sort_influence(influence);
   int count = 0, found = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the weights of a whole body or a region of it, under the same rules as a stroke (weight_rules.h): sums stay
+// Edits of the weights of a whole body or a region of it, under the same rules as a stroke (normalize.h): sums stay
 // exact, locked bones keep every bit, bricks that do not change stay shared. The same for any number of threads.
 #pragma once
 
@@ -78,7 +78,7 @@ enum class Copy {
 WeightEdit copied(const WeightedBody& body, const SkinWeights& weights, int from, int to, Copy kind,
                   const EditScope& scope = {});
 
-// Voxel by voxel, as in weight_rules.h.
+// Voxel by voxel, as in normalize.h.
 WeightEdit limited(const WeightedBody& body, const SkinWeights& weights, int most, const EditScope& scope = {});
 WeightEdit pruned(const WeightedBody& body, const SkinWeights& weights, double least, const EditScope& scope = {});
 WeightEdit in_steps(const WeightedBody& body, const SkinWeights& weights, int steps, const EditScope& scope = {});

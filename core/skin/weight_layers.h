@@ -90,7 +90,7 @@ WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const Tissu
 // The same layers over another base; what a layer does not cover it shares with it.
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base);
 
-// After bones were added to the rig, removed from it or put in another order: see carry_weights.h.
+// After bones were added to the rig, removed from it or put in another order: see transfer_to_volume.h.
 std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to,
                                     const std::vector<std::string>& names);
 

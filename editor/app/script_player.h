@@ -16,7 +16,7 @@
 //   expect FACT [VALUE]              facts: fact_names()
 //   shot FILE                        a PNG of the window, once it is at rest; of a clip that plays, at once
 //   shot-now FILE                    a PNG of what was drawn last, coarse or not
-//   frame-log FILE                   what the frames since the last one cost: see frame_log.h
+//   frame-log FILE                   what the frames since the last one cost: see frame_timing.h
 #pragma once
 
 #include <string>

@@ -165,7 +165,7 @@ struct Editor : Ui {
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::unique_ptr<TransformSettings> transform_settings;  // of bones; never null
-  std::unique_ptr<SkinDisplay> skin;                      // of skin_display.h; never null
+  std::unique_ptr<SkinDisplay> skin;                      // of weight_display.h; never null
   std::string open_menu;                                  // of the top bar
   std::string open_popup;           // a menu of menus.h wanted at the pointer in the next frame; "" for none
   std::string shown_popup;          // the one that is open
@@ -176,8 +176,8 @@ struct Editor : Ui {
   std::unique_ptr<FemView> fem;                // of fem_live_view.h; never null
   std::unique_ptr<FemOverlay> fem_overlay;     // of fem_overlay.h; never null
   std::unique_ptr<TestPose> trial;             // of test_pose.h; never null
-  std::unique_ptr<DifferenceView> difference;  // of difference.h; never null
-  std::unique_ptr<OverlapView> overlap;        // of overlap.h; never null
+  std::unique_ptr<DifferenceView> difference;  // of difference_overlay.h; never null
+  std::unique_ptr<OverlapView> overlap;        // of overlap_overlay.h; never null
   std::unique_ptr<SeamView> seams;             // of seam_view.h; never null
   std::unique_ptr<BoneTable> bone_table;       // of bone_table.h; never null
   struct {
@@ -213,7 +213,7 @@ struct Editor : Ui {
   Rect timeline_area;                             // its rows in the last picture; empty while it is not shown
   float wheel_rest = 0;                           // of the slices' wheel: parts of a step that a pad has made
   std::string last_operator;                      // id, for Repeat
-  std::unique_ptr<LastOperation> last_operation;  // of adjust.h; never null
+  std::unique_ptr<LastOperation> last_operation;  // of redo_last_operator.h; never null
 
   Cursor cursor = Cursor::Arrow;  // of this frame
   int hovered_splitter = -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the editor lives: a window of the desktop (window.h) or a picture in memory (offscreen.h). Both have a current
-// OpenGL 3.3 core context and push the user's events into one queue; the editor cannot tell which one it is in.
+// Where the editor lives: a window of the desktop (glfw_window.h) or a picture in memory (headless_window.h). Both have
+// a current OpenGL 3.3 core context and push the user's events into one queue; the editor cannot tell which one it is
+// in.
 #pragma once
 
 #include <functional>

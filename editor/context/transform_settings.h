@@ -36,7 +36,7 @@ struct TransformSettings {
     glm::dvec3 place{0};
   } shown_pole;
 
-  std::shared_ptr<ProposedJoint> proposed_joint;  // of joint_fit.h; null: nothing is proposed
+  std::shared_ptr<ProposedJoint> proposed_joint;  // of joint_axis_fit.h; null: nothing is proposed
   std::shared_ptr<KnownRigCheck> rig_check;       // of rig_check.h; null: not checked yet
   bool rig_check_marks = true;                    // over the views
 

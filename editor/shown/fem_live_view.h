@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is seen of finite elements. While a solve runs in the worker, the Resample workspace shows the volume settle:
 // the places of the mesh's nodes after each iteration lead the views through the same inverse map as a pose does
-// (live_pose.h). What follows is for the eye alone; the document changes when the result is there.
+// (live_preview.h). What follows is for the eye alone; the document changes when the result is there.
 #pragma once
 
 #include <map>

@@ -69,7 +69,7 @@ struct Painting {
 
   std::optional<BrushPlace> place;  // under the pointer, by the last frame
 
-  // Of edits of the whole body (weight_editing.h)
+  // Of edits of the whole body (weight_edits.h)
   std::int64_t edited_at_once = 300'000;  // voxels: some ten milliseconds; an edit of more is a job
   std::optional<int> edit_job;            // at work
   PaintedRegion region;                   // that brushes keep to as well

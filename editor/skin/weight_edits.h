@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits of the weights of the whole body or of a part of it, as the user asks for them: under the locks and within the
 // clip, the chosen tissues and the region of the document of the moment; each is one edit, whose numbers can be changed
-// afterwards (adjust.h). On a large body the work is a job: its edit comes when it is done, unless the weights were
-// changed meanwhile.
+// afterwards (redo_last_operator.h). On a large body the work is a job: its edit comes when it is done, unless the
+// weights were changed meanwhile.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rays of a picture in a volume's padded coordinates (block_layout.h), as the shaders want them: the ray through
+// The rays of a picture in a volume's padded coordinates (brick_atlas.h), as the shaders want them: the ray through
 // the picture's point `ndc` (-1 to 1) is  (base + ndc.x base_x + ndc.y base_y) + z (toward + ndc.x toward_x + ndc.y
 // toward_y) where z is the depth before the eye in millimetres, along the direction of view.
 #pragma once

@@ -72,7 +72,7 @@ class VolumePass {
 
   // The start of every ray inside `rect`.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
-  // What the rays of `rect` meet: labels of that layer (looks_texture.h), which are the field's.
+  // What the rays of `rect` meet: labels of that layer (appearance_texture.h), which are the field's.
   //   posed, posed_hull  given exactly when this pass is for posed space
   void march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
              const PosedHull* posed_hull, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,

@@ -21,7 +21,7 @@ class Hull {
 
   Hull();
 
-  // Padded coordinates (block_layout.h) of a corner: offset + scale corner.
+  // Padded coordinates (brick_atlas.h) of a corner: offset + scale corner.
   void upload(const Faces& faces, double scale, const glm::dvec3& offset);
   void draw() const;
 

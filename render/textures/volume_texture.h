@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A label volume on the graphics card: its blocks of tissue in atlases of 16-bit labels (block_layout.h).
+// A label volume on the graphics card: its blocks of tissue in atlases of 16-bit labels (brick_atlas.h).
 #pragma once
 
 #include <memory>

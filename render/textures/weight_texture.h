@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is shown of skin weights, on the card: four bytes a voxel in atlases laid out like the volume's labels
-// (block_layout.h), so that a place is found by the labels' own index, and filtered reads go smoothly from voxel to
+// (brick_atlas.h), so that a place is found by the labels' own index, and filtered reads go smoothly from voxel to
 // voxel.
 //
 // A texel holds what the display asks for, worked out here from the whole numbers: of the active bone its weight in 8

@@ -9,7 +9,7 @@
 // percentile of a whole frame (with the window painted and OpenGL done) and of what the interface's own thread computed
 // in it; `over` counts frames longer than 1/30 s.
 //
-//   stroke_frames [LOG]    the parts of every frame as frame_log.h tells them, into files LOG.NAME.txt
+//   stroke_frames [LOG]    the parts of every frame as frame_timing.h tells them, into files LOG.NAME.txt
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -30,6 +30,7 @@
 #include "editor/context/frame_timing.h"
 #include "editor/context/view_projection.h"
 #include "editor/motion/timeline.h"
+#include "editor/shown/frame_all.h"
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/weight_display.h"
 #include "tests/bench/arm_document.h"

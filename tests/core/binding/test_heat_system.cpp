@@ -61,7 +61,7 @@ struct RandomBody {
 };
 
 // Temperatures when `bone` is at 1, the others and what lies at `cold_from` or above at 0, by place; by elimination,
-// from what soft_body.h says.
+// from what flesh_graph.h says.
 std::vector<double> exact_temperatures(const RandomBody& body, int bone, int cold_from = 1 << 20) {
   const glm::dvec3 s = body.volume.grid.spacing;
   const glm::dvec3 face = glm::dvec3(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
