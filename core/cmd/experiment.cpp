@@ -100,8 +100,9 @@ void add_experiment(CLI::App& app, const StartPictures& pictures) {
       ->required();
   command
       ->add_option("--methods", options->methods,
-                   "lbs, dqs, fem, fem-contact, mix, and each with -mass-exact behind it (default: as the description "
-                   "says; else the first four)")
+                   technique_words() +
+                       ", and each with -mass-exact behind it (default: as the description says; else lbs, dqs, fem "
+                       "and fem-contact)")
       ->delimiter(',')
       ->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");

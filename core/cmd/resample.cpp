@@ -31,6 +31,7 @@
 #include "core/export/tet_phantom.h"
 #include "core/fem/solve_pose.h"
 #include "core/report/report.h"
+#include "core/resample/deformation_method.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
@@ -48,8 +49,9 @@ struct Options {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
-  std::string weights, method = "mix", output, report, grey, field, field_direction = kToPosed, jacobian, overlap,
-                       quality, mesher, mesh_out, mesh_unit = "mm", landmarks, steps, seams, glide;
+  std::string weights, method = deformation_methods().front().word, output, report, grey, field,
+                       field_direction = kToPosed, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm",
+                       landmarks, steps, seams, glide;
   std::string frames;  // of the motion: FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
@@ -181,7 +183,7 @@ void check_method(const Options& options) {
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact",
                 "leave one of the two out");
   glide_settings(options.glide, options.pose, 1);
-  if (options.method == "fem") return;
+  if (options.method == kFiniteElements) return;
   for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"},
                                        {!options.quality.empty(), "--quality"},
                                        {!options.mesher.empty(), "--mesher"},
@@ -234,9 +236,7 @@ class SolveProgress {
 };
 
 Method method_of(const Options& options, SolveProgress& solve) {
-  if (options.method == "mix") return MixedBlend{};
-  if (options.method == "dqs") return DualQuaternion{};
-  if (options.method == "lbs") return LinearBlend{};
+  if (const auto blend = find_method(options.method)->blend) return *blend;
   Fem fem;
   fem.contact = options.contact;
   if (options.quality == "draft") fem.quality = FemQuality::Draft;
@@ -285,7 +285,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
   if (options.mass_exact) settings["mass_limit_percent"] = options.mass_limit;
   settings["fit_joints"] = options.fit_joints;
   settings["glide"] = glide_word(options.glide, options.pose);
-  if (options.method == "fem") {
+  if (options.method == kFiniteElements) {
     settings["contact"] = options.contact;
     settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
     if (!options.mesher.empty()) settings["mesher"] = options.mesher;
@@ -359,7 +359,7 @@ std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options&
                                       const Pose& pose, const FemShape* shape) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks.rest) places.push_back(landmark.position);
-  const Blend blend = blend_named(options.method);
+  const Blend blend = find_method(options.method)->blend.value_or(Blend::Linear);
   places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend,
                         shape, places);
   std::vector<Landmark> there = landmarks.rest;
@@ -537,12 +537,9 @@ void add_resample(CLI::App& app) {
                    "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes "
                    "once and starts each from the one before")
       ->type_name("FIRST:LAST[:STEP]");
-  command
-      ->add_option("--method", options->method,
-                   "lbs (linear), dqs (dual quaternions), mix (between the two, then flesh gets its volume back) or "
-                   "fem (finite elements)")
+  command->add_option("--method", options->method, method_summaries(Methods::All))
       ->capture_default_str()
-      ->check(CLI::IsMember({"lbs", "dqs", "mix", "fem"}));
+      ->check(CLI::IsMember(method_words(Methods::All)));
   command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command
       ->add_option("--quality", options->quality,

@@ -13,6 +13,7 @@
 #include "core/base/json_text.h"
 #include "core/cmd/command.h"
 #include "core/deform/skinning.h"
+#include "core/resample/deformation_method.h"
 
 namespace limber::cmd {
 
@@ -127,13 +128,13 @@ void add_skin_points(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("skin-points", "points of a skin-ref/1 case through the blend kernel");
   command->add_option("CASE", options->file, "JSON of schema skin-ref/1")->required();
-  command->add_option("--method", options->method, "lbs (linear), dqs (dual quaternions) or mix (between the two)")
+  command->add_option("--method", options->method, method_summaries(Methods::Blends))
       ->required()
-      ->check(CLI::IsMember({"lbs", "dqs", "mix"}));
+      ->check(CLI::IsMember(method_words(Methods::Blends)));
   command->add_flag("--json", options->json, "print {\"points\": [x, y, z, ...]}");
   command->callback([options] {
     SkinCase skin = CaseReader(options->file).read();
-    const Blend blend = blend_named(options->method);
+    const Blend blend = *find_blend(options->method);
     blend_points(blend, skin.bones, skin.influences, skin.offsets, skin.points, skin.points);
     print_points(skin.points, options->json);
   });

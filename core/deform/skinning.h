@@ -8,15 +8,16 @@
 //                     [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion
 //                     blending]
 //   mixed             between the two, kQuaternionShare of the way from linear to dual quaternions: linear blending
-//   thins bent
-//                     and twisted joints, dual quaternions make them bulge, and most of both cancels. Whole bodies that
-//                     sit or raise their arms keep their volume best that way (assets/docs/guide.md has the figures).
+//                     thins bent and twisted joints, dual quaternions make them bulge, and most of both cancels. Whole
+//                     bodies that sit or raise their arms keep their volume best that way (assets/docs/guide.md has
+//                     the figures).
 // Dual quaternions hold no scale. A bone that stretches is split into a stretch along its own rest axes, then a rigid
 // motion; the stretches are blended linearly and applied first.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -25,12 +26,13 @@
 
 namespace limber {
 
-enum class Blend { Linear, DualQuaternion, Mixed };
+// The number of a row of blend_rules() (blend_rule.h). A blend that nothing but the table knows needs no name here.
+enum class Blend { Mixed, Linear, DualQuaternion };
 
 constexpr double kQuaternionShare = 0.3;
 
-// Of "lbs", "dqs" and "mix"; linear for any other word.
-Blend blend_named(std::string_view word);
+// Returns the blend of a word of the table ("lbs", "dqs", "mix"), nothing for any other word.
+std::optional<Blend> find_blend(std::string_view word);
 
 struct BoneWeight {
   int bone;

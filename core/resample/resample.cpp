@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/deform/blend_rule.h"
 #include "core/deform/inverse_map.h"
 #include "core/deform/settled_flesh.h"
 #include "core/resample/fem_shape.h"
@@ -24,9 +25,14 @@ class Seconds {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// Finite elements move rigidly what their mesh does not hold, for which every blend is the same.
 Blend blend_of(const Method& method) {
-  if (std::holds_alternative<MixedBlend>(method)) return Blend::Mixed;
-  return std::holds_alternative<DualQuaternion>(method) ? Blend::DualQuaternion : Blend::Linear;
+  const Blend* blend = std::get_if<Blend>(&method);
+  return blend ? *blend : Blend::Linear;
+}
+
+bool settles_flesh(const Method& method) {
+  return std::holds_alternative<Blend>(method) && rule_of(std::get<Blend>(method)).settles_flesh;
 }
 
 // Whether two places of the body can come to lie in one voxel: not when every bone moves alike.
@@ -92,7 +98,7 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
   if (posed.shape) tell(*posed.shape, report);
 
   std::optional<SettledFlesh> settled;
-  if (std::holds_alternative<MixedBlend>(method) && can_fold(motions))
+  if (settles_flesh(method) && can_fold(motions))
     report.settled =
         settled.emplace(volume, body.tissue, weights, labels.bone, motions, blend_of(method), progress).report();
   const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress,

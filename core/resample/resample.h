@@ -23,10 +23,7 @@
 
 namespace limber {
 
-struct LinearBlend {};
-struct DualQuaternion {};
-struct MixedBlend {};  // and then flesh settles (deform/settled_flesh.h)
-using Method = std::variant<LinearBlend, DualQuaternion, MixedBlend, Fem>;
+using Method = std::variant<Blend, Fem>;
 
 struct ResampleSettings {
   bool nearest = false;  // labels by the nearest rest voxel instead of the largest interpolated membership; no mending

@@ -29,16 +29,15 @@ std::string line(double x1, double y1, double x2, double y2, const char* style) 
   return "<line x1=\"" + px(x1) + "\" y1=\"" + px(y1) + "\" x2=\"" + px(x2) + "\" y2=\"" + px(y2) + "\" class=\"" +
          style + "\"/>";
 }
-std::string colour_of(int technique) {
-  if (technique < 0) return "t-none";
-  return "t" + std::to_string(technique % kPlainTechniques) +
-         (is_mass_exact(static_cast<Technique>(technique)) ? " exact" : "");
+std::string colour_of(const TechniqueLook& look) {
+  if (look.number < 0) return "t-none";
+  return "t" + std::to_string(look.number) + (look.exact ? " exact" : "");
 }
 
 // Circle, square, triangle, diamond, triangle upside down; a small dot for what is no technique.
-std::string mark(int technique, double x, double y, double r) {
-  const std::string style = " class=\"mark " + colour_of(technique) + "\"/>";
-  switch (technique < 0 ? technique : technique % kPlainTechniques) {
+std::string mark(const TechniqueLook& look, double x, double y, double r) {
+  const std::string style = " class=\"mark " + colour_of(look) + "\"/>";
+  switch (look.number) {
     case 1:
       return "<rect x=\"" + px(x - 0.88 * r) + "\" y=\"" + px(y - 0.88 * r) + "\" width=\"" + px(1.76 * r) +
              "\" height=\"" + px(1.76 * r) + "\"" + style;
@@ -52,7 +51,8 @@ std::string mark(int technique, double x, double y, double r) {
       return "<path d=\"M" + px(x) + " " + px(y + 1.15 * r) + "L" + px(x + 1.1 * r) + " " + px(y - 0.85 * r) + "L" +
              px(x - 1.1 * r) + " " + px(y - 0.85 * r) + "Z\"" + style;
     default:
-      return "<circle cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"" + px(technique < 0 ? 0.7 * r : r) + "\"" + style;
+      return "<circle cx=\"" + px(x) + "\" cy=\"" + px(y) + "\" r=\"" + px(look.number < 0 ? 0.7 * r : r) + "\"" +
+             style;
   }
 }
 
@@ -120,9 +120,9 @@ std::vector<double> spread(std::vector<double> wanted, double low, double high) 
 
 }  // namespace
 
-std::string mark_svg(int technique) {
+std::string mark_svg(const TechniqueLook& look) {
   return "<svg class=\"legend\" viewBox=\"0 0 12 12\" width=\"12\" height=\"12\" aria-hidden=\"true\">" +
-         mark(technique, 6, 6, 4.2) + "</svg>";
+         mark(look, 6, 6, 4.2) + "</svg>";
 }
 
 std::string svg_of(const LineChart& chart) {
@@ -191,18 +191,18 @@ std::string svg_of(const LineChart& chart) {
       const double x = x_of(place), y = y_of(std::clamp(*series.values[place], range.low, range.high));
       path += (open ? "L" : "M") + px(x) + " " + px(y);
       open = true;
-      marks += mark(series.technique, x, y, 3.6);
+      marks += mark(series.look, x, y, 3.6);
       end = y;
     }
     if (!end) continue;
-    svg += "<path d=\"" + path + "\" class=\"line " + colour_of(series.technique) + "\"/>" + marks;
+    svg += "<path d=\"" + path + "\" class=\"line " + colour_of(series.look) + "\"/>" + marks;
     ends.push_back(*end);
     named.push_back(&series);
   }
   if (chart.names) {
     const std::vector<double> at = spread(ends, top, bottom + 4);
     for (std::size_t i = 0; i < named.size(); ++i)
-      svg += label(right + 6, at[i] + 4, named[i]->name, "name " + colour_of(named[i]->technique));
+      svg += label(right + 6, at[i] + 4, named[i]->name, "name " + colour_of(named[i]->look));
   }
   return svg + "</svg>";
 }
@@ -241,12 +241,12 @@ std::string svg_of(const BarChart& chart) {
       if (!group.values[place]) continue;
       const double y = y_of(*group.values[place]);
       svg += "<rect x=\"" + px(middle - wide / 2) + "\" y=\"" + px(y) + "\" width=\"" + px(wide) + "\" height=\"" +
-             px(bottom - y) + "\" class=\"bar " + colour_of(group.technique) + "\"/>";
+             px(bottom - y) + "\" class=\"bar " + colour_of(group.look) + "\"/>";
       if (slot >= 22) svg += label(middle, y - 4, fixed(*group.values[place], chart.decimals), "figure", "middle");
     }
     for (std::size_t i = 0; i < names[g].size(); ++i)
       svg += label(left + group_width * (double(g) + 0.5), bottom + 36 + kLineHeight * double(i), names[g][i],
-                   "name " + colour_of(group.technique), "middle");
+                   "name " + colour_of(group.look), "middle");
   }
   return svg + "</svg>";
 }

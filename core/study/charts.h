@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "core/study/study.h"
+
 namespace limber {
 
 struct Series {
   std::string name;
-  int technique = -1;                         // [study.h] its colour and mark; -1: grey
+  TechniqueLook look;                         // its colour and mark
   std::vector<std::optional<double>> values;  // one per place on the x axis; none: not measured
 };
 
@@ -41,6 +43,6 @@ struct BarChart {
 std::string svg_of(const BarChart& chart);
 
 // The mark of a technique, for legends: 12 by 12.
-std::string mark_svg(int technique);
+std::string mark_svg(const TechniqueLook& look);
 
 }  // namespace limber

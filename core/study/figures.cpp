@@ -193,8 +193,8 @@ class Maker {
   // One for each technique: its worst pose. Masses made exact leave ratios as they were.
   void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios,
                     const LabelColours& colours, PictureFrame frame) {
-    const Technique technique = study_.techniques[cell.cell.technique];
-    if (is_mass_exact(technique) && std::count(study_.techniques.begin(), study_.techniques.end(), plain_of(technique)))
+    const Technique& technique = study_.techniques[cell.cell.technique];
+    if (technique.mass_exact && std::count(study_.techniques.begin(), study_.techniques.end(), technique.plain()))
       return;
     const auto region = worst_region(ratios);
     if (!region) return;

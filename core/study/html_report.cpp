@@ -82,8 +82,8 @@ class Page {
   }
   int techniques() const { return static_cast<int>(study_.techniques.size()); }
   int poses() const { return static_cast<int>(study_.poses.size()); }
-  int look(int technique) const { return static_cast<int>(study_.techniques[technique]); }  // colour and mark
-  std::string technique_name(int technique) const { return name_of(study_.techniques[technique]); }
+  TechniqueLook look(int technique) const { return look_of(study_.techniques[technique]); }
+  std::string technique_name(int technique) const { return title_of(study_.techniques[technique]); }
   std::string marked_name(int technique) const { return mark_svg(look(technique)) + " " + technique_name(technique); }
   std::vector<std::string> pose_names() const {
     std::vector<std::string> names;
@@ -252,7 +252,7 @@ class Page {
         for (int s = 0; s < std::ssize(study_.spacings); ++s) series.values.push_back(mean_seconds(s, t));
         lines.series.push_back(series);
       }
-      Series weights{"Weights, once", -1, {}};
+      Series weights{"Weights, once", {}, {}};
       for (int s = 0; s < std::ssize(study_.spacings); ++s) weights.values.push_back(seconds_of_weights(s));
       lines.series.push_back(weights);
       figure(svg_of(lines),
@@ -588,7 +588,9 @@ class Page {
   }
   // How many voxels changed hands where masses were made exact, below a pose's tissues.
   std::string mass_exact_row(int pose) const {
-    if (std::none_of(study_.techniques.begin(), study_.techniques.end(), is_mass_exact)) return "";
+    if (std::none_of(study_.techniques.begin(), study_.techniques.end(),
+                     [](const Technique& technique) { return technique.mass_exact; }))
+      return "";
     std::string row = "<tr><th class=\"row\">Voxels that mass-exact moved</th><td></td><td></td>";
     for (int t = 0; t < techniques(); ++t) {
       const CellResult* one = cell(figures_.spacing, pose, t);

@@ -2,8 +2,8 @@
 #include "core/study/run_study.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include <sys/resource.h>
@@ -66,22 +66,28 @@ std::string volume_ending(const Path& path) {
 // How long cells take, by technique, for those that are to come. A body at rest is no measure for one that is bent.
 class Pace {
  public:
-  void took(int technique, double seconds) {
-    seconds_[technique] += seconds;
-    ++cells_[technique];
+  void took(const Technique& technique, double seconds) {
+    Taken& taken = taken_[word_of(technique)];
+    taken.seconds += seconds;
+    taken.cells += 1;
+    taken.units += weight(technique);
   }
-  // Negative before the first.
-  double expected(int technique) const {
-    if (cells_[technique]) return seconds_[technique] / cells_[technique];
-    // Of one that has not run yet: by those that have, a solve taken for five blends.
+  // Returns the seconds that a cell is likely to take, negative while no cell has run.
+  double expected(const Technique& technique) const {
+    if (const auto found = taken_.find(word_of(technique)); found != taken_.end())
+      return found->second.seconds / found->second.cells;
+    // A technique that has not run yet is estimated by those that have, with a solve counted as five blends.
     double units = 0, seconds = 0;
-    for (int t = 0; t < kTechniques; ++t) units += cells_[t] * weight(t), seconds += seconds_[t];
+    for (const auto& [word, taken] : taken_) units += taken.units, seconds += taken.seconds;
     return units > 0 ? seconds / units * weight(technique) : -1;
   }
 
  private:
-  static double weight(int technique) { return is_fem(static_cast<Technique>(technique)) ? 5 : 1; }
-  std::array<double, kTechniques> seconds_{}, cells_{};
+  struct Taken {
+    double seconds = 0, cells = 0, units = 0;
+  };
+  static double weight(const Technique& technique) { return technique.is_fem() ? 5 : 1; }
+  std::map<std::string, Taken> taken_;  // by the technique's word
 };
 
 // A worker's progress as part of the study's.
@@ -246,7 +252,7 @@ class Runner {
   Json cell_job(const StudyCell& cell, const Body& body) const {
     const StudyPose& pose = study_.poses[cell.pose];
     const auto& [pose_file, motion, map] = poses_[cell.pose];
-    const Technique technique = plain_of(study_.techniques[cell.technique]);
+    const Technique& technique = study_.techniques[cell.technique];
     const Path folder = Path("../../bodies") / body.name;
     Json job{{"command", "resample"}};
     add_body_words(job, folder);
@@ -259,11 +265,10 @@ class Runner {
     if (!map.path.empty()) job["map"] = map.path.string();
     if (pose.frame) job["frame"] = *pose.frame;
     if (!pose.up.empty()) job["up"] = pose.up;
-    const bool fem = is_fem(technique);
-    job["method"] = fem ? "fem" : word_of(technique);
-    if (technique == Technique::FemContact) job["contact"] = true;
-    if (fem) job["quality"] = study_.quality;
-    if (is_mass_exact(study_.techniques[cell.technique])) job["mass-exact"] = true;
+    job["method"] = technique.method;
+    if (technique.contact) job["contact"] = true;
+    if (technique.is_fem()) job["quality"] = study_.quality;
+    if (technique.mass_exact) job["mass-exact"] = true;
     if (study_.fit_joints) job["fit-joints"] = true;
     if (study_.nearest) job["nearest"] = true;
     job.update({{"output", "posed.nrrd"},
@@ -293,8 +298,8 @@ class Runner {
     return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty();
   }
   // At rest every technique takes as long as a blend.
-  int kind_of(const StudyCell& cell) const {
-    return is_rest(study_.poses[cell.pose]) ? 0 : static_cast<int>(study_.techniques[cell.technique]);
+  Technique kind_of(const StudyCell& cell) const {
+    return is_rest(study_.poses[cell.pose]) ? Technique{"lbs"} : study_.techniques[cell.technique];
   }
   static double wall_seconds_of(const Path& folder) {
     return Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false).value("wall_seconds", 0.0);
@@ -403,7 +408,7 @@ std::vector<StudyCell> cells_of(const Study& study) {
 
 std::string text_of(const Study& study, const StudyCell& cell) {
   return spacing_text(study.spacings[cell.spacing]) + ", " + study.poses[cell.pose].name + ", " +
-         name_of(study.techniques[cell.technique]);
+         title_of(study.techniques[cell.technique]);
 }
 
 std::uint8_t code_of_ratio(double ratio) {

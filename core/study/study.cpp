@@ -2,7 +2,6 @@
 #include "core/study/study.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -22,17 +21,10 @@ constexpr std::uint64_t kLargestDescription = 1 << 20;
 constexpr std::size_t kMostCells = 100000;
 constexpr std::size_t kLongestName = 60;
 
-constexpr std::array<std::pair<const char*, const char*>, kPlainTechniques> kNames = {
-    {{"lbs", "Linear blend"},
-     {"dqs", "Dual quaternions"},
-     {"fem", "FEM"},
-     {"fem-contact", "FEM with contact"},
-     {"mix", "Mixed blend"}}};
+constexpr const char* kExactWord = "-mass-exact";
 
 // What a study compares where it names none.
-std::vector<Technique> usual_techniques() {
-  return {Technique::LinearBlend, Technique::DualQuaternion, Technique::Fem, Technique::FemContact};
-}
+std::vector<Technique> usual_techniques() { return techniques_of({"lbs", "dqs", "fem", "fem-contact"}, ""); }
 
 // Reads a value of the description, and says which key is wrong.
 class Reader {
@@ -230,28 +222,52 @@ std::map<double, Path> real_arms(const Path& folder) {
 
 }  // namespace
 
-std::string word_of(Technique technique) {
-  return kNames[static_cast<int>(plain_of(technique))].first +
-         std::string(is_mass_exact(technique) ? "-mass-exact" : "");
+std::vector<Technique> plain_techniques() {
+  std::vector<Technique> all;
+  for (const DeformationMethod& method : deformation_methods()) all.push_back({method.word});
+  all.push_back({std::string(kFiniteElements), true});
+  return all;
 }
-std::string name_of(Technique technique) {
-  return kNames[static_cast<int>(plain_of(technique))].second +
-         std::string(is_mass_exact(technique) ? ", mass-exact" : "");
+
+std::string technique_words() {
+  std::string words;
+  for (const Technique& technique : plain_techniques()) words += (words.empty() ? "" : ", ") + word_of(technique);
+  return words;
+}
+
+std::string word_of(const Technique& technique) {
+  return technique.method + (technique.contact ? "-contact" : "") + (technique.mass_exact ? kExactWord : "");
+}
+std::string title_of(const Technique& technique) {
+  return find_method(technique.method)->name + (technique.contact ? " with contact" : "") +
+         (technique.mass_exact ? ", mass-exact" : "");
 }
 
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where) {
+  std::vector<Technique> known = plain_techniques();
+  for (const Technique& technique : plain_techniques()) known.push_back({technique.method, technique.contact, true});
+
   std::vector<Technique> techniques;
   for (const std::string& word : words) {
-    int t = 0;
-    while (t < kTechniques && word_of(static_cast<Technique>(t)) != word) ++t;
-    if (t == kTechniques)
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const Technique& one) { return word_of(one) == word; });
+    if (found == known.end())
       throw Error("there is no such method: " + word, where,
-                  "use lbs, dqs, mix, fem, fem-contact, or one of them with -mass-exact behind it");
-    if (std::count(techniques.begin(), techniques.end(), static_cast<Technique>(t)))
+                  "use " + technique_words() + ", or one of them with " + kExactWord + " behind it");
+    if (std::count(techniques.begin(), techniques.end(), *found))
       throw Error("something stands there twice", where, "name each once");
-    techniques.push_back(static_cast<Technique>(t));
+    techniques.push_back(*found);
   }
   return techniques;
+}
+
+// The first five keep the looks that they had on earlier pages; further methods share looks.
+TechniqueLook look_of(const Technique& technique) {
+  std::vector<std::string> order = {"lbs", "dqs", "fem", "fem-contact", "mix"};
+  for (const Technique& one : plain_techniques())
+    if (!std::count(order.begin(), order.end(), word_of(one))) order.push_back(word_of(one));
+  const auto at = std::find(order.begin(), order.end(), word_of(technique.plain()));
+  return {static_cast<int>(at - order.begin()) % kLooks, technique.mass_exact};
 }
 
 std::string spacing_text(const std::optional<double>& spacing) {
@@ -277,7 +293,8 @@ Study read_study(const Path& path) {
   study.quality = read.text(json, "quality", study.quality, {"draft", "normal", "fine"});
   study.fit_joints = read.flag(json, "fit_joints");
   study.nearest = read.flag(json, "nearest");
-  if (study.nearest && std::any_of(study.techniques.begin(), study.techniques.end(), is_mass_exact))
+  if (study.nearest && std::any_of(study.techniques.begin(), study.techniques.end(),
+                                   [](const Technique& technique) { return technique.mass_exact; }))
     read.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
                 "leave one of the two out");
   if (json.contains("gates")) study.gates = read.gates(json["gates"]);
@@ -338,7 +355,7 @@ std::string to_json(const Study& study) {
     if (!pose.up.empty()) row["up"] = pose.up;
     json["poses"].push_back(row);
   }
-  for (const Technique technique : study.techniques) json["methods"].push_back(word_of(technique));
+  for (const Technique& technique : study.techniques) json["methods"].push_back(word_of(technique));
   json["quality"] = study.quality;
   json["fit_joints"] = study.fit_joints;
   json["nearest"] = study.nearest;

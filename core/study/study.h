@@ -21,34 +21,37 @@
 #include "core/base/file.h"
 #include "core/pose/body_poses.h"
 #include "core/report/quality_gates.h"
+#include "core/resample/deformation_method.h"
 
 namespace limber {
 
-// A method, and each again with masses made exact afterwards: a row of its own, never silently part of the method's.
-enum class Technique {
-  LinearBlend,
-  DualQuaternion,
-  Fem,
-  FemContact,
-  MixedBlend,
-  LinearBlendMassExact,
-  DualQuaternionMassExact,
-  FemMassExact,
-  FemContactMassExact,
-  MixedBlendMassExact,
+// One way to pose that a study compares: a deformation method (resample/deformation_method.h), by finite elements with
+// or without contact. With masses made exact afterwards it is a technique of its own, never silently part of the
+// method.
+struct Technique {
+  std::string method;    // "dqs": a word of deformation_methods()
+  bool contact = false;  // finite elements only
+  bool mass_exact = false;
+
+  bool is_fem() const { return method == kFiniteElements; }
+  Technique plain() const { return {method, contact, false}; }
+  bool operator==(const Technique&) const = default;
 };
-constexpr int kTechniques = 10, kPlainTechniques = 5;
-constexpr bool is_mass_exact(Technique technique) { return static_cast<int>(technique) >= kPlainTechniques; }
-constexpr Technique plain_of(Technique technique) {
-  return static_cast<Technique>(static_cast<int>(technique) % kPlainTechniques);
-}
-constexpr bool is_fem(Technique technique) {
-  return plain_of(technique) == Technique::Fem || plain_of(technique) == Technique::FemContact;
-}
-std::string word_of(Technique technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
-std::string name_of(Technique technique);  // "FEM with contact", "FEM, mass-exact"
-// Of words. Throws Error naming `where` for one that is none, or stands there twice.
+std::vector<Technique> plain_techniques();  // all that are not mass-exact
+std::string technique_words();              // of those: "mix, lbs, dqs, fem, fem-contact"
+std::string word_of(
+    const Technique& technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
+std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"
+// Returns the techniques of these words. Throws Error naming `where` for a word that is none, or stands there twice.
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where);
+
+// The colour and the mark of a technique on the page, [0, kLooks); mass-exact ones have those of the plain one, hollow.
+struct TechniqueLook {
+  int number = -1;  // -1: grey, for what is no technique
+  bool exact = false;
+};
+inline constexpr int kLooks = 5;
+TechniqueLook look_of(const Technique& technique);
 
 struct StudyPose {
   std::string name;

@@ -28,6 +28,7 @@
 #include "core/deform/preview_map.h"
 #include "core/deform/skinning.h"
 #include "core/project/project_io.h"
+#include "core/resample/deformation_method.h"
 #include "core/resample/resample.h"
 #include "core/rig_io/rig_io.h"
 #include "core/seams/find_seams.h"
@@ -50,7 +51,8 @@ struct Options {
   cmd::BodyOptions body;
   cmd::PoseOptions pose;
   cmd::RunOptions run;
-  std::string weights, output, size = "1280x720", slice, armature = "octahedron", method = "mix";
+  std::string weights, output, size = "1280x720", slice, armature = "octahedron",
+                               method = deformation_methods().front().word;
   StandardView view = StandardView::Front;
   Display display = Display::Solid;
   double turn = 0, tilt = 0, zoom = 1;
@@ -215,10 +217,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
   if (pose == rest_pose(*document.armature)) return result;
   const SkinWeights weights = weights_of(options, document, progress);
-  const Blend blend = blend_named(options.method);
-  const Method method = blend == Blend::Linear  ? Method(LinearBlend{})
-                        : blend == Blend::Mixed ? Method(MixedBlend{})
-                                                : Method(DualQuaternion{});
+  const Blend blend = *find_blend(options.method);
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   if (options.preview) {
@@ -230,7 +229,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   }
   const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress,
                                       usable_bone_map(seam_source(document)));
-  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, method,
+  Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, blend,
                          {.seams = seams_of(document, tissue, parts, progress)}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   result.tissue =
@@ -402,10 +401,8 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
   command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
-  command
-      ->add_option("--method", options->method,
-                   "of the pose: lbs (linear), dqs (dual quaternions) or mix (between the two)")
-      ->check(CLI::IsMember({"lbs", "dqs", "mix"}))
+  command->add_option("--method", options->method, "how the pose moves tissue: " + method_summaries(Methods::Blends))
+      ->check(CLI::IsMember(method_words(Methods::Blends)))
       ->capture_default_str();
   command->add_flag("--preview", options->preview,
                     "the pose as the editor shows it while a bone is dragged: coarser, at once");

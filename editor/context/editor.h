@@ -15,6 +15,7 @@
 #include "core/base/named_files.h"
 #include "core/project/history.h"
 #include "core/project/job.h"
+#include "core/resample/deformation_method.h"
 #include "editor/context/background_task.h"
 #include "editor/context/comparison.h"
 #include "editor/context/cursor_wrap.h"
@@ -187,7 +188,7 @@ struct Editor : Ui {
   } renaming_result;
   std::vector<KnownResult> known_results;
   struct {
-    std::string method = "mix";
+    std::string method = deformation_methods().front().word;
     double spacing = 0;        // mm; 0: as the volume
     bool bones_apart = false;  // joints glide further than a voxel, where their bones need it
     bool mass_exact = false;   // soft tissues keep their volume to the voxel's accuracy

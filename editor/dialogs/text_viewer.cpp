@@ -5,6 +5,7 @@
 
 #include "core/export/exporter.h"
 #include "core/paint/brush_rule.h"
+#include "core/resample/deformation_method.h"
 #include "core/volume_io/volume_format.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/ui/asset_path.h"
@@ -26,6 +27,7 @@ std::string with_tables(std::string text) {
   for (const auto& [id, words] : {std::pair<std::string, std::string>{"{table.volume_formats}", readable_formats()},
                                   {"{table.volume_endings}", writable_endings()},
                                   {"{table.exporters}", exporter_endings()},
+                                  {"{table.methods}", method_summaries(Methods::All)},
                                   {"{table.brushes}", brushes}})
     for (std::size_t place = 0; (place = text.find(id, place)) != std::string::npos; place += words.size())
       text.replace(place, id.size(), words);

@@ -117,8 +117,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take_choice(json, "workspace", 4, editor.workspace);
   take_choice(json, "display", 3, views.display);
   take_choice(json, "slices", 2, views.slice_display);
-  if (const Json method = json.value("method", Json());
-      method == "lbs" || method == "dqs" || method == "mix" || method == "fem")
+  if (const Json method = json.value("method", Json()); method.is_string() && find_method(method.get<std::string>()))
     editor.resampling.method = method;
   if (const auto fem = json.find("finite_elements"); fem != json.end() && fem->is_object()) {
     if (const Json quality = fem->value("quality", Json());

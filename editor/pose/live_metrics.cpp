@@ -17,11 +17,8 @@ std::optional<double> PoseMetrics::Row::change_percent() const {
 }
 
 PoseMetrics measure(const DenseWish& wish, Progress& progress) {
-  const Method method = wish.blend == Blend::Linear  ? Method(LinearBlend{})
-                        : wish.blend == Blend::Mixed ? Method(MixedBlend{})
-                                                     : Method(DualQuaternion{});
   const auto seams = body_seams().of({wish.volume, wish.tissues, wish.armature, wish.seams, wish.bone_map}, progress);
-  const Posed posed = resample(*wish.volume, *wish.tissues, *wish.armature, *wish.weights, wish.pose, method,
+  const Posed posed = resample(*wish.volume, *wish.tissues, *wish.armature, *wish.weights, wish.pose, wish.blend,
                                {.seams = seams}, progress);
   progress.update("measure", 0);
   const VolumeMetrics changes = compare(*wish.volume, posed.volume, *wish.tissues);

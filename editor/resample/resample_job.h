@@ -15,4 +15,7 @@ void start_resampling(Editor& editor);
 // "" when there is all that it needs.
 std::string why_no_resampling(const Editor& editor);
 
+// Ids of the operators that choose a deformation method, in the order of its table.
+std::vector<std::string> method_operators(Methods which);
+
 }  // namespace limber::editor

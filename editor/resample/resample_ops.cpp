@@ -17,11 +17,16 @@ namespace limber::editor {
 
 namespace {
 
-Operator method_operator(const char* id, const char* label, const char* description, const char* method) {
-  return {id,          label,
-          "",          "Result",
-          description, [method](Editor& e) { e.resampling.method = method; },
-          nullptr,     [method](const Editor& e) { return e.resampling.method == method; }};
+Operator method_operator(const DeformationMethod& method) {
+  const std::string& word = method.word;
+  return {"resample." + word,
+          method.label,
+          "",
+          "Result",
+          method.description,
+          [word](Editor& e) { e.resampling.method = word; },
+          nullptr,
+          [word](const Editor& e) { return e.resampling.method == word; }};
 }
 
 std::string needs_result(const Editor& editor) {
@@ -165,19 +170,17 @@ std::string needs_stale(const Editor& editor) {
 
 }  // namespace
 
+std::vector<std::string> method_operators(Methods which) {
+  std::vector<std::string> ids;
+  for (const std::string& word : method_words(which)) ids.push_back("resample." + word);
+  return ids;
+}
+
 std::vector<Operator> resample_operators() {
-  return {
+  std::vector<Operator> operators = {
       {"resample.run", "Resample this pose", icon::kResample, "Result",
        "Writes the posed body as a new label volume, beside the work.", [](Editor& e) { start_resampling(e); },
        why_no_resampling},
-      method_operator("resample.lbs", "LBS", "Linear blending: quick, loses volume at bent and twisted joints.", "lbs"),
-      method_operator("resample.dqs", "DQ",
-                      "Dual quaternions: keeps the thickness of twisted limbs, bulges at shoulders.", "dqs"),
-      method_operator("resample.mix", "Mixed",
-                      "Between linear and dual quaternions; in results flesh then gets its volume back.", "mix"),
-      method_operator(
-          "resample.fem", "FEM",
-          "Finite elements: tissue keeps its volume and skin touches skin. Takes minutes, in the background.", "fem"),
       {"result.watch", "Watch it settle", icon::kRunning, "Result",
        "The views show the tissue on its way to the pose, while finite elements are solved.", toggle_watching,
        needs_solve, [](const Editor& e) { return e.fem->watched != 0; }},
@@ -243,6 +246,10 @@ std::vector<Operator> resample_operators() {
       {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
        toggle_results, nullptr, results_seen},
   };
+  std::vector<Operator> methods;
+  for (const DeformationMethod& method : deformation_methods()) methods.push_back(method_operator(method));
+  operators.insert(operators.begin() + 1, methods.begin(), methods.end());
+  return operators;
 }
 
 }  // namespace limber::editor

@@ -4,6 +4,7 @@
 
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/resample/resample_job.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
@@ -38,7 +39,7 @@ void draw_resample(Editor& editor, Column& column) {
   if (column.begin_section("Resample")) {
     auto& settings = editor.resampling;
     const Rect methods = column.row(30);
-    const std::array ids{"resample.mix", "resample.lbs", "resample.dqs", "resample.fem"};
+    const std::vector<std::string> ids = method_operators(Methods::All);
     const float width = std::floor((methods.width() - look.px(20)) / float(ids.size()));
     for (std::size_t i = 0; i < ids.size(); ++i) {
       const Operator* op = find_operator(editor, ids[i]);
@@ -46,7 +47,7 @@ void draw_resample(Editor& editor, Column& column) {
       operator_button(editor, ids[i], {{x, methods.low.y}, {x + width - look.px(1), methods.low.y + look.px(26)}},
                       op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     }
-    if (settings.method == "fem") draw_fem(editor, column);
+    if (settings.method == kFiniteElements) draw_fem(editor, column);
     const Rect spacing = column.property("Output");
     bool committed = false;
     const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";

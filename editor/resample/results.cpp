@@ -10,6 +10,7 @@
 
 #include "core/base/json_text.h"
 #include "core/report/report.h"
+#include "core/resample/deformation_method.h"
 #include "editor/context/editor.h"
 #include "editor/pose/live_preview.h"
 #include "editor/pose/pose_edits.h"
@@ -192,12 +193,9 @@ std::string text_of_report(const std::string& name, const ResultFacts& facts) {
 }
 
 std::string method_name(const std::string& method) {
-  return method == "lbs"           ? "LBS"
-         : method == "dqs"         ? "DQ"
-         : method == "mix"         ? "Mixed"
-         : method == "fem"         ? "FEM"
-         : method == "fem-contact" ? "FEM with contact"
-                                   : method;
+  if (method == "fem-contact") return "FEM with contact";
+  const DeformationMethod* known = find_method(method);
+  return known ? known->label : method;
 }
 
 std::string stale_reason(const Document& document, const Result& result) {

@@ -2,6 +2,7 @@
 #include "editor/screen/menus.h"
 
 #include "editor/context/operator_button.h"
+#include "editor/resample/resample_job.h"
 #include "editor/skin/painting.h"
 #include "editor/ui/widgets.h"
 
@@ -19,6 +20,14 @@ Entry end_of(Entry entry, Entry end) {
     if (*entry == "<" && --depth == 0) return entry;
   }
   return end;
+}
+
+// Puts an operator for each deformation method in place of "* methods".
+std::vector<std::string> with_methods(std::vector<std::string> list) {
+  const std::vector<std::string> methods = method_operators(Methods::All);
+  const auto place = std::find(list.begin(), list.end(), "* methods");
+  if (place != list.end()) list.insert(list.erase(place), methods.begin(), methods.end());
+  return list;
 }
 
 bool any_operator(const Editor& editor, Entry begin, Entry end) {
@@ -115,7 +124,7 @@ std::vector<Menu> menus() {
         "> Pose library", "pose.library_add", "pose.library_apply", "pose.library_blend", "-",
         "pose.library_rename", "pose.library_delete", "<",
         "> Axes", "space.global", "space.local", "space.parent", "space.view", "<",
-        "> Resample", "resample.run", "resample.mix", "resample.lbs", "resample.dqs", "resample.fem",
+        "> Resample", "resample.run", "* methods",
         "result.watch", "result.toggle", "-", "compare.show_a", "compare.show_b", "compare.side_by_side",
         "compare.wipe", "compare.difference", "result.overlap", "compare.swap", "-", "result.rename", "report.open",
         "file.export", "result.copy_report", "result.delete", "result.delete_stale", "<",
@@ -171,7 +180,7 @@ std::vector<Menu> menus() {
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console",
         "help.last_error", "help.system_facts", "-", "help.about"}},
   };
-  for (Menu& menu : all) menu.entries = with_brushes(std::move(menu.entries));
+  for (Menu& menu : all) menu.entries = with_methods(with_brushes(std::move(menu.entries)));
   return all;
 }
 

@@ -2,6 +2,7 @@
 // Below the top bar: how the body is shown, what is clipped, the layout of the views.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/resample/resample_job.h"
 #include "editor/screen/menus.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
@@ -25,7 +26,10 @@ class Header {
   // Operators of which one is on, as one bar.
   //   words  they stand there as words, as long as words beside icons have room
   void segments(std::initializer_list<const char*> ids, bool words = false) {
-    for (const char* id : ids) {
+    segments(std::vector<std::string>(ids.begin(), ids.end()), words);
+  }
+  void segments(const std::vector<std::string>& ids, bool words = false) {
+    for (const std::string& id : ids) {
       const Operator* op = find_operator(editor_, id);
       ButtonLook face = face_of(*op, !words);
       if (words && !face.label.empty()) face.icon = "";
@@ -151,6 +155,9 @@ class Header {
   float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
   // Whether a group of that width fits; if not, its operators go behind "...".
   bool fits(float width, std::initializer_list<const char*> ids) {
+    return fits(width, std::vector<std::string>(ids.begin(), ids.end()));
+  }
+  bool fits(float width, const std::vector<std::string>& ids) {
     if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
     dropped_.insert(dropped_.end(), ids.begin(), ids.end());
     return false;
@@ -164,7 +171,7 @@ class Header {
     const bool icon_alone = layout || (short_labels_ && *op.icon);
     return {op.icon, icon_alone ? "" : op.label};
   }
-  void place(const char* id, const std::string& label, float width, ButtonStyle style) {
+  void place(const std::string& id, const std::string& label, float width, ButtonStyle style) {
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
     if (drawn_) operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
     x_ += width;
@@ -243,9 +250,9 @@ void put_options(Editor& editor, Header& header) {
     header.line();
   }
   if (editor.workspace == Workspace::Pose) {
-    if (header.fits(230, {"resample.mix", "resample.lbs", "resample.dqs"})) {
+    if (const std::vector<std::string> blends = method_operators(Methods::Blends); header.fits(230, blends)) {
       header.label("Preview");
-      header.segments({"resample.mix", "resample.lbs", "resample.dqs"});
+      header.segments(blends);
     }
     if (header.fits(140, {"space.global", "space.local", "space.parent", "space.view"}))
       header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});

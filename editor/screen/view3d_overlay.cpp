@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/deform/blend_rule.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/dialogs/redo_last_operator.h"
@@ -101,10 +102,8 @@ std::string state_of(const Editor& editor) {
   if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
   else if (const PreviewMap* map = editor.views->scene.pose.get())
-    state += std::string(preview_blend(editor) == Blend::Linear  ? " \u00b7 LBS"
-                         : preview_blend(editor) == Blend::Mixed ? " \u00b7 mixed"
-                                                                 : " \u00b7 DQ") +
-             " preview, " + std::to_string(map->step) + "-voxel lattice";
+    state += std::string(" \u00b7 ") + rule_of(preview_blend(editor)).label + " preview, " + std::to_string(map->step) +
+             "-voxel lattice";
   if (editor.document().armature)
     state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
   if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();

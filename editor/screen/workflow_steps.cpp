@@ -76,9 +76,9 @@ Step pose_step(const Editor& editor) {
 }
 
 Step resample_step(const Editor& editor) {
-  Step step{"Resample",          StepState::Later,
-            "Not resampled yet", "resample.run",
-            "Resample",          {"resample.mix", "resample.lbs", "resample.dqs", "resample.fem", "result.toggle"}};
+  Step step{"Resample",     StepState::Later, "Not resampled yet",
+            "resample.run", "Resample",       method_operators(Methods::All)};
+  step.more.push_back("result.toggle");
   const Document& document = editor.document();
   // The newest that still holds; where none does, the newest.
   for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {

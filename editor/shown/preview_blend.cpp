@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/shown/preview_blend.h"
 
+#include "core/resample/deformation_method.h"
+
 namespace limber::editor {
 
-// Where the method is none of blending, as the default blends.
+// A method that does not blend is previewed by the default blend.
 Blend preview_blend(const Editor& editor) {
-  return editor.resampling.method == "fem" ? Blend::Mixed : blend_named(editor.resampling.method);
+  return find_method(editor.resampling.method)->blend.value_or(*deformation_methods().front().blend);
 }
 
 }  // namespace limber::editor

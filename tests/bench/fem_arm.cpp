@@ -117,7 +117,7 @@ int main(int count, char** arguments) try {
   const double start = cpu_seconds();
   arm.bend(90);
   const double fitted = cpu_seconds();
-  arm.posed(DualQuaternion{});
+  arm.posed(Blend::DualQuaternion);
   std::printf("fitting the joint to +90: %.2f s; resampling by dual quaternions: %.2f s\n", fitted - start,
               cpu_seconds() - fitted);
   std::printf("%4s %5s %-7s %7s %6s %7s %7s %7s %5s %5s %6s %5s %5s %6s %6s %6s %6s %7s %5s %7s\n", "h mm", "angle", "",

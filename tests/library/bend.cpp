@@ -18,7 +18,7 @@ int main(int argc, char** argv) try {
   const limber::SkinWeights weights = limber::diffuse_heat(file.volume, tissues, rig);
   limber::Pose pose = limber::rest_pose(rig);
   limber::flex(pose, rig, static_cast<int>(rig.find(argv[4]).value()), std::atof(argv[5]));
-  const limber::Posed posed = limber::resample(file.volume, tissues, rig, weights, pose, limber::DualQuaternion());
+  const limber::Posed posed = limber::resample(file.volume, tissues, rig, weights, pose, limber::Blend::DualQuaternion);
   limber::write_volume(posed.volume, argv[6], tissues, file.type);
   std::printf("%lld voxels\n", static_cast<long long>(posed.volume.grid.voxel_count()));
   return 0;

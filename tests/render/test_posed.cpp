@@ -167,7 +167,7 @@ void check_outline(const std::shared_ptr<const LabelVolume>& volume, const Tissu
   coarse.pose = LivePreview(volume, tissues, tissue, weights, 4)
                     .update(posed_from_rest(rig, pose), linear ? Blend::Linear : Blend::DualQuaternion);
   const Posed posed = resample(*volume, tissues, rig, weights, pose,
-                               linear ? Method(LinearBlend{}) : Method(DualQuaternion{}), {.displacement = true});
+                               linear ? Method(Blend::Linear) : Method(Blend::DualQuaternion), {.displacement = true});
   fine.pose = dense_map(*volume, posed);
   labels.volume = std::make_shared<const LabelVolume>(posed.volume);
   const Camera front = camera_of(posed.volume.grid),
@@ -233,7 +233,7 @@ TEST_CASE("posed body: a bent elbow has the colours of the resampled volume") {
   const Pose pose = arm().bent(60);
   for (const bool linear : {true, false}) {
     const Scene posed = arm().posed(pose, linear ? Blend::Linear : Blend::DualQuaternion);
-    const Scene dense = arm().resampled(pose, linear ? Method(LinearBlend{}) : Method(DualQuaternion{}));
+    const Scene dense = arm().resampled(pose, linear ? Method(Blend::Linear) : Method(Blend::DualQuaternion));
     for (const StandardView side : {StandardView::Front, StandardView::Left}) {
       const Camera camera = camera_of(dense.volume->grid, Projection::Perspective, side);
       const Image a = picture_of(studio.renderer, posed, camera, kSize),
@@ -260,7 +260,7 @@ TEST_CASE("posed body: a volume in bricks looks the same posed") {
 TEST_CASE("posed body: a slice shows the labels of the resampled volume") {
   Studio studio;
   const Pose pose = arm().bent(60);
-  const Scene posed = arm().posed(pose, Blend::Linear), dense = arm().resampled(pose, LinearBlend{});
+  const Scene posed = arm().posed(pose, Blend::Linear), dense = arm().resampled(pose, Blend::Linear);
   const AffineTransform to_world = world_from_voxel(dense.volume->grid);
   SliceCamera camera{.axis = SliceAxis::Sagittal,
                      .centre = to_world * (glm::dvec3(dense.volume->grid.size) / 2.0),

@@ -310,7 +310,7 @@ TEST_CASE("auto-fit: the legs of a body without its upper half lie where they ar
   flex(stride, body.armature, require_bone(body.armature, "LeftThigh"), 25);
   flex(stride, body.armature, require_bone(body.armature, "RightShank"), 20);
   const SkinWeights weights = diffuse_heat(body.volume, body.tissues, body.armature);
-  LabelVolume posed = resample(body.volume, body.tissues, body.armature, weights, stride, DualQuaternion{}).volume;
+  LabelVolume posed = resample(body.volume, body.tissues, body.armature, weights, stride, Blend::DualQuaternion).volume;
   const std::vector<RigidTransform> moved = posed_from_rest(body.armature, stride);
 
   const AffineTransform to_world = world_from_voxel(posed.grid);

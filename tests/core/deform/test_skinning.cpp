@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
+#include "core/deform/blend_rule.h"
 #include "tests/support/shared_data.h"
 
 using namespace limber;
@@ -171,7 +173,25 @@ TEST_CASE(
 }
 
 TEST_CASE("skinning: blends have the names that commands give them") {
-  CHECK(blend_named("lbs") == Blend::Linear);
-  CHECK(blend_named("dqs") == Blend::DualQuaternion);
-  CHECK(blend_named("mix") == Blend::Mixed);
+  CHECK(find_blend("lbs") == Blend::Linear);
+  CHECK(find_blend("dqs") == Blend::DualQuaternion);
+  CHECK(find_blend("mix") == Blend::Mixed);
+  CHECK_FALSE(find_blend("fem").has_value());
+}
+
+TEST_CASE("skinning: every row of the table of blends has words of its own, and moves bones that agree as they move") {
+  std::set<std::string> words;
+  const RigidTransform motion = turn(70, {1, 2, 3}, {4, 5, 6});
+  const std::vector<SkinTransform> bones = skin_transforms({motion, motion});
+  const std::vector<BoneWeight> influences = {{0, 0.25}, {1, 0.75}};
+  for (std::size_t i = 0; i < blend_rules().size(); ++i) {
+    const BlendRule& rule = *blend_rules()[i];
+    CAPTURE(rule.word);
+    CHECK(words.insert(rule.word).second);
+    CHECK(find_blend(rule.word) == static_cast<Blend>(i));
+    CHECK(std::string(rule.description).ends_with("."));
+    const glm::dvec3 p(7, -3, 2), expected = motion.rotation * p + motion.translation;
+    CHECK(glm::distance(rule.point(bones, influences, p), expected) < 1e-12);
+    CHECK(glm::distance(rule.stretched_point(bones, influences, p), expected) < 1e-12);
+  }
 }

@@ -98,7 +98,7 @@ Bent bent(const Arm& arm, const SkinWeights& weights, double degrees) {
   flex(pose, arm.rig, arm.forearm, degrees);
   Bent bent;
   for (const TissueChange& change :
-       compare(arm.volume, resample(arm.volume, arm.tissues, arm.rig, weights, pose, DualQuaternion{}).volume,
+       compare(arm.volume, resample(arm.volume, arm.tissues, arm.rig, weights, pose, Blend::DualQuaternion).volume,
                arm.tissues)
            .tissues)
     for (const auto& [name, at] : {std::pair{"skin", &bent.skin}, {"fat", &bent.fat}, {"muscle", &bent.muscle}})

@@ -159,7 +159,7 @@ TEST_CASE("close skin: a closed skin stays closed when the limb bends, and an op
   pose.rotation[1] = glm::angleAxis(glm::radians(60.0), glm::dvec3(1, 0, 0));
   const auto share_of_skin = [&](const LabelVolume& volume) {
     const SkinWeights weights = diffuse_heat(volume, table(), rig);
-    const Posed posed = resample(volume, table(), rig, weights, pose, MixedBlend{});
+    const Posed posed = resample(volume, table(), rig, weights, pose, Blend::Mixed);
     const Bare found = bare(posed.volume);
     return double(found.skin) / double(found.skin + found.flesh + found.bone);
   };

@@ -57,7 +57,7 @@ struct TwoBoxes {
     pose.rotation[1] = glm::angleAxis(kHalfTurn, glm::dvec3(0, 0, 1));
   }
   Posed posed(const ResampleSettings& settings = {.nearest = true, .overlap = true}) const {
-    return resample(volume, tissues, rig, weights, pose, LinearBlend{}, settings);
+    return resample(volume, tissues, rig, weights, pose, Blend::Linear, settings);
   }
 };
 

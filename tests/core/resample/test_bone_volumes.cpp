@@ -58,7 +58,7 @@ std::map<Label, double> shares(const LabelVolume& volume) {
 
 TEST_CASE("bone volumes: a layer of one voxel keeps its share of a bone that is turned, with every blend") {
   const test::BentTube tube = layered_tube();
-  for (const Method& method : {Method(LinearBlend{}), Method(DualQuaternion{})})
+  for (const Method& method : {Method(Blend::Linear), Method(Blend::DualQuaternion)})
     for (const double degrees : {17.0, 45.0, 60.0}) {
       CAPTURE(degrees);
       const Pose pose = tube.pose(degrees, 25);

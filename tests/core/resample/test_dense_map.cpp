@@ -116,8 +116,8 @@ TEST_CASE(
     doctest::test_suite("slow")) {
   const Arm arm;
   const Pose pose = arm.bent();
-  for (const auto& [method, name, blend] : {std::tuple{Method(LinearBlend{}), "lbs", Blend::Linear},
-                                            {Method(DualQuaternion{}), "dqs", Blend::DualQuaternion}})
+  for (const auto& [method, name, blend] : {std::tuple{Method(Blend::Linear), "lbs", Blend::Linear},
+                                            {Method(Blend::DualQuaternion), "dqs", Blend::DualQuaternion}})
     for (const bool nearest : {true, false}) {
       INFO(name, nearest ? ", nearest" : "");
       const Posed live = resample(arm.phantom.volume, arm.phantom.tissues, arm.phantom.armature, arm.weights, pose,

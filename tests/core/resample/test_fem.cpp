@@ -57,7 +57,7 @@ TEST_CASE(
     turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
     const Posed by_fem = resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, Fem{});
     CHECK(by_fem.volume.voxels ==
-          resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}).volume.voxels);
+          resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, Blend::Linear).volume.voxels);
     CHECK_FALSE(by_fem.report.mesh);
   }
 }
@@ -67,7 +67,7 @@ TEST_CASE(
     "rigid") {
   const Arm arm;
   const Pose pose = arm.flexed(40);
-  const Posed by_fem = arm.posed(pose, Fem{.spacing_mm = 10}), by_dqs = arm.posed(pose, DualQuaternion{});
+  const Posed by_fem = arm.posed(pose, Fem{.spacing_mm = 10}), by_dqs = arm.posed(pose, Blend::DualQuaternion);
   const DeformReport& report = by_fem.report;
   REQUIRE(report.mesh);
   REQUIRE(report.solve);
@@ -267,13 +267,12 @@ TEST_CASE("resample: a sequence is its poses one by one, with blends") {
   const test::BentTube tube = test::bent_tube();
   const std::vector<Pose> poses = {tube.pose(30), rest_pose(tube.rig), tube.pose(-20, 15)};
   std::size_t count = 0;
-  resample_sequence(
-      tube.volume, tube.tissues, tube.rig, tube.weights, poses, DualQuaternion{}, {},
-      [&](std::size_t place, Posed posed) {
-        CHECK(
-            posed.volume.voxels ==
-            resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[place], DualQuaternion{}).volume.voxels);
-        ++count;
-      });
+  resample_sequence(tube.volume, tube.tissues, tube.rig, tube.weights, poses, Blend::DualQuaternion, {},
+                    [&](std::size_t place, Posed posed) {
+                      CHECK(posed.volume.voxels == resample(tube.volume, tube.tissues, tube.rig, tube.weights,
+                                                            poses[place], Blend::DualQuaternion)
+                                                       .volume.voxels);
+                      ++count;
+                    });
   CHECK(count == poses.size());
 }

@@ -61,7 +61,7 @@ struct Bars {
     return glide_joints(volume, tissue, is_bone, weights, armature, pose, settings);
   }
   std::int64_t bone_in_bone(const Pose& pose) const {
-    return resample(volume, tissues, armature, weights, pose, LinearBlend{}).report.bone_overlap_voxels;
+    return resample(volume, tissues, armature, weights, pose, Blend::Linear).report.bone_overlap_voxels;
   }
 };
 

@@ -13,7 +13,7 @@ using namespace limber;
 
 namespace {
 
-const Method kMethods[] = {LinearBlend{}, DualQuaternion{}};
+const Method kMethods[] = {Blend::Linear, Blend::DualQuaternion};
 
 Posed posed(const test::BentTube& tube, const Pose& pose, const Method& method, const ResampleSettings& settings = {}) {
   return resample(tube.volume, tube.tissues, tube.rig, tube.weights, pose, method, settings);
@@ -152,7 +152,7 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
     });
     tube.weights.set_chunk(brick, chunk);
   }
-  const Posed result = posed(tube, tube.pose(70), DualQuaternion{}, {.displacement = true});
+  const Posed result = posed(tube, tube.pose(70), Blend::DualQuaternion, {.displacement = true});
   CHECK(result.report.filled_air_voxels > 0);
   CHECK(compare(tube.volume, result.volume, tube.tissues).enclosed_air_after <= hollow);
   std::int64_t from_nowhere = 0;

@@ -176,7 +176,7 @@ TEST_CASE(
       most = std::max(most, std::abs(double(count(volume, label)) / double(count(tube.volume, label)) - 1));
     return most;
   };
-  for (const Method& method : {Method(LinearBlend{}), Method(DualQuaternion{})}) {
+  for (const Method& method : {Method(Blend::Linear), Method(Blend::DualQuaternion)}) {
     const Posed plain = resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(25), method);
     const Posed exact =
         resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(25), method, {.mass_exact = true});
@@ -202,7 +202,7 @@ TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused wh
   const test::BentTube tube = test::bent_tube({}, 120);
   const auto posed = [&](double degrees, int threads) {
     const ThreadCount count(threads);
-    return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), LinearBlend{},
+    return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), Blend::Linear,
                     {.mass_exact = true})
         .volume.voxels;
   };
@@ -212,7 +212,7 @@ TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused wh
   Pose turned = rest_pose(tube.rig);
   turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
   const LabelVolume whole =
-      resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, LinearBlend{}, {.mass_exact = true}).volume;
+      resample(tube.volume, tube.tissues, tube.rig, tube.weights, turned, Blend::Linear, {.mass_exact = true}).volume;
   for (const Label label : {test::kSkin, test::kFat})
     CHECK(std::abs(double(count(whole, label)) / double(count(tube.volume, label)) - 1) < 0.001);
   CHECK_THROWS_WITH_AS(posed(120, 2), doctest::Contains("mass-exact"), Error);

@@ -62,8 +62,8 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
   tissue.set_seams(seams);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
   const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig, parts);
-  Raised raised{resample(body.volume, body.tissues, body.rig, weights, arm_raised(body.rig, degrees), DualQuaternion{},
-                         {.displacement = true, .seams = seams})};
+  Raised raised{resample(body.volume, body.tissues, body.rig, weights, arm_raised(body.rig, degrees),
+                         Blend::DualQuaternion, {.displacement = true, .seams = seams})};
   const Grid& grid = raised.posed.volume.grid;
   const glm::dmat3 half = glm::mat3_cast(arm_raised(body.rig, degrees).rotation[1]);
   glm::ivec3 v;
@@ -275,8 +275,8 @@ TEST_CASE("seams: at rest the volume stays as it is, bit for bit") {
   tissue.set_seams(seams);
   const SkinWeights weights = diffuse_heat(body.volume, tissue, body.tissues, body.rig,
                                            split_bones(body.volume, tissue, body.tissues, body.rig));
-  const Posed rest =
-      resample(body.volume, body.tissues, body.rig, weights, rest_pose(body.rig), DualQuaternion{}, {.seams = seams});
+  const Posed rest = resample(body.volume, body.tissues, body.rig, weights, rest_pose(body.rig), Blend::DualQuaternion,
+                              {.seams = seams});
   CHECK(rest.volume.voxels == body.volume.voxels);
 }
 

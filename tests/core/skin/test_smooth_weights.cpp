@@ -161,7 +161,7 @@ TEST_CASE("smooth weights: ten strokes around a real elbow halve what its muscle
   Pose pose = rest_pose(rig);
   flex(pose, rig, fore, 45);
   const auto overlap = [&] {
-    const Posed posed = resample(file.volume, tissues, rig, *weights, pose, DualQuaternion{}, {});
+    const Posed posed = resample(file.volume, tissues, rig, *weights, pose, Blend::DualQuaternion, {});
     std::int64_t voxels = 0;
     for (const Tissue& t : tissues.tissues)
       if (t.kind == TissueKind::Muscle) voxels += posed.report.overlap_by_label[t.label];

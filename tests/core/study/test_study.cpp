@@ -66,7 +66,7 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   REQUIRE(study.spacings.size() == 2);
   CHECK(study.spacings[0] == 1.5);
   CHECK_FALSE(study.spacings[1].has_value());
-  CHECK(study.techniques == std::vector<Technique>{Technique::DualQuaternion, Technique::FemContact});
+  CHECK(study.techniques == std::vector<Technique>{{"dqs"}, {"fem", true}});
   CHECK(study.poses[1].flex == std::vector<std::string>{"Shin=60", "Foot=-10"});
   CHECK(study.poses[2].body.name == "sit");
   CHECK(study.poses[2].body.joints == std::vector<std::string>{"left elbow flexion=30"});
@@ -81,18 +81,22 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
 }
 
 TEST_CASE("study: each method has a mass-exact variant, which is there only where it is asked for") {
-  for (const Technique technique : paper_study().techniques) CHECK_FALSE(is_mass_exact(technique));
+  for (const Technique& technique : paper_study().techniques) CHECK_FALSE(technique.mass_exact);
   std::vector<std::string> words;
-  for (int t = 0; t < kTechniques; ++t) {
-    const auto technique = static_cast<Technique>(t);
+  for (const Technique& technique : plain_techniques()) {
     words.push_back(word_of(technique));
-    CHECK(is_mass_exact(technique) == words.back().ends_with("-mass-exact"));
-    CHECK(word_of(technique) == word_of(plain_of(technique)) + (is_mass_exact(technique) ? "-mass-exact" : ""));
+    words.push_back(words.back() + "-mass-exact");
   }
+  CHECK(words.size() == 2 * (deformation_methods().size() + 1));
   const std::vector<Technique> all = techniques_of(words, "");
-  REQUIRE(all.size() == std::size_t(kTechniques));
-  CHECK(std::is_sorted(all.begin(), all.end()));
-  CHECK(name_of(Technique::FemContactMassExact) == "FEM with contact, mass-exact");
+  REQUIRE(all.size() == words.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(word_of(all[i]) == words[i]);
+    CHECK(all[i].mass_exact == (i % 2 == 1));
+    CHECK(all[i].plain() == all[i - i % 2]);
+  }
+  CHECK(title_of(techniques_of({"fem-contact-mass-exact"}, "")[0]) == "FEM with contact, mass-exact");
+  CHECK_THROWS_AS(techniques_of({"lbs-contact"}, ""), Error);
 }
 
 TEST_CASE(

@@ -127,7 +127,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   REQUIRE(document.results.size() == 1);
   const Result& result = *document.results[0];
   CHECK(result.name == "Fore 30\u00b0, Mixed");
-  const Posed expected = resampled(document, MixedBlend{});
+  const Posed expected = resampled(document, Blend::Mixed);
   CHECK(result.volume->grid == expected.volume.grid);
   CHECK(result.volume->voxels == expected.volume.voxels);
   const auto facts = facts_of(*test.editor, document.results[0]);
@@ -135,7 +135,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(facts->change_percent);
   CHECK(facts->seconds > 0);
   // With the voxels that `limber resample --overlap` would have marked.
-  const auto marked = resampled(document, MixedBlend{}, {.overlap = true}).overlap;
+  const auto marked = resampled(document, Blend::Mixed, {.overlap = true}).overlap;
   REQUIRE(result.overlap);
   CHECK(std::ssize(result.overlap->tissue) == std::count(marked.begin(), marked.end(), 1));
   CHECK(std::ssize(result.overlap->bones) == std::count(marked.begin(), marked.end(), 2));
@@ -161,7 +161,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   const Document now = test.editor->document();
   const auto exact = now.results[1];
   CHECK(exact->name == "Fore 30\u00b0, DQ, mass-exact");
-  CHECK(exact->volume->voxels == resampled(now, DualQuaternion{}, {.mass_exact = true}).volume.voxels);
+  CHECK(exact->volume->voxels == resampled(now, Blend::DualQuaternion, {.mass_exact = true}).volume.voxels);
   const auto& settings = facts_of(*test.editor, exact)->settings;
   CHECK(std::any_of(settings.begin(), settings.end(),
                     [](const auto& line) { return line.name == "Mass exact" && line.value == "yes"; }));

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/blend_kernels.h"
+#include "core/deform/blend_rule.h"
+
+namespace limber {
+
+extern const BlendRule kLinearBlend;
+
+// A displacement holds the stretch of its bone already.
+const BlendRule kLinearBlend{
+    .word = "lbs",
+    .label = "LBS",
+    .name = "Linear blend",
+    .summary = "linear",
+    .description = "Linear blending: quick, loses volume at bent and twisted joints.",
+    .point = blend_linear,
+    .stretched_point = blend_linear,
+    .sums_displacements = true,
+    .sums_dual_quaternions = false,
+    .settles_flesh = false,
+};
+
+}  // namespace limber
