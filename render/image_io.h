@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures: 8-bit RGBA, rows from the top; written and read as PNG.
+// Writes and reads pictures as PNG: 8-bit RGBA, rows from top to bottom.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct Image {
   std::vector<std::uint8_t> rgba;  // size.x * size.y * 4
 };
 
-void write_png(const Image& image, const Path& path);  // whole or not at all
-Image read_png(const Path& path);                      // throws Error for what is no PNG, or over 16384 pixels a side
-std::string png_of(const Image& image);                // the bytes of the file
-Image parse_png(const std::string& bytes, const std::string& where);  // as read_png
+void write_png(const Image& image, const Path& path);  // atomic: never leaves a partial file
+Image read_png(const Path& path);        // throws Error if it is no PNG, or has a side of more than 16384 pixels
+std::string png_of(const Image& image);  // returns the bytes of a PNG file
+Image parse_png(const std::string& bytes, const std::string& where);  // the same as read_png, from memory
 
 }  // namespace limber::render

@@ -15,14 +15,14 @@ namespace limber::render {
 
 namespace {
 
-constexpr double kRest = 0.1;          // s without a change before the picture is refined
-constexpr double kFrame = 0.028;       // s that rays may take while something moves
-constexpr double kTileBudget = 0.018;  // s of refinement in one call
-constexpr int kTile = 128;             // pixels
+constexpr double kRest = 0.1;          // seconds without a change after which the picture is refined
+constexpr double kFrame = 0.028;       // time limit for drawing the body while something moves, seconds
+constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
+constexpr int kTile = 128;             // edge length of a tile, pixels
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// The caller's framebuffer is bound again when this goes.
+// Restores the caller's framebuffer binding when it is destroyed, and resets depth, scissor and blend states.
 class KeepFramebuffer {
  public:
   KeepFramebuffer() { glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound_); }
@@ -40,7 +40,7 @@ class KeepFramebuffer {
   GLint bound_ = 0;
 };
 
-// A texture to draw into.
+// A texture, and a framebuffer that draws into it.
 class Target {
  public:
   void resize(const glm::ivec2& size, GLint internal) {
@@ -57,7 +57,8 @@ class Target {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
   }
-  // The depth of a buffer of the same size: passes can then leave out what it does not cover.
+  // Attaches the hull depth of a buffer of the same size, so that passes can skip the pixels that the hull does not
+  // cover.
   void share_depth(const gl::Texture& depth) const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
@@ -104,7 +105,7 @@ Image read_back(const Target& target, bool premultiplied) {
   return image;
 }
 
-// What the body's picture depends on. Equal pointers are equal contents.
+// Everything on which the hits of the body's rays depend. Equal pointers mean equal contents.
 struct BodyKey {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const PreviewMap> pose;
@@ -113,7 +114,7 @@ struct BodyKey {
   std::optional<std::array<glm::dvec3, 2>> box, plane;
   Camera camera;
   glm::ivec2 size{0};
-  bool places = false;  // where at rest pixels lie is wanted
+  bool places = false;  // whether the rest positions of pixels are needed
 
   bool operator==(const BodyKey&) const = default;
 };
@@ -121,7 +122,8 @@ BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size,
   return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size, places};
 }
 
-// What lies on top of it.
+// These functions return whether two scenes have the same posed bones, the same bone highlights, and the same overlays
+// on top of the body.
 bool same_pose(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
     return p.rotation == q.rotation && p.translation == q.translation;
@@ -139,11 +141,12 @@ bool same_overlay(const Scene& a, const Scene& b) {
          a.transparent_background == b.transparent_background && a.outlined == b.outlined && a.mesh == b.mesh;
 }
 
-// The tets of a mesh, upon tissue or upon a slice that shows no more than outlines: the fainter the smaller they are
-// seen, or they would hide what they lie on.
+// Returns the colour and width of the lines of a mesh on tissue, or on a slice that shows only outlines. Lines are
+// fainter where the tets appear smaller, since they would hide what is below.
 LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue,
                           double millimetres_per_pixel) {
-  constexpr double kFaint = 1.5, kClear = 12;  // pixels at scale 1, of a line's mean length
+  // Mean length of the lines at which they are faintest and clearest, pixels at line scale 1.
+  constexpr double kFaint = 1.5, kClear = 12;
   double length = 0;
   for (const Segment& line : lines) length += glm::distance(line[0], line[1]);
   const double pixels = length / std::max<double>(1, double(lines.size())) / (millimetres_per_pixel * scene.line_scale);
@@ -152,7 +155,7 @@ LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines,
           scene.line_scale};
 }
 
-// The box of the volume in the world, or of the armature where there is no volume.
+// Returns the box around the volume, or around the armature if there is no volume, in the world, mm.
 std::array<glm::dvec3, 2> box_of(const Scene& scene) {
   glm::dvec3 low(1e300), high(-1e300);
   const auto take = [&](const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); };
@@ -168,20 +171,21 @@ std::array<glm::dvec3, 2> box_of(const Scene& scene) {
   return {low, high};
 }
 
-// Halton's sequence: evenly spread over [0, 1) however many are taken.
+// Returns element i of the Halton sequence. For any n, its first n elements are spread evenly over [0, 1).
 double halton(int i, int base) {
   double result = 0, f = 1;
   for (; i > 0; i /= base) f /= base, result += f * (i % base);
   return result;
 }
-// About the pixel's middle; the first sample is the middle.
+// Returns the offset of a sample from the centre of its pixel, pixels. The first sample is at the centre.
 glm::dvec2 jitter_of(int sample) {
   return sample == 0 ? glm::dvec2(0) : glm::dvec2(halton(sample, 2) - 0.5, halton(sample, 3) - 0.5);
 }
 
-// Averaged pictures read each label a little beside its place, so that the borders of voxels blend.
+// Returns the offset of the positions at which a sample reads labels, voxels. Averaging pictures with different offsets
+// blends the borders between voxels.
 glm::vec3 label_shift_of(int sample) {
-  constexpr float kReach = 0.8f;  // voxels
+  constexpr float kReach = 0.8f;  // largest offset along each axis, voxels
   if (sample == 0) return glm::vec3(0);
   return glm::vec3(halton(sample, 3) - 0.5, halton(sample, 5) - 0.5, halton(sample, 7) - 0.5) * 2.0f * kReach;
 }
@@ -194,20 +198,20 @@ struct View3D::Impl {
   PassResources& resources;
   Target output, body, average;
   using Layers = std::array<GBuffer, kMostLayers>;
-  Layers shown;     // what the rays of the picture met, the outermost layer first
-  Layers jittered;  // of a sample being averaged
+  Layers shown;     // hits of the rays of the picture, the outermost layer first
+  Layers jittered;  // hits of the rays of the sample that is being averaged
   BodyKey key;
-  Scene scene;  // last drawn
+  Scene scene;  // the scene that was drawn last
   bool drawn = false;
   double changed_at = 0;
-  int moving_scale = 3;  // pixels each way while moving
-  int shown_scale = 0;   // of the body's picture
-  int sample = 0;        // of the refinement: samples finished
-  int next_tile = 0;     // of the sample under way
-  bool refines = false;  // scale 0: goes on to full resolution and averaging
-  PixelRect rect;        // what the body covers, in pixels of its picture
+  int moving_scale = 3;  // the body is drawn at every n-th pixel while something moves
+  int shown_scale = 0;   // scale at which the body was drawn (every n-th pixel); 0: no body
+  int sample = 0;        // number of samples in the average so far
+  int next_tile = 0;     // index of the next tile of the current sample
+  bool refines = false;  // whether the picture is to be refined to full resolution and averaged (scale 0)
+  PixelRect rect;        // the rectangle that the body covers, in pixels at its scale
   std::int64_t rays_followed = 0;
-  int weight_changes = 0;  // of the weights' texture, as drawn
+  int weight_changes = 0;  // WeightTexture::changes() at the last drawing
   bool has_all_weights = true;
 
   struct Source {
@@ -216,7 +220,7 @@ struct View3D::Impl {
     std::vector<const VisibleField*> layers;
     const PosedTexture* pose = nullptr;
     const WeightTexture* weights = nullptr;
-    std::vector<const PosedHull*> posed_hulls;  // of each layer; null at rest
+    std::vector<const PosedHull*> posed_hulls;  // one for each layer; null at rest
 
     const Hull& hull(size_t layer) const {
       return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull();
@@ -285,7 +289,7 @@ struct View3D::Impl {
                            layer == 0 && scene.display == Display::XRay, colours());
   }
 
-  // The whole body at once, at every `scale`-th pixel.
+  // Draws the whole body at once, with one ray for each `scale`-th pixel along each axis.
   void draw_at_once(const Source& source, int scale) {
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
@@ -296,7 +300,7 @@ struct View3D::Impl {
     shown_scale = scale;
   }
 
-  // Some tiles of the sample under way; true when the picture to show has changed.
+  // Draws some tiles of the current sample. Returns true when the sample is complete and the picture has changed.
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
@@ -328,8 +332,8 @@ struct View3D::Impl {
     return true;
   }
 
-  // Other weights upon what the rays have met.
-  //   only_weights  nothing but the weights themselves is new
+  // Shades the stored hits of the rays again, with other weights or another display of weights.
+  //   only_weights  true: nothing but the weights themselves has changed
   void recolour(const Source& source, bool only_weights) {
     if (only_weights && source.weights->changes() == weight_changes) return;
     const ViewRays rays = rays_of(source, shown[0].size(), 0);
@@ -341,20 +345,21 @@ struct View3D::Impl {
           part, VolumePass::covered(glm::vec3(changed->low), glm::vec3(changed->high), rays, shown[0].size()));
     shade(source, rays, shown, part);
     if (sample == 0) return;
-    // The picture at rest takes over what is new, and is refined once more.
+    // In the changed rectangle the average is replaced, and it is then refined again.
     average.bind();
     resources.compose.accumulate(body.texture(), key.size, 1, part);
     sample = 1;
     next_tile = 0;
   }
 
-  // What the body can cover in the output, with a margin for outlines and for stretched pixels.
+  // Returns the rectangle of the output that the body can cover, with a margin for outlines and for pixels stretched at
+  // a coarse scale.
   PixelRect shown_rect() const {
     const int margin = shown_scale + 1 + static_cast<int>(std::ceil(2 * scene.line_scale));
     return intersection({{0, 0}, key.size}, {rect.low * shown_scale - margin, rect.high * shown_scale + margin});
   }
 
-  // The mesh's lines, and what they were made for.
+  // The lines along which the clip cuts the mesh, cached with the inputs from which they were computed.
   struct {
     CutMesh mesh;
     Clip clip;
@@ -365,7 +370,8 @@ struct View3D::Impl {
     if (!(cut.mesh == *scene.mesh) || cut.clip.box != scene.clip.box || cut.clip.plane != scene.clip.plane ||
         cut.volume != scene.volume)
       cut = {*scene.mesh, scene.clip, scene.volume, lines_on_cuts(*scene.mesh, scene.clip, scene.volume->grid)};
-    // A cut that is seen at a slant lies at several depths within a pixel of the body's picture.
+    // A cut face seen at a slant has several depths within one pixel of the body's picture, so `off` allows for two
+    // such pixels.
     const double pixel = 2 * key.camera.distance * std::tan(key.camera.field_of_view / 2) / key.size.y;
     const float off = static_cast<float>(1 + 2 * pixel * shown_scale);  // mm
     resources.lines.draw(cut.lines, key.camera, key.size, shown[0].depth, off,
@@ -427,7 +433,8 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
     if (scale == 0 && my.resources.pictures_at_rest > 0) {
       glFinish();
-      // The cost goes with the number of pixels; a finer picture is tried when it would fit well.
+      // The time is proportional to the number of pixels. A finer scale is tried when its time would be within the
+      // limit with some margin.
       const double cost = seconds() - begin;
       const int at = my.moving_scale;
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
@@ -459,7 +466,7 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
                       (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
 
   const KeepFramebuffer keep;
-  // In X-ray the bone under the ghost is meant, where there is one.
+  // In X-ray this returns the bone under the ghost, if there is one.
   const auto hit_in = [&](const GBuffer& buffer) -> std::optional<Hit> {
     float depth = 0;
     std::uint16_t label = 0;
@@ -475,7 +482,7 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
     if (depth >= kNothingDepth * 0.5f || label == 0) return std::nullopt;
     Hit hit;
     hit.label = label;
-    // The buffer's pixel, not the asked one: its ray is the one that was followed.
+    // The ray is computed for the centre of the buffer's pixel, since the stored hit belongs to that ray.
     const glm::dvec2 middle((at.x + 0.5) * my.key.size.x / buffer_size.x,
                             my.key.size.y - (at.y + 0.5) * my.key.size.y / buffer_size.y);
     const Ray ray = ray_through(my.key.camera, middle, my.key.size);
@@ -486,7 +493,7 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
         glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
     if (!cap) hit.normal = my.key.camera.world_from_view * glm::normalize(view_normal);
 
-    // The voxel of that label where the surface lies, walking inward as the shader did; at rest.
+    // Finds the voxel with the hit's label at the surface, by small steps inward at rest as in the shader.
     const AffineTransform to_voxel = voxel_from_world(my.scene.volume->grid);
     const glm::dvec3 inward = to_voxel.linear * (cap ? ray.direction : -hit.normal);
     const glm::dvec3 step = inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z)}) * 0.25;
@@ -527,7 +534,7 @@ struct SliceView::Impl {
   PassResources& resources;
   Target output;
   bool has_all_weights = true;
-  // The mesh's lines, and what they were made for.
+  // The lines along which the slice cuts the mesh, cached with the inputs from which they were computed.
   struct {
     CutMesh mesh;
     SliceCamera camera;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One picture of a scene: 3D or a slice, drawn into a texture of its own that the editor shows and the command line
-// saves. Everything here needs a current OpenGL 3.3 core context. Volumes are uploaded once and shared by all views.
+// Draws a picture of a scene, a 3D view or a slice, into a texture of its own. The editor shows this texture, and the
+// command line saves it. Everything here needs a current OpenGL 3.3 core context. Volumes are uploaded once and shared
+// by all views.
 #pragma once
 
 #include <memory>
@@ -20,28 +21,30 @@ namespace limber::render {
 
 struct PassResources;
 
-// Textures of the volumes in use, programs, meshes: one for a context.
+// The resources of one OpenGL context: textures of the volumes in use, and shader programs.
 class Renderer {
  public:
   // Throws Error when the context is older than OpenGL 3.3.
-  //   largest_texture  texels per axis of a 3D texture; 0: what the driver allows. Larger volumes are bricked
+  //   largest_texture  largest number of texels per axis of a 3D texture; 0: as many as the driver allows. A larger
+  //                    volume is divided into blocks.
   explicit Renderer(int largest_texture = 0);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // What the user should know of the last upload ("shown at half resolution: ..."), or empty.
+  // Returns a note for the user on the last upload ("Shown at 1/2 of its resolution: ..."), or an empty text.
   const std::string& note() const;
 
-  // Until it is called again, views that are drawn call by call bring large changes of weights to the card in about so
-  // long altogether, and are not complete while some wait. Without frames each draw brings all.
+  // Begins a frame. Until the next call, all views together spend about `upload_seconds` on uploading large changes of
+  // weights. While changes wait for their upload, views are not complete. If this function is never called, each draw
+  // uploads everything.
   void begin_frame(double upload_seconds);
 
-  // How many pictures are averaged at rest; six unless it is called. Fewer are sooner complete, and less smooth. With 0
-  // a picture at rest stays one of every third pixel: for tests of all that is not a picture.
+  // Sets how many pictures are averaged when nothing moves; the default is six. Fewer pictures are complete sooner, but
+  // less smooth. With 0 the picture stays at every third pixel, for tests that need no good picture.
   void average_at_rest(int pictures);
 
-  // Waits until everything drawn so far is done, for whoever measures.
+  // Waits until everything drawn so far is finished, for time measurements.
   void finish();
 
   PassResources& resources() { return *resources_; }
@@ -50,39 +53,41 @@ class Renderer {
   std::unique_ptr<PassResources> resources_;
 };
 
-// What lies under a pixel.
+// The point of the body that a pixel shows.
 struct Hit {
   Label label = 0;
-  glm::ivec3 voxel{0};   // of the volume, at rest where the body is posed
+  glm::ivec3 voxel{0};   // voxel of the volume; of a posed body, the voxel at the rest position
   glm::dvec3 point{0};   // world, mm
-  glm::dvec3 normal{0};  // world, unit; zero on a cut face or slice
+  glm::dvec3 normal{0};  // world, unit length; zero on a cut face or slice
 };
 
-// A 3D picture, refined over calls: coarse while something moves, full at rest.
+// A 3D picture that is refined over several calls: coarse while something moves, in full resolution when nothing moves.
 class View3D {
  public:
-  // Each pixel of a moving picture shows the ray of a pixel at most two away.
+  // Coarsest scale of a moving picture. With one ray for 5 x 5 pixels, each pixel is at most two pixels from the one
+  // whose ray it shows.
   static constexpr int kCoarsest = 5;
 
   explicit View3D(Renderer& renderer);
   ~View3D();
 
-  // Draws as much as fits the budget; call again while !complete().
-  //   scale  1: full resolution; n: every n-th pixel each way. 0: while something moves, at most every kCoarsest-th, by
-  //          what the last pictures took, so that a frame takes about 33 ms; full resolution after a rest of 100 ms
+  // Draws as much as fits the time limit; call it again while !complete().
+  //   scale  1: full resolution; n: every n-th pixel along each axis. 0: while something moves, the scale adapts to the
+  //          time of the last pictures, up to kCoarsest, so that a frame takes about 33 ms; full resolution after 100
+  //          ms at rest
   //   now    seconds, of any steady clock
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
-  int scale() const;  // of the body in the last picture; 0: there is none
-  std::int64_t rays_followed()
-      const;                 // pixels of all pictures so far whose rays were followed, the covered rectangles'
+  int scale() const;  // scale at which the last picture drew the body; 0: no body
+  // Returns the number of rays in all pictures so far. All pixels of the rectangles that bodies cover are counted.
+  std::int64_t rays_followed() const;
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
 
-  // From the buffers of the last picture; pixel from the top left corner.
+  // Return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;
   std::optional<int> pick_bone(const glm::ivec2& pixel) const;
-  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all that lie there
+  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all bones under the pixel
 
  private:
   struct Impl;
@@ -94,7 +99,7 @@ class SliceView {
   explicit SliceView(Renderer& renderer);
   ~SliceView();
   void draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size);
-  bool complete() const;  // all weights of the last picture were there
+  bool complete() const;  // whether all weights that the last picture shows were uploaded
   unsigned texture() const;
   Image read() const;
 

@@ -21,11 +21,15 @@ namespace limber {
 
 namespace {
 
-constexpr double kPairs = 1000, kPairSpread = 5;  // the data weighs like so many pairs with a spread of so many mm
-constexpr double kNeighbourStretch = 0.07, kRoundStretch = 0.12;  // spread of the logarithms
-constexpr double kHingeAside = 0.1;  // spread of a hinge's turn about other axes than its own, radians
-constexpr double kWringing = 1.5;    // spread of a hand's twist against the upper end of the forearm, radians
-constexpr double kLargestTurn = 0.35, kLargestStretch = 0.15;  // of one step
+// Weight of all data together: that of kPairs pairs of points with a standard deviation of kPairSpread mm.
+constexpr double kPairs = 1000, kPairSpread = 5;
+// Standard deviations of differences of log stretches (logarithms of scale factors): between neighbouring bones, and
+// between the directions along and across one bone.
+constexpr double kNeighbourStretch = 0.07, kRoundStretch = 0.12;
+constexpr double kHingeAside = 0.1;  // standard deviation of a hinge's rotation about other axes, radians
+constexpr double kWringing = 1.5;    // standard deviation of a hand's twist against the forearm's upper end, radians
+// Upper limits on the change of a bone in one step: rotation in radians, and log stretch.
+constexpr double kLargestTurn = 0.35, kLargestStretch = 0.15;
 
 std::string without_side(const std::string& name) {
   for (const char* side : {"Left", "Right"})
@@ -35,7 +39,7 @@ std::string without_side(const std::string& name) {
   return name;
 }
 
-// How far a joint likes to turn away from the atlas's pose, radians.
+// Returns the standard deviation of a joint's rotation from the atlas's rest pose, radians.
 double spread_of_turn(const std::string& bone) {
   const std::string name = without_side(bone);
   if (name == "Spine" || name == "Chest") return 0.15;
@@ -126,12 +130,13 @@ namespace {
 
 struct Pair {
   int bone;
-  glm::dvec3 rest, place;  // of the atlas: at rest, and where it is
-  glm::dvec3 goal, normal;
+  glm::dvec3 rest, place;   // atlas point at rest, and its present position
+  glm::dvec3 goal, normal;  // nearest point of the surface, and its normal
   double weight;
 };
 
-// The points that a stage uses, of the atlas and of the surface to ask from.
+// The points that one stage of the fit uses: atlas points, for which it searches the nearest surface points, and
+// surface points, for which it searches the nearest atlas points.
 struct Asked {
   Asked(const Mannequin& mannequin, const std::vector<AtlasPoint>& points, const FitSurface& surface,
         const FitStage& stage) {
@@ -187,7 +192,7 @@ void add_pairs(const Mannequin& mannequin, const std::vector<AtlasPoint>& points
   });
 }
 
-// The normal equations of all pairs and of what is liked beforehand.
+// The normal equations of one Gauss-Newton step, with the sums over all pairs of points and over the priors.
 class Step {
  public:
   Step(const Mannequin& mannequin, const FitStage& stage) : m_(mannequin) {
@@ -204,15 +209,17 @@ class Step {
   }
 
   void add(const Pair& pair) {
-    // Mostly across the surface, a little towards the point itself, so that nothing slides for ever.
+    // The distance of a pair counts across the surface, and a little along it: otherwise points could move along the
+    // surface without limit.
     constexpr double kAlong = 0.15;
     add(pair, kAlong * glm::dmat3(1) + (1 - kAlong) * glm::outerProduct(pair.normal, pair.normal));
   }
 
-  // All three ways.
+  // Adds a pair whose distance counts equally in all directions.
   void add_free(const Pair& pair) { add(pair, glm::dmat3(1)); }
 
-  //   share  of their usual weight
+  // Adds the priors on rotations and stretches.
+  //   share  factor on their usual weight
   void add_likings(double share = 1) {
     const Armature& rig = m_.atlas().rig;
     for (int b = 0; b < m_.bone_count(); ++b) {
@@ -220,7 +227,7 @@ class Step {
       if (turn_at_[b] < 0 || parent < 0) continue;
       const glm::dvec3 r = rotation_vector(glm::transpose(m_.turn[parent]) * m_.turn[b]);
       const double spread = spread_of_turn(rig.bones[b].name), w = share / (spread * spread);
-      const auto like = [&](const glm::dvec3& direction, double weight) {  // of the parent at rest
+      const auto like = [&](const glm::dvec3& direction, double weight) {  // `direction` is in the parent's rest frame
         const glm::dvec3 row = m_.turn[parent] * direction;
         for (int i = 0; i < 3; ++i) {
           g_[turn_at_[b] + i] += weight * row[i] * glm::dot(r, direction);
@@ -232,7 +239,7 @@ class Step {
         direction[axis] = 1;
         like(direction, w);
       }
-      // A hinge turns about its axis, from where it is straight.
+      // The prior of a hinge: it rotates about its axis only, and not below its minimum.
       if (const JointLimits& limits = rig.bones[b].limits; limits.type == JointLimits::Type::Hinge) {
         const glm::dvec3 side = glm::normalize(
             glm::cross(limits.axis, std::abs(limits.axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
@@ -266,7 +273,7 @@ class Step {
     }
   }
 
-  // The next mannequin.
+  // Solves the equations and returns the mannequin after the step.
   Mannequin taken() {
     gather();
     for (int i = 0; i < count_; ++i) H_(i, i) += 1e-6 + 1e-4 * H_(i, i);
@@ -295,7 +302,9 @@ class Step {
   }
 
  private:
-  // What moves a bone's points: its joint's shift (0), its turn (3), its own stretches (6, 7), what wrings it (8).
+  // The degrees of freedom that move a bone's points, with the first column of each: the shift of the bone's joint (0),
+  // its rotation (3), its two stretches, along and across (6, 7), and the twist that a forearm takes over from its hand
+  // (8).
   static constexpr int kWays = 9;
   using Ways = Eigen::Matrix<double, 3, kWays>;
   struct BoneSum {
@@ -330,7 +339,8 @@ class Step {
     sums_[b].has_pairs = true;
   }
 
-  // The bones' sums carried over to the free numbers, which the bones share with all above them.
+  // Adds the sums of all bones to the equations of the free variables. A bone depends on the variables of all its
+  // ancestors.
   void gather() {
     const Armature& rig = m_.atlas().rig;
     for (int b = 0; b < m_.bone_count(); ++b) {
@@ -385,8 +395,8 @@ class Step {
   std::vector<int> turn_at_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
-  std::vector<BoneSum> sums_;      // per bone, over its pairs
-  std::map<int, Column> columns_;  // how the bone at hand follows the free numbers
+  std::vector<BoneSum> sums_;      // per bone, sums over its pairs
+  std::map<int, Column> columns_;  // derivatives of the current bone's local variables by the free variables
 };
 
 }  // namespace
@@ -410,10 +420,10 @@ void fit(Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, c
 
 namespace {
 
-// What a rig's own lines are: its bones, and the links from a bone to children that start elsewhere.
+// A line segment of a rig: a bone, or the link from the pelvis to a thigh, which does not start at the pelvis's tail.
 struct Segment {
   int bone;
-  glm::dvec3 a, b;  // at rest
+  glm::dvec3 a, b;  // end points at rest
 };
 
 std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uint8_t>& free) {
@@ -428,7 +438,8 @@ std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uin
   return segments;
 }
 
-// Hands are too short and too many-boned to be followed along axes.
+// Returns a byte per bone, 1 for bones that can be fitted to the axis of a rod. Hands and the jaw cannot: hands are too
+// short and have too many bones.
 std::vector<std::uint8_t> without_hands(const Armature& rig) {
   std::vector<std::uint8_t> kept;
   for (const Bone& bone : rig.bones) {
@@ -495,7 +506,7 @@ void fit_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& all_cells, co
 
 namespace {
 
-// Sums of points, from which their best line and the mean squared distance from it follow.
+// Sums over points that give their best-fit line and the mean squared distance from it.
 struct Cloud {
   double count = 0;
   glm::dvec3 sum{0};
@@ -516,7 +527,7 @@ struct Cloud {
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread(), Eigen::EigenvaluesOnly).eigenvalues();
     return std::max(values[0] + values[1], 1e-3);
   }
-  // The best line's point with that coordinate along `axis`.
+  // Returns the point of the best-fit line with a given coordinate along `axis`.
   glm::dvec3 point(const glm::dvec3& axis, double coordinate) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread());
     const Eigen::Vector3d v = solver.eigenvectors().col(2);
@@ -526,7 +537,8 @@ struct Cloud {
   }
 };
 
-// Where the cells between two joints part into two lines best; nothing when there are too few.
+// Returns the position of a joint between a and b at which the cells along the limb split best into two straight lines;
+// none where there are too few cells.
 std::optional<glm::dvec3> parting(const std::vector<glm::dvec3>& cells, const glm::dvec3& a, const glm::dvec3& joint,
                                   const glm::dvec3& b) {
   const glm::dvec3 axis = glm::normalize(b - a);
@@ -563,7 +575,8 @@ void split_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& cells) {
     int upper, lower, end;
     glm::dvec3 joint, goal;
   };
-  std::map<int, std::vector<Limb>> limbs;  // by the upper bone's group: both sides are stretched alike
+  // By group of the upper bone: the limbs of both sides share their stretch.
+  std::map<int, std::vector<Limb>> limbs;
   for (int b = 0; b < mannequin.bone_count(); ++b) {
     const std::string name = without_side(rig.bones[b].name);
     if (name != "Forearm" && name != "Shank") continue;

@@ -43,7 +43,7 @@ std::vector<std::uint8_t> without_digits(const Armature& rig) {
   return free;
 }
 
-// Every start is tried roughly, the best of them in earnest.
+// Fits every initial guess roughly and the best of them more exactly, and keeps the best result.
 void take_best_start(Fitted& result, const FitTarget& target, std::vector<Mannequin> starts) {
   constexpr size_t kInEarnest = 5;
   const auto main = without_digits(result.atlas->rig);
@@ -70,12 +70,13 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
   result.residual = std::sqrt(least);
 }
 
-// Bones that are drawn as rods along a rig: the body's own segments are drawn onto their axes. Kept when nearly all
-// bone lies close around the segments and the long bones' segments run inside bone; anatomical bones do neither.
+// Fits the body's segments to the axes of bones that are drawn as rods along a rig. Returns false and changes nothing
+// unless nearly all bone then lies close to the segments, and the segments of long bones run inside bone. Anatomical
+// bones do not pass this test.
 bool follow_rods(Mannequin& m, const FitTarget& target) {
   const double L = target.length;
   Mannequin rods = m;
-  // Ribs, skull and hip bones stand far off any rig's lines: told after a few steps.
+  // Ribs, skull and hip bones lie far from the lines of any rig. A few iterations are enough to find that out.
   constexpr double kNearlyAll = 0.9;
   FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
   fit_rods(rods, target.bone_cells, *target.skin, stage);
@@ -90,10 +91,11 @@ bool follow_rods(Mannequin& m, const FitTarget& target) {
   return true;
 }
 
-// Of a body that only its rig tells of: its segments drawn into the bones, kept where more bone lies close around them
-// then.
+// Fits the segments of a body of which only the rig is known to the volume's bones. Returns false and changes nothing
+// unless most of the bone lies close to the segments after the fit, and no less than before it.
 bool follow_bones(Mannequin& m, const FitTarget& target) {
-  constexpr double kClose = 0.025, kMost = 0.8;  // of the tissue's diagonal; share of the bone
+  // Distance that counts as close, as a share of the tissue's diagonal; least share of bone that must be close.
+  constexpr double kClose = 0.025, kMost = 0.8;
   const double L = target.length;
   Mannequin drawn = m;
   fit_rods(drawn, target.bone_cells, *target.skin,
@@ -115,11 +117,11 @@ void refine_by_skin(Fitted& result, const FitTarget& target) {
        .stride = 3});
 }
 
-// Hands first, then all, roughly with some of the points and to the end with all of them.
+// Fits the hands first, then the whole body: roughly with some of the points, and at the end with all of them.
 void finish(Mannequin& m, const FitTarget& target, const FitSurface* bone, bool is_rods) {
   const double L = target.length;
   try_hands(m, target, bone);
-  // Voxels coarser than finger bones are thick show skin better than bone.
+  // Where voxels are larger than finger bones are thick, the skin is more exact than the bones.
   const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
   if (is_rods) return;
   for (const auto& [iterations, stride, wide, narrow] :
@@ -149,7 +151,8 @@ void refine(Fitted& result, const FitTarget& target, Progress& progress) {
   progress.update("fitting", 0.6);
   const Mannequin before = m;
   finish(m, target, bone, result.is_rods);
-  // Hands that lie on nothing like a hand may be turned another way.
+  // A hand may be rotated the wrong way if the share of its fingers' points near the skin is below kLittle. Another
+  // rotation is preferred if it multiplies this share by kBetter or more.
   constexpr double kLittle = 0.78, kBetter = 1.05;
   double most = hands_near(m, target);
   for (double twist : {0.0, 3.14, 1.57, -1.57}) {
@@ -182,7 +185,7 @@ std::string_view to_string(JointFit::How how) {
 
 namespace {
 
-// What kind of body a rig is of; none for one whose names mean nothing, or that goes on four legs.
+// Returns the kinds of body that a rig may belong to; none when its names mean nothing or it is four-legged.
 std::vector<AtlasKind> kinds_for(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   std::set<BodyPart> parts;
@@ -197,7 +200,7 @@ std::vector<AtlasKind> kinds_for(const Armature& rig) {
   return {};
 }
 
-// The best of several kinds of body, right and left.
+// Returns the best fit of several kinds of body. Single limbs are tried as right and as left ones.
 Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, Progress& progress) {
   Fitted best;
   int done = 0;
@@ -216,7 +219,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, 
   return best;
 }
 
-// From a bone at a limb's end up to the first that hangs from the trunk.
+// Returns the bones of a limb, from the first one at the trunk down to `last` at its end.
 std::vector<int> limb_to(const Armature& rig, int last) {
   std::vector<int> children(rig.bones.size(), 0), limb{last};
   for (const Bone& bone : rig.bones)
@@ -227,14 +230,18 @@ std::vector<int> limb_to(const Armature& rig, int last) {
   return limb;
 }
 
-// Limbs that end short of the tissue's ends, or beyond them, are aimed at those and stretched; both sides alike.
+// Rotates and stretches limbs that do not reach the ends of the tissue, or reach beyond them, until they end there.
+// Left and right limbs get the same stretch.
 void reach_ends(Mannequin& m, const Occupancy& body) {
-  constexpr double kMost = 0.6, kNear = 0.7;  // logarithm of the stretch; of the limb's length
+  // Upper limits on the log stretch, and on the distance from a limb's end to the tissue's end (share of the limb's
+  // length).
+  constexpr double kMost = 0.6, kNear = 0.7;
   const Armature& rig = m.atlas().rig;
   std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
   for (const Bone& bone : rig.bones)
     if (bone.parent >= 0) is_last[bone.parent] = 0;
-  std::map<int, std::pair<double, int>> stretch;  // by group: sum and count
+  // By group of bones: sum of log stretches, and their number.
+  std::map<int, std::pair<double, int>> stretch;
   struct Aim {
     int root, last;
     glm::dvec3 end;
@@ -265,7 +272,7 @@ void reach_ends(Mannequin& m, const Occupancy& body) {
   }
 }
 
-// A body that is not known but for the rig.
+// Returns the fit of a body of which only the rig is known: its flesh is a round limb about each bone.
 Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& progress) {
   progress.update("starting", 0);
   Fitted tried{.atlas = std::make_shared<BodyAtlas>(capsule_atlas(rig)), .body = std::nullopt, .is_capsules = true};
@@ -276,7 +283,7 @@ Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& pro
   return tried;
 }
 
-// Bones that nothing shows lie as those of the other side do, or as the atlas has them.
+// Gives each bone without visible tissue the rotation of its mirror image on the other side, or else that of the atlas.
 void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
@@ -298,8 +305,8 @@ void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   m.settle();
 }
 
-// The labels that are bone, as the table says. Where it says nothing of any label: the one that lies along the long
-// bones of the body, as it lies by its skin.
+// Returns the labels that are bone by the tissue table. Where the table knows no label, returns the label that lies
+// along the long bones of the body as fitted to the skin, and adds a warning.
 LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted,
                      std::vector<std::string>& warnings) {
   LabelSet labels(65536, 0);
@@ -325,7 +332,7 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   return labels;
 }
 
-// The joints that the names of bones tell, with the body laid along them.
+// Finds the joints between bones that labels name, fits the body to them, and returns them.
 std::vector<NamedJoint> joints_by_name(Fitted& fitted, const FitTarget& target, const LabelVolume& volume,
                                        const TissueTable& tissues) {
   Mannequin& m = *fitted.body;
@@ -375,7 +382,9 @@ void warn_of_joints(AutoFit& result) {
 }  // namespace
 
 double error_by_extents(const LabelVolume& volume) {
-  constexpr double kShare = 0.35;  // of the diagonal: a joint can lie at the other end of a body that is turned around
+  // Estimated error of a joint, as a share of the tissue's diagonal: in a body that is upside down, joints lie at the
+  // other end.
+  constexpr double kShare = 0.35;
   return kShare * glm::length(glm::dvec3(tissue_box(volume).size) * volume.grid.spacing);
 }
 
@@ -394,7 +403,7 @@ Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig) {
     for (const glm::dvec3& p : {bone.head, bone.tail}) least = glm::min(least, p), most = glm::max(most, p);
   const glm::dvec3 sides = high - low, own = most - least;
   const int longest = own.x >= own.y && own.x >= own.z ? 0 : own.y >= own.z ? 1 : 2;
-  constexpr double kInside = 0.96;  // bones end some way below the skin
+  constexpr double kInside = 0.96;  // ratio of the rig's size to the tissue's: bones end below the skin
   const double scale = own[longest] > 0 ? kInside * sides[longest] / own[longest] : 1;
   return moved_rig(rig, glm::dmat3(1), scale, (least + most) / 2.0, (low + high) / 2.0);
 }
@@ -432,18 +441,19 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
       const int match = placed.joint_of[b];
       JointFit joint;
       if (match >= 0) joint = found.how[match];
-      // What rides along is as sure as what it rides on, and a little less.
+      // The joint of a bone that only moves along with its parent is a little less certain than the parent's joint.
       else if (rig.bones[b].parent >= 0)
         joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence,
         joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
-    // A joint gives way by what it may be off, not by much more.
+    // Upper limit on the shift of a joint that lies outside the tissue, as a multiple of its estimated error.
     constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
     result.armature = with_fitted_limits(drawn_inside(placed.armature, volume, target.cuts, free), rig);
-    constexpr double kUnlike = 0.016;  // of the tissue's diagonal
+    // Misfit above which a warning is added, as a share of the tissue's diagonal.
+    constexpr double kUnlike = 0.016;
     if (result.misfit_mm > kUnlike * target.length)
       result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
   }
@@ -455,7 +465,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 std::string suggest_template(const LabelVolume& volume, Progress& progress) {
   const FitTarget target = make_fit_target(volume);
   if (!has_shape(target)) return "arm";
-  // A body has five ends that stand far out, or three at least where arms lie at the trunk.
+  // A body has five prominent ends (head, hands and feet), or at least three where the arms lie against the trunk.
   const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
   if (ends >= 5) {
     const double whole = best_start({AtlasKind::Body}, target, progress).residual;

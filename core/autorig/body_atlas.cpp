@@ -15,11 +15,13 @@ namespace {
 
 using namespace phantom;
 
-constexpr double kSkinStep = 13, kFineSkinStep = 5;  // mm between points of the skin, and on hands and feet
+// Distance between skin points, mm: on the body, and on hands and feet.
+constexpr double kSkinStep = 13, kFineSkinStep = 5;
 constexpr double kBoneStep = 9, kFineBoneStep = 3.2;
 constexpr double kFar = 1e30;
 
-// Points near the zero level of a distance, one to a cell, drawn onto it along the gradient.
+// Returns points on the surface at which a signed distance is zero, at most one per cell. Each point starts at a cell
+// centre near the surface and moves onto it along the gradient.
 template <class Distance>
 std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& distance) {
   const glm::ivec3 cells = glm::max(glm::ivec3(glm::ceil((box.high - box.low) / step)), glm::ivec3(1));
@@ -34,7 +36,7 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
     }
     return g;
   };
-  // Blocks of cells that lie far from the surface are passed over; distances may be off by a quarter.
+  // Blocks of cells far from the surface are skipped. The factor allows for distances that are wrong by a quarter.
   constexpr int kBlock = 4;
   const glm::ivec3 blocks = (cells + kBlock - 1) / kBlock;
   const double far = 1.25 * step * (0.5 + 0.5 * std::sqrt(3.0) * kBlock);
@@ -54,7 +56,7 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
             double d = distance(p);
             if (std::abs(d) > 0.5 * step) continue;
             glm::dvec3 g = gradient(p);
-            constexpr double kOn = 0.05;  // mm
+            constexpr double kOn = 0.05;  // distance at which a point counts as on the surface, mm
             for (int k = 0; k < 3 && std::abs(d) > kOn; ++k) {
               for (int step = 0; step < 2; ++step) {
                 p -= g * (d / std::max(glm::dot(g, g), 0.25));
@@ -72,7 +74,7 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
   return points;
 }
 
-// Which rig bone a point lies beside. The pelvis is as wide as the hips.
+// Finds the rig bone beside which a point lies. The pelvis counts as wide as the hips.
 class Carriers {
  public:
   explicit Carriers(const Armature& rig) {
@@ -95,7 +97,7 @@ class Carriers {
     }
     return best;
   }
-  // The bone beside most of the points.
+  // Returns the rig bone that is nearest to most of the points.
   int carrier(const std::vector<AtlasPoint>& points) const {
     std::map<int, int> votes;
     for (const AtlasPoint& point : points) ++votes[nearest(point.place, {})];
@@ -112,7 +114,8 @@ bool is_fine(const std::string& bone) {
   return false;
 }
 
-// The flesh's union as voxelize() forms it, and the part that a point belongs to.
+// Returns the signed distance to the union of the flesh, as voxelize() forms it. Sets `part` to the part of the flesh
+// that the point belongs to.
 double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nullptr) {
   constexpr double kReach = 60;
   const Box here = Box{p, p}.grown(kReach);
@@ -132,13 +135,14 @@ double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nu
   return least;
 }
 
-// A limb's flesh is carried by its bone or that one's children; the trunk's by whatever lies nearest.
+// Adds the skin points. A limb's points are carried by the limb's bone or its children, the trunk's by the nearest
+// bone.
 void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers, const Box& region) {
   for (int f = 0; f < std::ssize(anatomy.flesh); ++f) {
     const Box box = anatomy.flesh[f].solid.box.grown(8);
     const auto of_this = [&](const glm::dvec3& p) {
       if (!region.touches({p, p})) return kFar;
-      // What is far from this part is not worth the whole union.
+      // Far from this part of the flesh, the part's own distance suffices, and the union is not computed.
       const double own = anatomy.flesh[f].solid.distance(p);
       return own > 45 ? own : skin_distance(anatomy, p);
     };
@@ -160,7 +164,7 @@ void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers
       for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
         if (atlas.rig.bones[b].parent == main) among.push_back(b);
       if (is_fine(atlas.rig.bones[main].name)) points = keep(points_on(box, kFineSkinStep, of_this));
-      // A digit is one piece of flesh.
+      // The flesh of a digit is one part, but several bones carry it.
       if (is_fine(atlas.rig.bones[main].name)) {
         for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
           if (std::find(among.begin(), among.end(), atlas.rig.bones[b].parent) != among.end() &&
@@ -182,8 +186,8 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
     if (!part.solid.box.touches(region)) continue;
     const auto distance = [&](const glm::dvec3& p) { return part.solid.distance(p); };
     const Box box = part.solid.box.grown(4);
-    // A kneecap glides on the thigh, the heel is of the foot, fingers and metacarpals are told apart by their own
-    // segments.
+    // Each bone part is carried by one rig bone as a whole: the kneecap by the thigh, the heel by the foot, and
+    // phalanges and metacarpals by their own segments.
     std::vector<AtlasPoint> points = points_on(box, kBoneStep, distance);
     if (points.empty() || is_fine(atlas.rig.bones[carriers.carrier(points)].name))
       points = points_on(box, kFineBoneStep * 1.5, distance);
@@ -196,9 +200,10 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
   }
 }
 
-// Of all that the rig's bones from `root` on carry; nothing far from them is looked at.
+// Returns the atlas of everything that the rig bone `root` and its descendants carry (empty: the whole body). Shapes
+// far from these bones are skipped.
 BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
-  constexpr double kAround = 150;  // mm, more than flesh is thick
+  constexpr double kAround = 150;  // margin around the bones, mm: more than the thickness of flesh
   Box region{glm::dvec3(kFar), glm::dvec3(-kFar)};
   std::vector<std::uint8_t> below;
   for (const Bone& bone : anatomy.armature.bones) {
@@ -216,7 +221,7 @@ BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
   return atlas;
 }
 
-// What hangs from a bone of a larger atlas, that bone becoming the root; "Right" falls from the names.
+// Returns the part of an atlas below a bone, which becomes the root; "Right" is removed from the names.
 BodyAtlas branch(const BodyAtlas& whole, const std::string& root) {
   BodyAtlas part;
   std::vector<int> number(whole.rig.bones.size(), -1);
@@ -253,7 +258,7 @@ BodyAtlas mirrored(const BodyAtlas& atlas) {
   const glm::dvec3 across(-1, 1, 1);
   for (Bone& bone : result.rig.bones) {
     bone.head *= across, bone.tail *= across;
-    bone.limits.axis *= -across;  // a mirror turns the sense of rotation around
+    bone.limits.axis *= -across;  // a mirror reverses the sense of rotation
   }
   for (auto* points : {&result.skin, &result.bone})
     for (AtlasPoint& point : *points) point.place *= across, point.normal *= across;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What automatic rigging knows of bodies: the skin and the bones of the procedural samples as points on their surfaces,
-// each with the rig bone that carries it. Points lie on the exact surfaces (the samples are signed distances), so they
-// do not depend on any voxel size, and they are closer together on hands and feet.
+// The known bodies of automatic rigging: the skin and the bones of the procedural phantoms as points on their surfaces,
+// each with the rig bone that carries it. The points lie on the exact surfaces (the phantoms are signed distances), so
+// they do not depend on any voxel size. They are denser on hands and feet.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@
 namespace limber {
 
 struct AtlasPoint {
-  glm::dvec3 place{0}, normal{0};  // mm; the normal points out
-  int bone = 0;                    // of the atlas's rig
+  glm::dvec3 place{0}, normal{0};  // position in mm, and unit outward normal
+  int bone = 0;                    // index in the atlas's rig
 };
 
 struct BodyAtlas {
@@ -22,10 +22,10 @@ struct BodyAtlas {
 
 enum class AtlasKind { Body, Arm, ArmWithShoulder, Leg, Hand };
 
-// The limbs are right ones; an arm alone ends at its shoulder, a hand at its wrist, a leg at its hip.
+// Makes the atlas of a body or a right limb. An arm alone ends at the shoulder, a hand at the wrist, a leg at the hip.
 BodyAtlas make_atlas(AtlasKind kind);
 
-// Its mirror image across x = 0, with the same bone names.
+// Returns the atlas mirrored at x = 0, with the same bone names.
 BodyAtlas mirrored(const BodyAtlas& atlas);
 
 }  // namespace limber

@@ -12,7 +12,7 @@ namespace {
 
 double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
 
-// The longest way from a bone's head down to a tail, mm.
+// Returns for each bone the length of the longest path from its head through its descendants to a tail, mm.
 std::vector<double> reach_below(const Armature& rig) {
   std::vector<double> reach(rig.bones.size(), 0);
   for (int b = static_cast<int>(std::ssize(rig.bones)); b-- > 0;) {
@@ -23,9 +23,10 @@ std::vector<double> reach_below(const Armature& rig) {
   return reach;
 }
 
-// Bones that carry two limbs or more, and those between such.
+// Returns a byte per bone, 1 for the trunk: the bones that carry two limbs or more, and those between them and the
+// root.
 std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double>& reach) {
-  constexpr double kLimb = 0.2;  // of the whole
+  constexpr double kLimb = 0.2;  // least length of a limb as a share of the longest path from the root
   const double whole = *std::max_element(reach.begin(), reach.end());
   std::vector<int> limbs(rig.bones.size(), 0);
   for (size_t b = 0; b < rig.bones.size(); ++b)
@@ -44,8 +45,10 @@ std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double
 }
 
 std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t>& trunk) {
-  constexpr double kTrunk = 0.2, kLimb = 0.2, kThinnest = 0.012,
-                   kTaper = 0.85;  // of the trunk's length; of a bone's own
+  // Factors for the radii of the flesh: kTrunk times the trunk's length, and kLimb times a limb bone's length. A radius
+  // is at least kThinnest / 4 times the length of all bones together, and in a limb at most kTaper times the parent's
+  // radius.
+  constexpr double kTrunk = 0.2, kLimb = 0.2, kThinnest = 0.012, kTaper = 0.85;
   double trunk_length = 0, whole = 0;
   for (size_t b = 0; b < rig.bones.size(); ++b)
     whole += length_of(rig.bones[b]), trunk_length += trunk[b] ? length_of(rig.bones[b]) : 0;
@@ -60,7 +63,7 @@ std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t
   return radii;
 }
 
-// Points on a capsule, rows of them across its axis.
+// Adds the points of a capsule in rows across its axis.
 void add_capsule(std::vector<AtlasPoint>& points, const Bone& bone, int number, double radius, double step) {
   const double length = length_of(bone);
   const glm::dvec3 axis = length > 0 ? (bone.tail - bone.head) / length : glm::dvec3(0, 0, 1);
@@ -71,7 +74,7 @@ void add_capsule(std::vector<AtlasPoint>& points, const Bone& bone, int number, 
   const int rows = std::max(4, static_cast<int>(whole / step));
   for (int r = 0; r < rows; ++r) {
     const double s = (r + 0.5) * whole / rows;
-    // Along a hemisphere, the cylinder, the other hemisphere.
+    // The rows run over one hemisphere, the cylinder and the other hemisphere.
     const double angle = s < arc ? (s - arc) / radius : s > arc + length ? (s - arc - length) / radius : 0;
     const double along = std::clamp(s - arc, 0.0, length) + radius * std::sin(angle), around = radius * std::cos(angle);
     const int count = std::max(4, static_cast<int>(6.283185307179586 * around / step));
@@ -97,7 +100,7 @@ BodyAtlas capsule_atlas(const Armature& rig) {
   atlas.rig = rig;
   for (int b = 0; b < std::ssize(rig.bones); ++b)
     add_capsule(atlas.skin, rig.bones[b], b, radii[b], std::min(whole / 45, 0.7 * radii[b] + whole / 200));
-  // What lies in another bone's flesh is no skin.
+  // Points inside another bone's flesh do not lie on the skin.
   constexpr double kInside = 0.97;
   std::erase_if(atlas.skin, [&](const AtlasPoint& point) {
     for (int b = 0; b < std::ssize(rig.bones); ++b)

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A body of which only a rig is known, for automatic rigging: flesh as round limbs about its bones, as thick as bones
-// of their place in a body are for their length. The trunk carries several limbs and is thick, what hangs from it is
-// thinner.
+// Makes an atlas for automatic rigging from a rig alone: the flesh is a round limb about each bone. Its thickness
+// follows from the bone's length: the trunk, which carries several limbs, is thick, and the limbs are thinner.
 #pragma once
 
 #include "core/autorig/body_atlas.h"
 
 namespace limber {
 
-// The atlas has skin and no bones. Throws Error for a rig without length.
+// Returns an atlas with skin and without bones. Throws Error for a rig without length.
 BodyAtlas capsule_atlas(const Armature& rig);
 
-// Whether the rig has a trunk that carries limbs at two places or more: an animal's. A chain has none.
+// Returns whether the rig has a trunk that carries limbs at two points or more, as an animal's does; a chain has none.
 bool has_trunk(const Armature& rig);
 
 }  // namespace limber

@@ -12,14 +12,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouch = 0.03;  // of the tissue's longest side: a face narrower than that is a mere touch
-constexpr double kRare = 0.02;   // share of the surface below which a label does not belong to it
-constexpr double kInner =
-    0.3;  // of a face: so much of such labels is a cut (found: none on soles, 0.6 and more on cuts)
-constexpr double kDeeper = 5;       // mm
-constexpr double kStraight = 0.75;  // of the section there (found: 0.5 at most on soles, 0.9 and more on cuts)
+// Least width of a cut, as a share of the tissue's longest side. A narrower face only touches the tissue's box.
+constexpr double kTouch = 0.03;
+// Share of the tissue's surface below which a label counts as inner.
+constexpr double kRare = 0.02;
+// Share of inner labels in a face of the tissue's box from which on the face is a cut (measured: 0 on soles, 0.6 and
+// more on cuts).
+constexpr double kInner = 0.3;
+constexpr double kDeeper = 5;  // distance from a face to the deeper section that it is compared with, mm
+// Ratio of a face's area to that of the deeper section from which on the face is a cut (measured: 0.5 at most on soles,
+// 0.9 and more on cuts).
+constexpr double kStraight = 0.75;
 
-// Share of each label of the surface, by rows along x; the box's own faces across x tell nothing.
+// Returns the share of each label in the tissue's surface. The surface is measured along rows of x, without the box's
+// own faces across x.
 std::vector<double> surface_shares(const LabelVolume& volume, const VoxelBox& box) {
   std::vector<double> count(65536, 0);
   const int first = box.lowest.x, last = box.lowest.x + box.size.x - 1;
@@ -35,7 +41,7 @@ std::vector<double> surface_shares(const LabelVolume& volume, const VoxelBox& bo
 }
 
 struct Layer {
-  double tissue = 0, inner = 0;  // voxels
+  double tissue = 0, inner = 0;  // number of voxels, and of those with inner labels
 };
 Layer layer_at(const LabelVolume& volume, const VoxelBox& box, const std::vector<double>& on_surface, int axis,
                int at) {
@@ -86,7 +92,7 @@ double beyond(const std::vector<TissueCut>& cuts, const glm::dvec3& place) {
 }
 
 void drop_cut_faces(std::vector<SurfacePoint>& points, const std::vector<TissueCut>& cuts, double near) {
-  constexpr double kFacing = 0.6;  // cosine
+  constexpr double kFacing = 0.6;  // a point faces the cut where the cosine between the normals is larger
   std::erase_if(points, [&](const SurfacePoint& point) {
     return std::any_of(cuts.begin(), cuts.end(), [&](const TissueCut& cut) {
       return std::abs(glm::dot(cut.normal, point.place) - cut.offset) < near &&

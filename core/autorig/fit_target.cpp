@@ -12,12 +12,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kCells = 380;  // along the longest side of the tissue
+constexpr double kCells = 380;  // number of cells along the longest side of the tissue
 constexpr double kRoughCells = 190;
-constexpr double kLeastBone = 0.004;  // of all tissue: less bone than that is no skeleton
+constexpr double kLeastBone = 0.004;  // share of all tissue below which bone tissue is too little for a skeleton
 constexpr std::int64_t kBoneCells = 6000;
 
-// The centres of at most so many filled cells, evenly chosen.
+// Returns the centres of at most `most` filled cells, evenly spread over all of them.
 std::vector<glm::dvec3> filled_cells(const Occupancy& occupancy, std::int64_t most) {
   std::vector<std::int64_t> filled;
   for (std::int64_t i = 0; i < std::ssize(occupancy.share); ++i)

@@ -12,12 +12,16 @@ namespace limber {
 
 namespace {
 
-// Radians. A range that begins within this of straight bends one way only, and no such limb is bent back by more.
+// Angle in radians. A hinge whose range begins within this angle of straight counts as bending one way only, and such a
+// limb never rests overextended by more than this angle.
 constexpr double kBentBack = 15 * std::numbers::pi / 180;
-constexpr double kFarOff = 35 * std::numbers::pi / 180;  // more than a forearm that stands off to the side explains
+// Angle between a hinge's axis and the axis of its bend above which the hinge's axis counts as wrong, radians. The axis
+// of a forearm that points sideways deviates by less.
+constexpr double kFarOff = 35 * std::numbers::pi / 180;
 
-// Of an elbow or a knee that rests clearly bent, the axis across its bones where the one that was carried along lies
-// far off that: how the limb is turned about its own length shows in its bend alone.
+// Returns the hinge axis of an elbow or knee. `carried` is the axis that was rotated along with the bone. If the limb
+// rests clearly bent and `carried` is far from the axis at right angles to its two bones, returns that one: only the
+// bend shows how a limb is rotated about its own length.
 glm::dvec3 axis_of_bend(const Armature& rig, int index, const glm::dvec3& carried) {
   const Bone& bone = rig.bones[index];
   const Bone& parent = rig.bones[bone.parent];

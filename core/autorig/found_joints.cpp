@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// Confidence in the heads of the fitted body's bones: how much of the surface on either side of the joint lies where it
-// should.
+// Returns the confidence in the joint at the head of each bone, [0, 1]. It is the geometric mean of two shares: that of
+// the bone's surface, and that of its parent's surface, which lie near the volume's surface.
 std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
@@ -32,11 +32,11 @@ std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   return result;
 }
 
-// Per bone: how little its surface and its parent's is that of the body that was laid over it, 0 for the same and 1 for
-// another shape.
+// Limits on the distance of two surfaces by which strangeness() compares their shapes, mm. Up to `same`, the surface
+// has the atlas's shape; from `other` mm more on, it has another one. `of_cell` is the distance that voxels alone
+// cause, as a share of a cell's size.
 struct Likeness {
-  double same, other,
-      of_cell;  // mm off for the same shape, mm more for another, and what voxels alone put it off, of a cell
+  double same, other, of_cell;
 };
 
 std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint>& points, const FitSurface& surface,
@@ -69,7 +69,8 @@ std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint
   return result;
 }
 
-// By its skin; and where bones are known that are alike, it is alike, however fat lies over them.
+// Returns for each bone how much the body's skin differs in shape from the atlas's, [0, 1]. Where bone tissue is known
+// and has the shape of the atlas's bones, the difference counts as small, whatever fat lies over them.
 std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   std::vector<double> result =
@@ -81,9 +82,11 @@ std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
   return result;
 }
 
-// Of the whole: the mean of the limbs and the trunk, and 1 where voxels are too coarse to tell.
+// Returns how much the whole body differs in shape from the atlas, [0, 1]: the mean over the bones of limbs and trunk,
+// and 1 where voxels are too coarse to tell.
 double whole_strangeness(const Fitted& fitted, const std::vector<double>& strange, const FitTarget& target) {
-  constexpr double kFine = 5, kCoarse = 9;  // mm, of a cell
+  // Sizes of a cell up to which shapes can be compared, and from which on they cannot be compared at all, mm.
+  constexpr double kFine = 5, kCoarse = 9;
   double sum = 0;
   int bones = 0;
   for (size_t b = 0; b < strange.size(); ++b)
@@ -92,11 +95,12 @@ double whole_strangeness(const Fitted& fitted, const std::vector<double>& strang
   return std::max(bones ? sum / bones : 1.0, std::clamp((target.cell / size - kFine) / (kCoarse - kFine), 0.0, 1.0));
 }
 
-// Of a body that only its rig tells of the skin shows how limbs run, and their ends, but not where along them they
-// bend; a limb that lies on nothing may lie anywhere about its root.
+// Sets the errors of joints for a body of which only the rig is known. The skin shows the direction and the ends of
+// limbs, but not where along them they bend. A limb that lies on no skin may lie anywhere around its root.
 void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const FitTarget& target) {
-  constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75,
-                   kEnough = 0.8;  // of the tissue's diagonal, and of a bone's length
+  // Errors: kOfWhole as a share of the tissue's diagonal, kOfBone of a bone's length, and kLost of the length of a bone
+  // in a lost limb. A limb is not lost where its confidence reaches kEnough.
+  constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75, kEnough = 0.8;
   const Armature& rig = m.atlas().rig;
   std::vector<double> lost(rig.bones.size(), 0);
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
@@ -111,12 +115,13 @@ void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const M
 }  // namespace
 
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target) {
-  constexpr double kLeast = 0.3;  // of a bone's skin
+  constexpr double kLeast = 0.3;  // share of a bone's skin points inside the cuts from which on the bone is seen
   const Mannequin& m = *fitted.body;
   std::vector<double> all(m.bone_count(), 0), inside(all);
   for (const AtlasPoint& point : m.atlas().skin)
     ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
-  // Pieces of the skeleton by the bone they hang from.
+  // The connected group of seen bones that each bone belongs to; -1: not seen. A group is numbered by its topmost
+  // bone's unseen parent, or by the root.
   std::vector<int> piece(m.bone_count(), -1);
   std::vector<double> weight(m.bone_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -134,8 +139,9 @@ std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& targ
 
 FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   using How = JointFit::How;
-  // mm within which nine of ten such joints lay on segmented adults, beside those that another shape adds. Of hips even
-  // the authors of rigs differ by 5 cm where skin is all there is.
+  // Errors in mm within which nine of ten joints lay on segmented adults. kLeastError is that for a body of the atlas's
+  // shape; the others are added to it for a body of another shape. For hips even the authors of rigs differ by 5 cm
+  // where only skin is known.
   constexpr double kLeastError = 4, kByBone = 14, kCollarByBone = 28, kFingerByBone = 14, kBySkin = 22,
                    kShoulderBySkin = 26, kCollarBySkin = 36, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15,
                    kNeckByGirth = 22, kByBall = 9, kByAxis = 16;
@@ -144,7 +150,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
   const std::vector<double> near = shares_near(fitted, target);
   const std::vector<double> strange = strangeness(fitted, target);
-  // A body of another build puts its joints elsewhere also where a bone by itself looks alike, as thin ones always do.
+  // A body of another build has its joints in other positions, even where the surface at a single bone looks alike, as
+  // it always does at thin bones.
   const double whole = whole_strangeness(fitted, strange, target);
   FoundJoints found;
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -172,14 +179,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
-    // Two ways of finding it that disagree: skin alone slides along a limb, and a joint put between the two is told by
-    // neither.
+    // Where the girth landmark and the fit to the skin disagree, the error grows. The fit to the skin may be shifted
+    // along a limb, and neither of the two supports a joint between their positions.
     if (how == How::Girth && joint.how == How::Skin)
       joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
     if (weight > 0.5) joint.how = how;
   };
-  // Skin alone slides along a limb by a tenth of the bone above, rarely more: a waist farther off is another one. Rods
-  // say nothing of the hand, which may slide far.
+  // Returns the weight of a landmark by its distance from the fitted joint. The fit to the skin is off along a limb by
+  // up to a tenth of the bone above, rarely more, so a waist farther away does not belong to this joint. A fit to rods
+  // does not locate the hand, which may be far off, so there the distance does not count.
   const auto believable = [&](const JointLandmark& mark) {
     constexpr double kSlides = 0.12, kNever = 0.24;
     const int above = rig.bones[mark.bone].parent;
@@ -190,14 +198,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   };
   for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
     const std::string& name = rig.bones[mark.bone].name;
-    // Bones tell elbow and wrist themselves. Of the knee they show the condyles' middle and skin the gap below it; rigs
-    // bend in between.
+    // Weight of the landmark, which is a waist of the limb. The surface of bones locates elbow and wrist without it. At
+    // the knee, bones show the middle of the condyles and skin the gap below them; rigs bend halfway between.
     const double share = name == "Neck"   ? 1
                          : by_bone        ? (name.ends_with("Shank") ? 0.5 : 0)
                          : fitted.is_rods ? double(name.ends_with("Hand"))
                                           : 1;
-    // Flesh folds where a limb is bent, and its waist moves down.
-    constexpr double kBent = 45, kHardlyBent = 0.09;  // mm at a right angle, radians
+    // In a bent limb the flesh folds, so that the waist lies further down. kBent is the error in mm that a right angle
+    // adds, and kHardlyBent the sine of the largest bend that adds no error.
+    constexpr double kBent = 45, kHardlyBent = 0.09;
     const double bent = kBent * std::max(0.0, std::sin(mark.bend) - kHardlyBent);
     take(mark, How::Girth, share * strange[mark.bone] * believable(mark),
          (name == "Neck"           ? kNeckByGirth
@@ -205,7 +214,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                    : kByGirth) +
              bent);
   }
-  // A hand that lies against something has no wrist to be seen, and slides.
+  // Error of a hand that lies against other tissue, mm. The skin has no waist there, so the joint may be off along the
+  // limb.
   constexpr double kHandSlides = 38;
   for (int b = 0; b < m.bone_count(); ++b)
     if (found.how[b].how == How::Skin && rig.bones[b].name.ends_with("Hand"))
@@ -213,12 +223,13 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone))
       take(mark, How::Ball, strange[mark.bone], kByBall);
-  // Where little of the body lies where it should, nothing is sure, whatever was found there.
-  // Bones of limbs are much alike, those of trunks are not, and a ball is told by itself.
-  constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100,
-                   kLimbFarOff = 300;  // share, and mm for a share of 1 less
-  // Of the tissue's diagonal: whole bodies of other shapes came out at 0.011 at most, parts at 0.015 with joints 11 mm
-  // off, at 0.019 with 50 mm, and limbs laid the wrong way round above that.
+  // Where little of the surface fits, no joint is certain, whatever it was found by. Confidences below kFew, kFewOfLimb
+  // and kFewOfHand add an error of kFarOff or kLimbFarOff mm times the missing share. The limits differ since limb
+  // bones of different bodies are much alike, trunk bones are not, and a ball is recognised by itself.
+  constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;
+  // A residual above kUnlike, as a share of the tissue's diagonal, adds an error. Measured residuals: 0.011 at most on
+  // whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off, and more
+  // on limbs that were fitted the wrong way round.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
   const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.residual) / target.length - kUnlike);
   const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
@@ -230,7 +241,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                                                  : kFewOfLimb;
     return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
   };
-  // Fingers that lie on nothing like fingers may be those of a hand that is turned another way.
+  // Fingers far from the skin may belong to a hand that is rotated the wrong way, so the error of their joints grows.
   constexpr double kHandShare = 0.85, kHandFarOff = 120;
   if (!fitted.is_capsules) {
     const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
@@ -238,7 +249,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
       if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
   }
   if (fitted.is_capsules) doubt_capsules(found, near, m, target);
-  // Half sure of what may lie off by as much as a joint is thick.
+  // Error that halves the confidence, mm: the thickness of a joint.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
     JointFit& joint = found.how[b];
@@ -250,7 +261,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
 }
 
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
-  // That the body puts its joints elsewhere between the same bones moves nothing else.
+  // Part of a joint's shift that the joints below do not follow, as a share of the tissue's diagonal. It is only
+  // another convention for the position of the joint between the same two bones.
   constexpr double kElsewhere = 0.009;
   std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
   std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
@@ -270,10 +282,11 @@ void take_named(FoundJoints& found, const Armature& rig, const std::vector<Named
 
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings) {
-  constexpr double kNear = 0.05,
-                   kStrange = 5;  // of the tissue's diagonal; mm of error from which a joint is of another shape
-  constexpr double kLeast = 36, kGrowth = 0.33;  // mm off at the cut, and more with every mm beyond it
-  constexpr double kSureBall = 12;               // mm: a ball that is this sure is one, however near the cut
+  // Distance from a cut below which a joint is near it, as a share of the tissue's diagonal; and error in mm above
+  // which the body at a joint does not have the atlas's shape.
+  constexpr double kNear = 0.05, kStrange = 5;
+  constexpr double kLeast = 36, kGrowth = 0.33;  // error at the cut in mm, and its growth per mm beyond the cut
+  constexpr double kSureBall = 12;               // error below which a ball joint is certain even near a cut, mm
   const Armature& rig = fitted.atlas->rig;
   const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
   std::string unseen, doubted;
@@ -288,7 +301,7 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       const double from_cut = out > 0 ? out : 0.1 * target.length;
       joint = {
           .how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
-      // Each bone on the way from what is seen may be turned otherwise.
+      // Each unseen bone between a joint and the seen bones may be rotated differently, which adds to the error.
       if (parent >= 0 && !seen[parent])
         joint.error = std::max(
             joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
@@ -301,7 +314,7 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       if (!is_digit(rig.bones[b].name)) list(doubted, b);
     }
   }
-  // And what lies next to such a joint slides with it.
+  // The joints next to an uncertain joint are uncertain too: they take a share of its error, and less confidence.
   constexpr double kShareOfNeighboursError = 0.35, kMaxErrorMm = 100, kLessConfidence = 0.6;
   const std::vector<JointFit> own = found.how;
   const auto is_doubted = [&](int b) {
@@ -319,7 +332,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
     found.how[b].error = std::max(own[b].error, kShareOfNeighboursError * std::min(kMaxErrorMm, beside));
     found.how[b].confidence *= kLessConfidence;
   }
-  // A limb alone that is cut off at its upper end may be longer or shorter than it looks, from its free end on.
+  // A single limb that is cut off at its upper end may be longer or shorter than it looks. So the error of a joint is
+  // at least this share of its distance from the limb's free end.
   constexpr double kLimbLengthUncertainty = 0.13;
   const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(),
                                   [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the joints of a fitted body lie, how each was told and how far it may be off: by how much the body is of
-// another shape than the one laid over it, by landmarks of its own that agree or do not, and by how much of the surface
-// lies where it should.
+// Finds the joint positions of a fitted body, by which evidence and how exactly each was found. The estimated error
+// follows from how much the body differs in shape from the fitted atlas, from whether landmarks of the body agree, and
+// from the share of the surface that lies close to the atlas.
 #pragma once
 
 #include <string>
@@ -18,19 +18,22 @@ struct FoundJoints {
   std::vector<JointFit> how;
 };
 
-// Where the body is of another shape than the one laid over it, its own landmarks say more.
+// Returns the joints of a fitted body. The more the body's shape differs from the atlas, the more the landmarks of the
+// body itself count.
 FoundJoints found_joints(const Fitted& fitted, const FitTarget& target);
 
-// What the names of bones say counts; what hangs from such a joint moves along.
-//   size  mm, the diagonal of the tissue's extent
+// Replaces joints by those that were found between named bones. The joints below a replaced one move along.
+//   size  diagonal of the tissue's extent, mm
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size);
 
-// What lies beyond a cut is laid on by proportion alone, and a limb that is cut off looks short.
+// Raises the errors of joints near and beyond cuts: beyond a cut they are placed by proportion alone, and a limb that
+// is cut off looks short. Adds a warning that names them.
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings);
 
-// A byte per bone: those that are seen well enough, and from one to the next. Those beyond a cut are not, nor a hand
-// whose forearm is cut away; but both legs of a body without hips are, since they hang from one bone.
+// Returns a byte per bone, 1 for the bones of the largest connected part of the body with enough skin inside the cuts.
+// A hand whose forearm is cut away is not among them. Both legs of a body without hips are among them, since they have
+// the same parent.
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target);
 
 }  // namespace limber

@@ -10,11 +10,11 @@ namespace limber {
 
 namespace {
 
-// A hand and what it is compared by.
+// The bones of a hand, and the settings of its fit.
 struct HandFit {
-  int hand = 0, knuckle = 0, index = 0, little = 0;
+  int hand = 0, knuckle = 0, index = 0, little = 0;  // the hand, and the proximal bones of three fingers
   FitStage stage;
-  double palm = 0;
+  double palm = 0;  // distance from the wrist to the middle knuckle, mm
 };
 
 std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
@@ -37,12 +37,12 @@ std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
   return fit;
 }
 
-// The hand of one side bent like the other's.
+// Bends the hand of one side like the mirrored hand of the other side.
 void bend_alike(Mannequin& m, int hand, int other) {
   const Armature& rig = m.atlas().rig;
   const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
   const std::vector<std::uint8_t> below = branch_of(rig, hand);
-  // Bones of both hands stand in the same order.
+  // The bones of both hands have the same order in the rig.
   for (int b = hand; b < m.bone_count(); ++b)
     if (below[b]) {
       const int there = other + b - hand;
@@ -52,8 +52,8 @@ void bend_alike(Mannequin& m, int hand, int other) {
   m.settle();
 }
 
-// The hands open and of the size that the limbs have: what was drawn onto fingers that are not its own is bent and
-// shrunk.
+// Returns the body with open hands in the scale of its limbs. Hands that were fitted to the wrong fingers are bent and
+// shrunk, so their fit starts again from open hands.
 Mannequin with_fresh_hands(const Mannequin& m) {
   Mannequin fresh = m;
   const Armature& rig = m.atlas().rig;
@@ -77,7 +77,7 @@ Mannequin with_fresh_hands(const Mannequin& m) {
 
 void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
   const Armature& rig = m.atlas().rig;
-  std::vector<std::pair<int, double>> hands;  // and their misfit
+  std::vector<std::pair<int, double>> hands;  // each hand with its residual
   const auto keep_better = [&](Mannequin& best, double& least, Mannequin tried, const HandFit& hand, double share) {
     fit(tried, &*target.skin, bone, hand.stage);
     const double off = residual(tried, &*target.skin, bone, 0.25 * hand.palm, hand.stage);
@@ -96,7 +96,8 @@ void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
         if (std::abs(twist) > 1 && aside != 0) continue;
         Mannequin tried = m;
         tried.turn_branch(b, glm::mat3_cast(glm::angleAxis(twist, along) * glm::angleAxis(aside, normal)));
-        keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);  // without need it stays as it is
+        // A rotated hand must be clearly better: its residual must be lower by 3 %.
+        keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);
       }
     m = best;
     hands.push_back({b, least});
@@ -126,7 +127,7 @@ Mannequin with_turned_hands(const Mannequin& m, double twist, const FitTarget& t
                               left ? -twist : twist, glm::normalize(turned.joint(hand->knuckle) - turned.joint(b)))));
     fit(turned, &*target.skin, nullptr, stage);
   }
-  // All but the arms keeps its place and size, which nothing asked for in that.
+  // Only the arms may change: position and sizes of the rest of the body are restored.
   turned.root = m.root;
   std::vector<std::uint8_t> of_arm(m.group_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b)

@@ -21,20 +21,21 @@ namespace limber {
 
 namespace {
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kFitStep = 3;     // degrees between the angles that pay; the margin bridges what lies between
-constexpr double kVerifyStep = 1;  // degrees between the angles at which voxels are counted
-constexpr double kLever = 100;     // mm: a tilt of the axis costs what it moves at this distance
-constexpr double kRound = 0.2;     // mm: depths below it are paid by their square, larger ones by their length
-constexpr double kNear = 20;       // mm: bone that never comes this near to the other side has no say
+// Step between the angles of the fit, degrees. The margin covers the angles in between.
+constexpr double kFitStep = 3;
+constexpr double kVerifyStep = 1;  // step between the angles at which colliding voxels are counted, degrees
+constexpr double kLever = 100;     // lever arm by which a tilt of the axis is converted to a shift, mm
+constexpr double kRound = 0.2;     // depth below which the cost is quadratic and above which it is linear, mm
+constexpr double kNear = 20;       // bone farther than this from the other side at all angles is ignored, mm
 
-// Shift across the axis along its two normals, and tilt towards them times kLever; all mm.
+// A motion of the axis: shifts along its two normals, and tilts (radians) towards them times kLever; all in mm.
 using Motion4 = Eigen::Vector4d;
 
 struct Axis {
-  glm::dvec3 place, direction;  // world, mm; unit
+  glm::dvec3 place, direction;  // a point in world coordinates, mm, and the unit direction
 };
 
-// The axis at rest and the directions it may move along.
+// The unmoved axis and the two directions along which it may move.
 struct AxisFrame {
   Axis axis;
   glm::dvec3 across[2];
@@ -59,16 +60,16 @@ AffineTransform operator*(const AffineTransform& a, const AffineTransform& b) {
   return {a.linear * b.linear, a.linear * b.offset + a.offset};
 }
 
-// Voxel to voxel: where a turn by `radians` about the axis carries what it moves.
+// Returns the transform, in voxel coordinates, of a rotation by `radians` about the axis.
 AffineTransform turned_voxel(const Grid& grid, const Axis& axis, double radians) {
   const RigidTransform turn = rotation_about(axis.place, glm::angleAxis(radians, axis.direction));
   return voxel_from_world(grid) * affine(turn) * world_from_voxel(grid);
 }
 
-// Bone of one side of the joint, near it.
+// The bone voxels of one side of the joint: the fixed or the turning bones.
 struct Side {
-  VoxelBox box;                      // around its voxels, three voxels wider
-  std::vector<std::uint8_t> inside;  // #box
+  VoxelBox box;                      // around the voxels, with a margin of three voxels
+  std::vector<std::uint8_t> inside;  // one byte per voxel of the box
   std::vector<glm::ivec3> voxels;
 
   bool has(const glm::ivec3& v) const { return box.contains(v) && inside[box.index(v)]; }
@@ -87,8 +88,8 @@ Side gather_side(const std::vector<glm::ivec3>& voxels) {
   return side;
 }
 
-// Who paints a rest point as bone, by the rule of the rigid painting (core/deform/inverse_map.h): the label read there
-// is bone, and the nearest bone voxel's side owns it.
+// Decides which side of the joint owns a rest point, by the same rule by which rigid bones are written
+// (core/deform/inverse_map.h): the label read there is bone, and the side of the nearest bone voxel owns the point.
 class PaintedBone {
  public:
   PaintedBone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts, const Side& fixed,
@@ -125,16 +126,16 @@ class PaintedBone {
   const Side &fixed_, &turning_;
 };
 
-// Distance to the surface between voxels, mm, negative inside.
+// Returns the signed distance of each voxel of the box to the surface of a side, mm, negative inside.
 std::vector<float> surface_distance(const Side& side, const glm::dvec3& spacing, Progress& progress) {
   std::vector<float> distance = signed_distance(side.box, side.inside, spacing, progress);
-  // From voxel centres to the border between them.
+  // Converts distances between voxel centres to distances to the border between voxels.
   const auto half = static_cast<float>(std::min({spacing.x, spacing.y, spacing.z}) / 2);
   for (float& d : distance) d += d > 0 ? -half : half;
   return distance;
 }
 
-// A value and its gradient per voxel; none outside the box.
+// An interpolated value, and its gradient: the change per voxel.
 struct Sampled {
   double value;
   glm::dvec3 gradient;
@@ -161,7 +162,7 @@ std::optional<Sampled> sample(const VoxelBox& box, const std::vector<float>& fie
   return result;
 }
 
-// Of the nearest voxel; infinity outside the box.
+// Returns the value of the nearest voxel; infinity outside the box.
 float nearest_value(const VoxelBox& box, const std::vector<float>& field, const glm::dvec3& point) {
   const glm::dvec3 at = point - glm::dvec3(box.lowest) + 0.5;
   const bool inside =
@@ -179,7 +180,7 @@ std::vector<double> angles_between(double minimum_degrees, double maximum_degree
   return angles;
 }
 
-// Sum of squared depths beyond the margin and its derivatives, Gauss-Newton's.
+// The cost of all depths of collision beyond the margin, with its Gauss-Newton derivatives.
 struct Collision {
   double cost = 0;
   Motion4 gradient = Motion4::Zero();
@@ -213,7 +214,7 @@ class JointProblem {
 
   const AxisFrame& frame() const { return frame_; }
 
-  // Voxels that both sides would paint, at the worst angle of the range and over all angles.
+  // The number of voxels that both sides would fill: at the worst angle of the range, and summed over all angles.
   struct Overlap {
     std::int64_t most = 0, sum = 0;
   };
@@ -230,7 +231,7 @@ class JointProblem {
             std::accumulate(count.begin(), count.end(), std::int64_t{0})};
   }
 
-  // The voxels of both sides, at rest, that are painted twice at some angle; each once, x fastest.
+  // Returns the rest voxels of both sides that collide at some angle; each once, x fastest.
   std::vector<glm::ivec3> colliding(const Motion4& motion) const {
     const Axis axis = frame_.moved(motion);
     std::vector<glm::ivec3> all;
@@ -251,7 +252,7 @@ class JointProblem {
     return all;
   }
 
-  // Least motion under a weight of the collisions, from `start`.
+  // Minimizes the squared motion plus `weight` times the collisions, starting from `motion`.
   Motion4 solve(Motion4 motion, double weight, double margin) const {
     constexpr int kIterations = 12;
     double damping = 1e-3;
@@ -279,7 +280,8 @@ class JointProblem {
   }
 
  private:
-  // Voxels of either side that come near the other at some angle; of the turning side only those of its surface.
+  // Selects the voxels of both sides that come near the other side at some angle. Of the turning side, only surface
+  // voxels are selected.
   void choose_points() {
     std::vector<AffineTransform> there, back;
     for (double angle : fit_angles_) {
@@ -296,7 +298,8 @@ class JointProblem {
       if (comes_near(v, back, turning_.box, from_turning_)) exposed_.push_back(v);
   }
 
-  // Of a voxel of the fixed side, by where it was before the turn: whether bone of the turning side lay there.
+  // Returns whether bone of the turning side enters a voxel of the fixed side.
+  //   rest  the voxel's position rotated back: the rest point that the rotation takes to the voxel
   bool is_entered(const glm::dvec3& rest) const {
     return nearest_value(turning_.box, from_turning_, rest) < reach_ && painted_.by_turning(rest);
   }
@@ -316,7 +319,7 @@ class JointProblem {
   Collision collision(const Motion4& motion, double margin) const {
     const Axis axis = frame_.moved(motion);
     std::array<Axis, 4> stepped;
-    constexpr double kStep = 1e-4;  // mm
+    constexpr double kStep = 1e-4;  // step of the finite differences, mm
     for (int j = 0; j < 4; ++j) stepped[j] = frame_.moved(motion + kStep * Motion4::Unit(j));
 
     std::vector<Collision> parts(fit_angles_.size());
@@ -355,9 +358,9 @@ class JointProblem {
   Progress& progress_;
   std::vector<double> fit_angles_, verify_angles_;
   std::vector<float> from_fixed_, from_turning_;  // signed distances in the sides' boxes, mm
-  double reach_;                                  // mm: the diagonal of a voxel
-  std::vector<glm::dvec3> points_;                // of the turning side, that may enter the fixed one
-  std::vector<glm::ivec3> exposed_;               // of the fixed side, that may be entered
+  double reach_;                                  // diagonal of a voxel, mm
+  std::vector<glm::dvec3> points_;                // surface voxels of the turning side that may enter the fixed side
+  std::vector<glm::ivec3> exposed_;               // voxels of the fixed side that may be entered
 };
 
 struct Fit {
@@ -370,14 +373,14 @@ bool within(const Motion4& motion, const FitJoint& settings) {
          std::atan(motion.tail<2>().norm() / kLever) <= settings.most_turned_degrees * kDegree;
 }
 
-// Fewer collisions, and of as few the smaller motion.
+// Returns whether fit a has fewer collisions than b, or as many and a smaller motion.
 bool better(const Fit& a, const Fit& b) {
   if (a.overlap.sum != b.overlap.sum) return a.overlap.sum < b.overlap.sum;
   return a.motion.squaredNorm() < b.motion.squaredNorm();
 }
 
-// Counts are steps, not slopes: the last voxels are cleared, and the motion made smaller, by trying steps along each
-// pair of the four directions, halved when none helps [Hooke & Jeeves 1961].
+// Removes the last collisions and shortens the motion by trying steps along each pair of the four directions, halved
+// when none helps [Hooke & Jeeves 1961]: voxel counts are not differentiable.
 Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
   for (double step = 2; step > 0.2; step /= 2) {
     for (bool moved = true; moved;) {
@@ -401,10 +404,10 @@ Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
   return best;
 }
 
-// The least motion found that no voxel collides with, or the one with the fewest collisions.
+// Returns the smallest motion found without collisions, or the one with the fewest collisions.
 Fit least_motion(const JointProblem& problem, double voxel, const FitJoint& settings) {
   Fit best{Motion4::Zero(), problem.overlap(Motion4::Zero())};
-  // With the smaller margin axes move least; where that leaves voxels colliding, the larger one opens the joint more.
+  // The smaller margin moves the axis least; where voxels still collide, the larger one opens the joint more.
   for (const double margin : {0.375 * voxel, 0.75 * voxel}) {
     Motion4 motion = Motion4::Zero();
     for (double weight = 1.0 / 16; weight <= 256 && best.overlap.sum; weight *= 8) {
@@ -419,7 +422,7 @@ Fit least_motion(const JointProblem& problem, double voxel, const FitJoint& sett
   return best;
 }
 
-// Bones that turn with `bone`: itself and all below it.
+// Returns the bones that rotate with `bone`: itself and its descendants.
 std::vector<bool> turning_bones(const Armature& armature, int bone) {
   std::vector<bool> turns(armature.bones.size());
   turns[bone] = true;
@@ -472,9 +475,9 @@ AxisFit fit_axis(const LabelVolume& volume, const TissueVoxels& tissue, const Bo
   return fitted;
 }
 
-// The head goes to the fitted axis, and the parent's tail goes along where it met the head.
+// Moves the head of a bone, and the parent's tail with it where the two coincided.
 void move_head(Armature& armature, int bone, const glm::dvec3& head) {
-  constexpr double kMet = 0.1;  // mm
+  constexpr double kMet = 0.1;  // distance below which head and tail coincide, mm
   const int parent = armature.bones[bone].parent;
   if (parent >= 0 && glm::length(armature.bones[parent].tail - armature.bones[bone].head) < kMet)
     armature.bones[parent].tail = head;

@@ -13,23 +13,23 @@ namespace limber {
 
 namespace {
 
-// --- girth
-// ----------------------------------------------------------------------------------------------------------------
+// --- girth landmarks
 
 struct Section {
-  double area = 0;  // mm2; 0 where there is none
+  double area = 0;  // mm^2; 0: no tissue
   glm::dvec3 centre{0};
-  double depth = 0;      // mm, its standard deviation along `forward` doubled twice: the thickness of a bar as deep
-  bool is_open = false;  // goes on beyond what was looked at: the limb lies against something else
+  double depth = 0;  // extent along `forward`, four times the standard deviation, mm
+  // true: the section reaches the edge of the examined square, since the limb lies against other tissue.
+  bool is_open = false;
 };
 
-// The tissue in a plane that hangs together with its middle.
+// Returns the cross-section of the tissue in a plane: the connected tissue nearest to the plane's middle.
 Section section_at(const Occupancy& body, const AffineTransform& to_cell, const glm::dvec3& middle,
                    const glm::dvec3& normal, const glm::dvec3& forward, double reach) {
   const double step = std::max({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z, reach / 40});
   const int half = static_cast<int>(reach / step), side = 2 * half + 1;
   const glm::dvec3 u = glm::normalize(forward - normal * glm::dot(forward, normal)), v = glm::cross(normal, u);
-  std::vector<std::uint8_t> filled(side * side);  // 1: tissue, 2: counted
+  std::vector<std::uint8_t> filled(side * side);  // 1: tissue, 2: tissue that was counted
   std::pair<int, int> seed(1 << 30, -1);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
@@ -67,7 +67,8 @@ Section section_at(const Occupancy& body, const AffineTransform& to_cell, const 
   return section;
 }
 
-// Sections along a line that bends once, at its corner; `from` and `to` in mm from the corner.
+// A line along a limb that bends once, at its corner, with the orientation and size of its cross-sections. Positions
+// along it are in mm from the corner.
 struct Bend {
   glm::dvec3 above{0}, corner{0}, below{0};
   glm::dvec3 forward{0};
@@ -87,7 +88,7 @@ struct Bend {
 struct Profile {
   double from = 0, step = 0;
   std::vector<Section> sections;
-  std::vector<double> area;  // smoothed
+  std::vector<double> area;  // smoothed areas of the sections, mm^2
 };
 
 Profile profile_of(const Occupancy& body, const Bend& bend, double from, double to, int count) {
@@ -105,8 +106,8 @@ Profile profile_of(const Occupancy& body, const Bend& bend, double from, double 
   return profile;
 }
 
-// Where the girth is least, if it is larger on both sides while the limb is free: the middle of the sections that are
-// hardly larger.
+// Returns the position of a limb's waist (smallest cross-section), as the middle of the sections that are hardly
+// larger. Returns none unless the sections grow on both sides of the waist before the limb touches other tissue.
 std::optional<double> waist(const Profile& profile, double least_bulge) {
   constexpr double kHardly = 1.03;
   const auto& area = profile.area;
@@ -128,16 +129,16 @@ std::optional<double> waist(const Profile& profile, double least_bulge) {
   return profile.from + profile.step * (first + last) / 2.0;
 }
 
-// What is known of a joint that lies by a waist; lengths as shares of the bone above it.
+// The position of a joint relative to the waist of a limb near it.
 struct Waist {
-  const char* bone;     // whose head it is
-  double above, below;  // where to look, shares of the bones above and below
-  double beyond;        // the joint lies so far beyond the waist
-  double forward;       // and so far ahead of the section's middle, as a share of its depth
+  const char* bone;     // the bone whose head is the joint
+  double above, below;  // range in which the waist is searched, as shares of the bones above and below
+  double beyond;        // distance of the joint beyond the waist, as a share of the bone above
+  double forward;       // distance of the joint in front of the section's middle, as a share of its depth
 };
 constexpr Waist kWaists[] = {
     {"Forearm", 0.35, 0.30, 0.07, 0},
-    {"Shank", 0.28, 0.32, 0.01, 0.12},  // the heads of calf and hamstrings lie behind the knee
+    {"Shank", 0.28, 0.32, 0.01, 0.12},  // forward, since the heads of calf and hamstrings lie behind the knee
     {"Hand", 0.35, 0.6, 0.04, 0},
 };
 
@@ -155,7 +156,7 @@ struct Limb {
   int bone = 0, child = -1;
   Bend bend;
   Profile profile;
-  std::optional<double> along;  // of the waist from the corner
+  std::optional<double> along;  // position of the waist from the corner, mm
 };
 
 std::optional<Limb> limb_at(const Mannequin& m, const Occupancy& body, int bone, const Waist& known) {
@@ -175,7 +176,7 @@ std::optional<Limb> limb_at(const Mannequin& m, const Occupancy& body, int bone,
   const double upper_length = glm::distance(limb.bend.above, limb.bend.corner),
                lower_length = glm::distance(limb.bend.corner, limb.bend.below);
   if (!(upper_length > 0) || !(lower_length > 0)) return std::nullopt;
-  constexpr double kMostBent = 0.5;  // cosine: a limb bent farther has no cross-section at its joint
+  constexpr double kMostBent = 0.5;  // cosine of 60 degrees; a limb bent by more has no cross-section at its joint
   if (glm::dot(limb.bend.corner - limb.bend.above, limb.bend.below - limb.bend.corner) <
       kMostBent * upper_length * lower_length)
     return std::nullopt;
@@ -196,7 +197,9 @@ void add_waists(const Mannequin& m, const Occupancy& body, const Waist& known, s
   double mean = 0;
   for (const Limb& limb : limbs) mean += *limb.along / double(limbs.size());
   for (const Limb& limb : limbs) {
-    constexpr double kUnlike = 0.15;  // of the bone above: sides that differ by more are no pair
+    // Largest difference between the waist of one side and the mean of both sides, as a share of the length of the bone
+    // above. A side that differs by more keeps its own waist.
+    constexpr double kUnlike = 0.15;
     const double upper = glm::distance(limb.bend.above, limb.bend.corner);
     const double along = (std::abs(*limb.along - mean) < kUnlike * upper ? mean : *limb.along) + known.beyond * upper;
     const auto at = std::clamp<std::ptrdiff_t>(std::lround((along - limb.profile.from) / limb.profile.step), 0,
@@ -229,7 +232,8 @@ void add_neck(const Mannequin& m, const Occupancy& body, std::vector<JointLandma
   constexpr double kGrown = 2;
   const auto grown = std::find_if(least, area.end(), [&](double a) { return a > kGrown * *least; });
   if (grown == area.end()) return;
-  constexpr double kAbove = 0.05;  // of neck and head
+  // Distance of the neck joint above the section that has grown, as a share of the length of neck and head.
+  constexpr double kAbove = 0.05;
   const auto k = std::max<std::ptrdiff_t>(0, (grown - area.begin()) - std::lround(kAbove * whole / profile.step));
   found.push_back({*neck, profile.sections[k].centre});
 }
@@ -243,20 +247,19 @@ std::vector<JointLandmark> girth_landmarks(const Mannequin& mannequin, const Occ
   return found;
 }
 
-// --- balls
-// ----------------------------------------------------------------------------------------------------------------
+// --- ball landmarks
 
 namespace {
 
-constexpr double kSmallest = 17,
-                 kLargest = 29;  // mm, radii of adults' heads of humerus and femur; scaled with the body
+// Radii of the heads of adults' humerus and femur, mm; scaled with the body.
+constexpr double kSmallest = 17, kLargest = 29;
 
 struct Ball {
   glm::dvec3 centre{0};
   double radius = 0;
 };
 
-// The sphere through points, by least squares of the squared distances.
+// Returns the sphere that fits points best, by least squares of the differences of squared distances.
 std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const glm::dvec3& near) {
   glm::dmat4 A(0);
   glm::dvec4 b(0);
@@ -273,7 +276,8 @@ std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const 
   return Ball{near + glm::dvec3(x), std::sqrt(squared)};
 }
 
-// The centre and radius that most points vote for, near `start`; each ball counts by the share of it that is seen.
+// Returns the ball near `start` whose centre and radius most points vote for. The votes of each ball are divided by its
+// squared radius, so that the visible share of its surface counts.
 std::optional<Ball> voted(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale) {
   const double cell = 3 * scale, reach = 30 * scale;
   double most = 0;
@@ -313,7 +317,7 @@ std::optional<Ball> ball_at(const std::vector<SurfacePoint>& points, const glm::
     for (const SurfacePoint& p : points) {
       const glm::dvec3 out = p.place - ball->centre;
       const double d = glm::length(out);
-      // The vote tells the centre better than the radius.
+      // The vote gives the centre more exactly than the radius, so the tolerances of the first rounds are wide.
       if (std::abs(d - ball->radius) < std::max(0.12, 0.3 - 0.03 * k) * ball->radius &&
           glm::dot(out, p.normal) > 0.85 * d)
         on.push_back(p.place);

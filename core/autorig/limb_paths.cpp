@@ -14,8 +14,8 @@ namespace limber {
 namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::max();
-constexpr double kStep = 8;           // mm between points of a path
-constexpr double kLeastShare = 0.12;  // prominence of an end against the longest way
+constexpr double kStep = 8;           // distance between points of a path, mm
+constexpr double kLeastShare = 0.12;  // least prominence of an end as a share of the longest path's length
 constexpr size_t kMostEnds = 12;
 
 class Body {
@@ -51,7 +51,8 @@ class Body {
     return best;
   }
 
-  // Distances through the tissue, and from where each cell was reached.
+  // Computes for each cell its distance through the tissue from the cell `from`, and its predecessor on the shortest
+  // path.
   void measure(std::int32_t from) {
     distance_.assign(cell_.size(), kUnseen);
     before_.assign(cell_.size(), -1);
@@ -79,14 +80,15 @@ class Body {
   }
   double distance(std::int32_t i) const { return distance_[i]; }
 
-  // Summits with their prominence: cells are taken from the farthest inwards; where two hills meet the lower one ends.
+  // Returns the maxima of the distance with their prominence. Cells are visited from the farthest inwards. Where the
+  // regions of two maxima meet, the lower maximum gets its prominence and its region joins the other.
   std::vector<std::pair<double, std::int32_t>> summits() const {
     std::vector<std::int32_t> order;
     for (std::int32_t i = 0; i < size(); ++i)
       if (distance_[i] != kUnseen) order.push_back(i);
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return distance_[a] > distance_[b] || (distance_[a] == distance_[b] && a < b); });
-    std::vector<std::int32_t> parent(cell_.size(), -1);  // the summit stands for its hill
+    std::vector<std::int32_t> parent(cell_.size(), -1);  // union-find; the root of a region is its maximum
     const auto root = [&](std::int32_t i) {
       while (parent[i] != i) i = parent[i] = parent[parent[i]];
       return i;
@@ -109,7 +111,8 @@ class Body {
     return found;
   }
 
-  // The way from a cell to where distances start, moved to the middle of the cells equally far at every step.
+  // Returns the path from the cell `end` to the cell that distances are measured from. Every point is moved to the
+  // middle of the cells that are equally far from that cell.
   LimbPath path(std::int32_t end, double reach) const {
     std::vector<glm::dvec3> way;
     std::vector<double> far;

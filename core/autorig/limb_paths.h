@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The ends of a body and the ways to them: where the distance through the tissue from its thickest place has summits
-// (head, hands, feet; the prominence of a summit is how far one must go back from it before another is nearer), and the
-// middle line of the tissue from each summit inwards [Lazarus & Verroust 1999, level sets of the geodesic distance].
+// Finds the ends of a body and the paths to them. The ends (head, hands, feet) are the maxima of the distance through
+// the tissue from its thickest point; the prominence of an end is how far one must go back from it before the way to a
+// farther end branches off. Each path is the middle line of the tissue from an end inwards [Lazarus & Verroust 1999,
+// level sets of the geodesic distance].
 #pragma once
 
 #include <vector>
@@ -12,17 +13,18 @@ namespace limber {
 
 struct LimbPath {
   std::vector<glm::dvec3> points;  // world, from the end inwards, evenly spaced
-  double step = 0;                 // mm between points
-  double prominence = 0;           // mm
-  double length = 0;               // mm, through the tissue
+  double step = 0;                 // distance between points, mm
+  double prominence = 0;           // prominence of the end, mm
+  double length = 0;               // length of the path through the tissue, mm
 
-  // The point `along` mm from the end; the last one beyond.
+  // Returns the point `along` mm from the end, or the last point beyond the path.
   glm::dvec3 at(double along) const;
 };
 
 enum class PathCentre { Thickest, FarthestEnd };
 
-// Most prominent first.
+// Returns a path from the end of each limb to the centre of the body, the end that stands out furthest first. `centre`
+// selects which centre.
 std::vector<LimbPath> limb_paths(const Occupancy& body, PathCentre centre);
 
 }  // namespace limber

@@ -18,10 +18,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kFewest = 4;  // surface voxels of a bone that says anything
+constexpr std::int64_t kFewest = 4;  // a bone with fewer surface voxels is ignored
 
-// --- names
-// ----------------------------------------------------------------------------------------------------------------
+// --- names of bones
 
 std::string finger_key(const AnatomicalName& name) {
   static const std::map<BodyPart, std::string> kFingers = {{BodyPart::Thumb, "Thumb"},
@@ -32,18 +31,18 @@ std::string finger_key(const AnatomicalName& name) {
   static const char* const kSegments[] = {"Metacarpal", "Proximal", "Middle", "Distal"};
   const auto finger = kFingers.find(name.finger);
   if (finger == kFingers.end() || name.segment < 0 || name.segment > 3) return "";
-  // A thumb's metacarpal counts as 1, and it has no middle phalanx.
+  // A thumb's metacarpal is segment 1, and a thumb has no middle phalanx.
   const int segment = name.finger == BodyPart::Thumb && name.segment < 3 ? name.segment - 1 : name.segment;
   return segment < 0 ? "" : finger->second + kSegments[segment];
 }
 
-// In any case of letters.
+// Returns whether a text contains a word, regardless of case. The word must be in lower case.
 bool says_word(const std::string& text, const char* word) {
   return std::search(text.begin(), text.end(), word, word + std::char_traits<char>::length(word),
                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; }) != text.end();
 }
 
-// The piece of the skeleton that a label holds, by the words of the atlas's bones where it has one; "" for none.
+// Returns the piece of the skeleton that a label holds, named like the atlas's bone where there is one; "" for none.
 std::string piece_of(const std::string& label_name) {
   const AnatomicalName name = anatomical_name(label_name);
   std::set<BoneRegion> regions = name.regions;
@@ -74,7 +73,8 @@ std::string piece_of(const std::string& label_name) {
   return "";
 }
 
-// The bone of two that is hinged, where a label holds it alone: the ulna to the humerus, the tibia to femur and talus.
+// Returns the bone of a limb's pair that forms the hinge, where the label holds it alone: the ulna, hinged to the
+// humerus, or the tibia, hinged to femur and talus; else "".
 std::string hinged_bone_of(const std::string& label_name, const std::string& piece) {
   const auto says = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* word) { return says_word(label_name, word); });
@@ -84,13 +84,13 @@ std::string hinged_bone_of(const std::string& label_name, const std::string& pie
   return "";
 }
 
-// What meets at the head of each of the atlas's bones.
+// The two pieces of the skeleton that meet at the head of one of the atlas's bones.
 struct Meeting {
-  const char* bone;           // without side
-  const char *above, *below;  // the hinged bone of two stands for both where it is known alone
-  bool along = false;         // only what faces along the limb counts: a kneecap lies before the knee
-  bool ball = false;          // the bone below begins with a ball
-  double aside = 0;           // mm that authors of rigs put it elsewhere between the same bones
+  const char* bone;           // name without side
+  const char *above, *below;  // pieces; "Ulna" and "Tibia" mean the whole forearm or shank where they have no label
+  bool along = false;         // true: only surfaces that face along the limb count, as a kneecap lies before the knee
+  bool ball = false;          // true: the bone below begins with a ball (a spherical head)
+  double aside = 0;           // difference between the conventions of rig authors for this joint, mm
 };
 constexpr Meeting kMeetings[] = {
     {"Spine", "Hips", "Spine"},
@@ -107,7 +107,7 @@ constexpr Meeting kMeetings[] = {
     {"Toes", "Foot", "Toes", false, false, 5},
 };
 
-// The two pieces that meet at a finger's joint; none for other bones.
+// Returns the two pieces that meet at a finger's joint; none for other bones.
 std::optional<Meeting> finger_meeting(const std::string& bone, std::string& above) {
   for (const char* finger : {"Thumb", "Index", "Middle", "Ring", "Little"}) {
     const std::string f = finger;
@@ -122,13 +122,12 @@ std::optional<Meeting> finger_meeting(const std::string& bone, std::string& abov
   return std::nullopt;
 }
 
-// --- pieces
-// ---------------------------------------------------------------------------------------------------------------
+// --- pieces of the skeleton
 
 struct Piece {
-  std::vector<SurfacePoint> points;  // voxels on its surface; no normals
+  std::vector<SurfacePoint> points;  // surface voxels, without normals
   LabelSet labels;
-  double length = 0;  // mm, the largest extent
+  double length = 0;  // diagonal of the extent, mm
   glm::dvec3 middle{0};
 };
 
@@ -142,7 +141,7 @@ std::string without_side(const std::string& bone) {
   return bone.starts_with("Left") ? bone.substr(4) : bone.starts_with("Right") ? bone.substr(5) : bone;
 }
 
-// Which side of a mannequin a place lies on, among the bones of that piece.
+// Returns the side of the body on which the mannequin's bone for a piece of the skeleton is nearer to a point.
 BodySide nearer_side(const Mannequin& m, const std::string& piece, const glm::dvec3& place) {
   double least = 1e300;
   BodySide side = BodySide::Middle;
@@ -218,16 +217,17 @@ Pieces pieces_of(const LabelVolume& volume, const TissueTable& tissues, const Ma
   return pieces;
 }
 
-// --- joints
-// ---------------------------------------------------------------------------------------------------------------
+// --- joints between pieces
 
 struct Contact {
   glm::dvec3 place{0};
-  double gap = 0;  // mm
+  double gap = 0;  // smallest distance between the bones, mm
 };
 
-// The middle of what lies nearest to each other on two bones.
-//   along  unit: pairs that face farther than 60 degrees away from it do not count; zero: all do
+// Returns the middle of the surface points at which two bones are nearest to each other.
+//   along   unit vector: pairs that point more than 60 degrees away from it do not count; zero: all pairs count
+//   within  pairs up to this much farther apart than the nearest pair count, mm
+//   reach   largest distance of a pair, mm
 std::optional<Contact> contact_of(const Piece& above, const Piece& below, const glm::dvec3& along, double within,
                                   double reach) {
   const PointTree tree(below.points);
@@ -255,9 +255,9 @@ std::optional<Contact> contact_of(const Piece& above, const Piece& below, const 
   return contact;
 }
 
-// The middle of the ball that a femur or humerus begins with, near to where it meets the bone above.
+// Returns the centre of the ball (spherical head) of a femur or humerus, near its contact with the bone above.
 std::optional<glm::dvec3> ball_of(const LabelVolume& volume, const Piece& bone, const glm::dvec3& near, double scale) {
-  constexpr double kAround = 75;  // mm of an adult
+  constexpr double kAround = 75;  // search radius for an adult, mm
   std::vector<SurfacePoint> points = surface_points(occupancy_of(volume, bone.labels, 0));
   std::erase_if(points, [&](const SurfacePoint& p) { return glm::distance(p.place, near) > kAround * scale; });
   return ball_near(points, near, scale);
@@ -270,7 +270,7 @@ bool is_of_trunk(const std::string& bone) {
 struct Finder {
   const LabelVolume& volume;
   const Pieces& pieces;
-  double voxel;  // mm, the largest side
+  double voxel;  // largest side of a voxel, mm
 
   const Piece* find(const std::string& name, BodySide side) const {
     for (BodySide s : {side, BodySide::Middle})
@@ -279,11 +279,12 @@ struct Finder {
   }
 
   std::optional<NamedJoint> joint(const Meeting& meeting, BodySide side) const {
-    // Bones that face each other within a share of their length make the joint; those that lie farther apart do not
-    // meet.
+    // Pairs of surface points form the joint if they are at most kFacing farther apart than the nearest pair. Bones
+    // farther apart than kApart do not meet. Both are shares of the bones' length. The other numbers are errors, in mm
+    // or as shares.
     constexpr double kFacing = 0.028, kApart = 0.09, kLeastError = 3, kOfLength = 0.02, kOfVoxel = 0.7, kOfGap = 0.3,
                      kSpine = 0.03;
-    constexpr double kAdultFemur = 470, kAdultHumerus = 320;  // mm, diagonal of the extent
+    constexpr double kAdultFemur = 470, kAdultHumerus = 320;  // diagonal of the bone's extent, mm
     const Piece *above = find(meeting.above, side), *below = find(meeting.below, side);
     if (!above || !below) return std::nullopt;
     const double length =
@@ -297,13 +298,14 @@ struct Finder {
         .bone = 0,
         .place = contact->place,
         .error = kLeastError + kOfLength * length + kOfVoxel * voxel + kOfGap * contact->gap + meeting.aside};
-    // Vertebrae meet along all of their discs and processes, and authors of rigs choose among them.
+    // Vertebrae meet along their whole discs and processes, and rig authors choose different positions for the joint.
     if (side == BodySide::Middle && is_of_trunk(meeting.bone)) joint.error += kSpine * above->length;
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;  // mm of an adult
-      // A bone that was cut off looks short, and its ball large.
+      // Largest distance of the ball from the contact, and errors at hip and shoulder; mm, for an adult.
+      constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;
+      // A bone that is cut off looks short, which makes its ball look large in comparison. So the scale is limited.
       const auto ball = ball_of(volume, *below, contact->place, std::clamp(scale, 0.4, 1.3));
       if (ball && glm::distance(*ball, contact->place) < kBallAway * scale)
         joint.place = *ball,
@@ -314,8 +316,8 @@ struct Finder {
   }
 };
 
-// The pelvis begins between the hips, half as far from their middle as the mannequin has it: some rigs begin it in the
-// middle itself.
+// Adds the joint at the head of the pelvis: between the hips, with half the offset from their middle that it has in the
+// mannequin, since some rigs have it in the middle itself.
 void add_hips(const Mannequin& m, std::vector<NamedJoint>& joints) {
   constexpr double kError = 4, kOfWidth = 0.07;
   const auto at = [&](const char* name) {
@@ -370,7 +372,7 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
   const Armature& rig = m.atlas().rig;
   std::map<int, glm::dvec3> place;
   for (const NamedJoint& joint : joints) place[joint.bone] = joint.place;
-  // The bone that goes on: the first child but for a hand, whose middle finger does.
+  // Returns the child that continues a bone: for a hand the middle finger, else the first child.
   const auto next_of = [&](int b) {
     int next = -1;
     for (int c = b + 1; c < std::ssize(rig.bones); ++c)
@@ -389,19 +391,19 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
       auto& [sum, count] = stretch[m.group_of(b)];
       sum += std::log(glm::distance(here, place[next]) / rest), ++count;
     }
-  constexpr double kMost = 1.2;  // more is no body
+  constexpr double kMost = 1.2;  // largest plausible natural logarithm of a bone's length relative to the template
   for (const auto& [group, mean] : stretch)
     if (const double s = mean.first / mean.second; std::abs(s) < kMost)
       m.across[group] += 0.5 * (s - m.along[group]), m.along[group] = s;
   m.settle();
-  // A trunk's bones carry limbs on both sides, and are left to the surface.
+  // The trunk's bones carry limbs on both sides, so their rotation is left to the fit of the surface.
   for (const auto& [b, next] : spans)
     if (side_named(rig.bones[b].name) != BodySide::Middle || rig.bones[b].parent < 0 || place.size() < 2 ||
         rig.bones[0].name != "Hips") {
       const glm::dvec3 from = m.joint(next) - m.joint(b), to = place[next] - place[b];
       if (glm::length(from) > 0 && glm::length(to) > 0) m.turn_branch(b, glm::mat3_cast(shortest_turn(from, to)));
     }
-  // The whole where its joints lie in the mean.
+  // Moves the whole body to the mean position of its joints.
   glm::dvec3 shift(0);
   for (const auto& [b, here] : place) shift += (here - m.joint(b)) / double(place.size());
   if (!place.empty()) m.root += shift, m.settle();

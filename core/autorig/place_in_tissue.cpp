@@ -11,10 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kSure = 0.5;     // of a joint that was found
-constexpr double kBetter = 1.02;  // less does not make another turn the better one
+constexpr double kSure = 0.5;     // confidence from which on a found joint is certain
+constexpr double kBetter = 1.02;  // factor by which another rotation must fit better to be preferred
 
-// The turns that take axes to axes, those about the vertical first and none before all others.
+// Returns the 24 rotations by right angles: the identity first, then those that keep the vertical.
 std::vector<glm::dmat3> right_turns() {
   std::vector<glm::dmat3> turns;
   for (int z = 0; z < 3; ++z)
@@ -34,15 +34,15 @@ std::vector<glm::dmat3> right_turns() {
   return turns;
 }
 
-// From feet to head, where the names tell.
+// Returns the unit direction from feet to head; none where the names do not tell.
 std::optional<glm::dvec3> line_of(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   const auto trunk = trunk_line(skeleton);
   return trunk ? std::optional(glm::normalize(*trunk)) : std::nullopt;
 }
 
-// The length that lies in tissue counts, so that a rig made small enough to fit in anywhere is not the best one; times
-// its share, so that one larger than the body is not either.
+// Returns a measure of how well a rig fits: its length in tissue times the share of its length in tissue. The length
+// rejects a rig so small that it fits anywhere, and the share rejects one that is larger than the body.
 double suits(const RigCheck& check, const Armature& rig) {
   double length = 0;
   for (const Bone& bone : rig.bones) length += glm::distance(bone.head, bone.tail);

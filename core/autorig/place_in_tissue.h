@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rigs of any make, other units, other axes, in a volume they were not made for: Bender's, a BVH file's joints.
+// Places rigs of any origin, with other units or other axes, in a volume for which they were not made, such as Bender's
+// rigs or the joints of a BVH file.
 #pragma once
 
 #include "core/autorig/auto_rig.h"
@@ -7,13 +8,13 @@
 
 namespace limber {
 
-// The rig as large as the tissue and in its middle, in the one of 24 turns by right angles in which it suits best: most
-// of its bones' length in tissue, and the greater share of it. One whose names tell head from feet stands upright.
-// Throws Error for a volume without tissue.
+// Returns the rig scaled to the tissue and moved to its middle, in the best of 24 rotations by right angles: the one
+// with the most bone length, and the largest share of it, in tissue. A rig whose names tell head from feet is placed
+// upright. Throws Error for a volume without tissue.
 Armature placed_in_tissue(const LabelVolume& volume, const Armature& rig);
 
-// auto_fit (core/autorig/auto_rig.h); where no joint of that is sure and placing alone leaves more of the rig in the
-// tissue, the rig as it is placed, with a warning.
+// Returns the result of auto_fit (core/autorig/auto_rig.h). Where none of its joints is certain and placed_in_tissue
+// leaves more of the rig in the tissue, returns that rig with a warning.
 AutoFit fitted_or_placed(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig,
                          Progress& progress = no_progress());
 

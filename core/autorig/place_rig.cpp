@@ -28,7 +28,8 @@ bool has_sides(const std::vector<std::optional<JointRole>>& roles) {
                      [](const auto& role) { return role && role->side != BodySide::Middle; });
 }
 
-// Per rig bone the body's bone, -1 for none. A single limb has no side; it meets the rig's fuller side.
+// Returns for each rig bone the index of its counterpart in the body, -1 for none. A body that is a single limb has no
+// side: it is matched with the side on which the rig has more bones.
 std::vector<int> counterparts(const Armature& rig, const Armature& body) {
   const auto own = roles_of(rig), there = roles_of(body);
   const bool sided = has_sides(own), body_sided = has_sides(there);
@@ -42,7 +43,7 @@ std::vector<int> counterparts(const Armature& rig, const Armature& body) {
   std::map<JointRole, int> by_role;
   for (int b = 0; b < std::ssize(body.bones); ++b)
     if (there[b] && there[b]->part != BodyPart::Spine) by_role[*there[b]] = b;
-  // "Spine" is another vertebra in every rig that has another number of them.
+  // A name such as "Spine" means another vertebra in a rig with another number of vertebrae.
   const auto vertebrae = [](const auto& roles) {
     return std::count_if(roles.begin(), roles.end(),
                          [](const auto& role) { return role && role->part == BodyPart::Spine; });
@@ -78,8 +79,8 @@ glm::dmat3 shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::mat3_cast(glm::angleAxis(std::atan2(s, c), across / s));
 }
 
-// The turn and scale that take points nearest to others [Umeyama 1991]; the turn is none where they lie on a line or
-// less.
+// The rotation and scale that map points as near as possible to other points [Umeyama 1991]; the identity where all
+// points coincide.
 struct Similarity {
   glm::dmat3 turn{1};
   double scale = 1;
@@ -107,7 +108,7 @@ Similarity similarity(const std::vector<glm::dvec3>& from, const std::vector<glm
   return result;
 }
 
-// The point at a share of a line's length.
+// Returns the point at a share of a polyline's length.
 glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
   double length = 0;
   for (size_t i = 1; i < line.size(); ++i) length += glm::distance(line[i - 1], line[i]);
@@ -120,7 +121,7 @@ glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
   return line.back();
 }
 
-// Joints of the rig's trunk between two matched ones, spread over the body's trunk between the same two.
+// Spreads the joints of the rig's trunk between two matched joints along the body's trunk between the same two.
 void spread_trunk(const Armature& rig, const Armature& there, const std::vector<glm::dvec3>& joints,
                   const std::vector<int>& match, std::vector<std::optional<glm::dvec3>>& place) {
   for (int top = 0; top < std::ssize(rig.bones); ++top) {
@@ -130,7 +131,7 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     while (b >= 0 && match[b] < 0) chain.push_back(b), b = rig.bones[b].parent;
     if (b < 0) continue;
     chain.push_back(b);
-    // The body's chain between the same two, if one is above the other there as well.
+    // The body's chain between the same two joints, if one of them is an ancestor of the other in the body as well.
     std::vector<int> line;
     int a = match[top];
     while (a >= 0 && a != match[b]) line.push_back(a), a = there.bones[a].parent;
@@ -138,7 +139,8 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     line.push_back(a);
     std::reverse(chain.begin(), chain.end());
     std::reverse(line.begin(), line.end());
-    // Only the spine is alike enough to be spread; a link beside it rides along.
+    // Only the spine is similar enough in rig and body to be spread. A link beside the spine moves along with its
+    // parent.
     if (line.size() < 3 && chain.size() > 3) continue;
     std::vector<glm::dvec3> from, to;
     for (int c : chain) from.push_back(rig.bones[c].head);
@@ -153,14 +155,14 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
   }
 }
 
-// Turn and scale of a bone at rest, taken over to where it lies now.
+// The rotation and scale that carry a bone from rest to its new position.
 struct Carry {
   glm::dmat3 turn{1};
   double scale = 1;
   glm::dvec3 vector(const glm::dvec3& v) const { return scale * (turn * v); }
 };
 
-// The child whose head is where the bone ends, else none.
+// Returns the child whose head lies at the bone's tail, or -1.
 int child_at_tail(const Armature& rig, int bone) {
   const Bone& b = rig.bones[bone];
   const double near = 0.02 * glm::distance(b.head, b.tail) + 1e-9;
@@ -212,7 +214,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
       bone.head = c + above.vector(before.head - a);
     }
 
-    // Where it goes on: to the child at its tail, or as the body's own bone ends.
+    // The bone ends at the child at its tail, or else where the body's own bone ends.
     const int child = child_at_tail(rig, b);
     std::optional<glm::dvec3> end;
     if (child >= 0 && place[child]) end = place[child];
@@ -229,7 +231,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
     }
     turn_limits(bone, before, carry[b].turn);
   }
-  // A bone ends where its child begins, if it did so before.
+  // A bone still ends at its child's head if it did so before.
   for (int b = 0; b < count; ++b)
     if (const int child = child_at_tail(rig, b); child >= 0)
       result.armature.bones[b].tail = result.armature.bones[child].head;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Any rig laid over the joints of a fitted body. Joints meet by their names, else by what the names mean; a spine with
-// other vertebrae is spread along the body's own; what has no counterpart rides with the bone it hangs from, turned and
-// scaled as that one is. Rolls and the axes of joint limits turn along.
+// Moves any rig to the joints of a fitted body. Joints are matched by their names, or else by the meaning of the names.
+// A spine with another number of vertebrae is spread along the body's spine. A bone without a counterpart moves with
+// its parent, rotated and scaled as the parent is. Rolls and the axes of joint limits rotate along.
 #pragma once
 
 #include <vector>
@@ -13,17 +13,19 @@ namespace limber {
 
 struct PlacedRig {
   Armature armature;
-  std::vector<int> joint_of;  // per bone: the body's bone that gave its head, -1 where it rides along
+  // Per bone, the index of the body's bone whose joint became its head; -1: it moves along with its parent.
+  std::vector<int> joint_of;
 };
 
-//   joints  where the body's joints lie, by its bones
+// Returns the rig moved to the body's joints.
+//   joints  positions of the body's joints, by its bones
 PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vector<glm::dvec3>& joints);
 
-// Every bone by one turn, scale and shift.
+// Rotates, scales and moves all bones of a rig so that the point `from` comes to `to`.
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from,
                    const glm::dvec3& to);
 
-// How many of the rig's bones have a counterpart.
+// Returns how many of the rig's bones have a counterpart in the body.
 int matching_bones(const Armature& rig, const Armature& body);
 
 }  // namespace limber

@@ -13,21 +13,24 @@ namespace limber {
 
 namespace {
 
-constexpr double kShare = 0.5, kMost = 30;  // of the bone's length, and mm
+// Upper limits on the shift of a joint: share of the length of each of its bones, and mm.
+constexpr double kShare = 0.5, kMost = 30;
 constexpr int kRounds = 60;
-constexpr int kMostSteps = 20;  // of the search, to a side
-constexpr double kSlide = 0.6;  // a mm along a free hinge's axis counts for so many
+constexpr int kMostSteps = 20;  // upper limit on the steps of the search in each direction
+constexpr double kSlide = 0.6;  // weight of a shift along a free hinge's axis
 
-// How far a shift puts joints wrong, mm. A hinge turns its bone the same wherever along its axis it stands.
+// Returns the cost of a joint's shift, mm. A shift along a hinge's axis costs less, since the hinge rotates its bone in
+// the same way wherever it lies on its axis.
 double harm(const glm::dvec3& shift, const glm::dvec3& axis) {
   const double along = glm::dot(shift, axis);
   return std::sqrt(std::max(0.0, glm::dot(shift, shift) - (1 - kSlide * kSlide) * along * along));
 }
 
-// Tissue near a place, what does least harm first; rather such as has tissue beside it along every axis.
+// Finds the tissue voxel near a point that a joint reaches with the least harm(). Prefers voxels that have tissue on
+// all six sides.
 class Nearest {
  public:
-  //   slide  unit, the axis of a free hinge; or zero
+  //   slide  unit axis of a free hinge (a hinge that shares no joint with another bone), or zero
   Nearest(const LabelVolume& volume, const glm::dvec3& slide)
       : volume_(volume),
         to_voxel_(voxel_from_world(volume.grid)),
@@ -80,12 +83,12 @@ class Nearest {
   std::vector<std::pair<double, glm::ivec3>> steps_;
 };
 
-// A place where bones begin or end.
+// A point at which bones begin or end.
 struct Joint {
   glm::dvec3 start{0}, place{0};
   double reach = kMost;
-  int uses = 0;         // how many bones do
-  glm::dvec3 slide{0};  // axis of a free hinge
+  int uses = 0;         // number of bones that begin or end here
+  glm::dvec3 slide{0};  // axis of a free hinge (which shares no joint with another bone); zero: none
   glm::dvec3 pull{0};
   int pulls = 0;
 };
@@ -114,7 +117,8 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     ends.push_back({head, joint_at(bone.tail, reach)});
   }
 
-  std::map<int, Nearest> nearest;  // by bone: free hinges their own, -1 for all others
+  // The searches for the nearest tissue: one for each bone that is a free hinge, and one (-1) for all other bones.
+  std::map<int, Nearest> nearest;
   nearest.emplace(-1, Nearest(volume, glm::dvec3(0)));
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
     const JointLimits& limits = rig.bones[b].limits;
@@ -156,7 +160,7 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     if (check.whole > most) most = check.whole, best = moved;
     if (check.leaving.empty() && check.outside.empty()) return moved;
   }
-  // What nothing hangs from may end earlier.
+  // A bone at whose tail no other bone begins may be shortened.
   check = check_rig(volume, best);
   for (const auto& leaving : check.leaving) {
     Bone& bone = best.bones[leaving.bone];

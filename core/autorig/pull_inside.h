@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rig whose bones leave the tissue somewhere, drawn into it with as little change as will do: where a bone runs
-// through air, the middle of that stretch wants to be in the nearest tissue, and the bone's two ends move by the shares
-// that the lever gives them. Bones that share a joint move it together; the whole is repeated until nothing leaves. A
-// hinge that shares no joint with another bone, as a jaw's, may slide along its axis, where it turns its bone just the
-// same; and a bone that no other begins at the end of ends where the tissue does, if most of it is there.
+// Moves a rig whose bones leave the tissue back into it, with as little change as possible. Where a bone runs through
+// air, the middle of that stretch is moved to the nearest tissue, and the bone's two ends move by the shares of the
+// lever rule. Bones that share a joint move it together. This is repeated until no bone leaves the tissue. A hinge that
+// shares no joint with another bone, such as a jaw's, may be shifted along its axis, which does not change the rotation
+// of its bone. A bone at whose tail no other bone begins is shortened to the tissue if at least half of it is inside.
 #pragma once
 
 #include <vector>
@@ -14,9 +14,10 @@
 
 namespace limber {
 
-//   free  per bone, mm by which its head may move
-// No joint moves by more than half of its shortest bone, nor by more than 30 mm (along a free hinge's axis 50); what
-// lies beyond a cut stays. Where that is not enough, the rig that came farthest in is returned.
+// Returns the rig moved inside the tissue, or the rig with the largest share in tissue where that is not possible. No
+// joint moves by more than half of its shortest bone, nor by more than 30 mm (50 mm along a free hinge's axis). Parts
+// of the rig beyond a cut are not moved.
+//   free  per bone, the distance by which its head may move, mm
 Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std::vector<TissueCut>& cuts,
                       const std::vector<double>& free);
 

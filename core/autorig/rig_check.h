@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Does a rig lie in the tissue? How much of each bone's length does, where the bones leave it, and which joints are
-// outside.
+// Checks whether a rig lies in the tissue: how much of each bone's length does, where bones leave the tissue, and which
+// joints lie outside.
 #pragma once
 
 #include <vector>
@@ -13,21 +13,22 @@ namespace limber {
 struct RigCheck {
   struct Leaving {
     int bone = 0;
-    double from = 0, to = 0;  // shares of its length
-    glm::dvec3 place{0};      // the middle of that stretch, mm
+    double from = 0, to = 0;  // begin and end of the bone's stretch in air, as shares of the bone's length
+    glm::dvec3 place{0};      // middle of the stretch in air, mm
   };
   struct Joint {
     int bone = 0;
     bool tail = false;
     glm::dvec3 place{0};
   };
-  std::vector<double> share;     // per bone: of its length in tissue, 0 .. 1
-  double whole = 0;              // of all bones' length
-  std::vector<Leaving> leaving;  // stretches in air, by bone
-  std::vector<Joint> outside;    // joints in air, each once: a tail before the heads that lie on it
+  std::vector<double> share;     // per bone, the share of its length in tissue, [0, 1]
+  double whole = 0;              // share of all bones' length in tissue, [0, 1]
+  std::vector<Leaving> leaving;  // stretches of bones in air, in the order of bones
+  // Joints in air, each position once. Where a tail and heads coincide, only the tail is listed.
+  std::vector<Joint> outside;
 };
 
-// Any label but air counts; outside the grid there is none.
+// Checks a rig. Every label but air counts as tissue; outside the grid there is none.
 RigCheck check_rig(const LabelVolume& volume, const Armature& armature);
 
 }  // namespace limber

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 Path asset(const std::string& name) {
   std::error_code failed;
   const Path program = fs::read_symlink("/proc/self/exe", failed);
-  // Beside the program that runs, else where Limber is installed: the program may be another one that uses it.
+  // Searches beside the running program, then in the source tree, then where Limber is installed. The last folder
+  // serves another program that uses Limber as a library.
   for (const Path& folder : {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS),
                              Path(LIMBER_INSTALLED_IN) / "share/limber"})
     if (fs::exists(folder / name, failed)) return folder / name;

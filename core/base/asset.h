@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where themes, key maps, icons, samples and rig templates lie: beside the installed program (share/limber), else in
-// the source tree.
+// Finds the files that belong to the program: themes, key maps, icons, samples and rig templates. They lie in the
+// program's installation (share/limber) or in the source tree.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// Throws Error when the file is not there: the installation is incomplete.
-Path asset(const std::string& name);  // "themes/dark.json"
+// Returns the path of an asset. Throws Error when the file does not exist: the installation is incomplete.
+Path asset(const std::string& name);  // name as in "themes/dark.json"
 
 }  // namespace limber

@@ -10,12 +10,13 @@
 namespace limber {
 
 namespace {
-constexpr int kYielding = 10;  // of 0 to 19: a tenth of what an unyielding thread on the same core gets
+// Nice value (0 to 19) of the thread. At 10, it gets a tenth of the time of a normal thread on the same core.
+constexpr int kYielding = 10;
 }  // namespace
 
 void in_background(const std::function<void()>& work) {
   std::async(std::launch::async, [&work] {
-    // Of this thread alone, on Linux. Where it is not allowed the work is done all the same.
+    // On Linux this call sets the priority of this thread only. If it fails, the work runs at normal priority.
     setpriority(PRIO_PROCESS, 0, kYielding);
     tbb::task_arena alone(1);
     alone.execute(work);

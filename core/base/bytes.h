@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Values as bytes and back, bit for bit: numbers little-endian as they lie in memory, texts and lists behind their
-// length. The reader believes nothing: it never reads past the end, and a list's length is checked against the bytes
-// that are there before anything is allocated.
+// Writes values as bytes and reads them back, bit for bit: numbers are little-endian, as in memory; texts and lists
+// start with their length. The reader does not trust the bytes: it never reads past the end, and it checks a list's
+// length against the bytes that are left before anything is allocated.
 #pragma once
 
 #include <bit>
@@ -38,7 +38,7 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  // `damaged` is called, and must throw, when the bytes are not what they should be.
+  // The reader calls `damaged`, which must throw, when a value that it reads is not valid or the bytes end too early.
   ByteReader(std::string_view bytes, std::function<void()> damaged) : bytes_(bytes), damaged_(std::move(damaged)) {}
 
   template <class T>
@@ -49,14 +49,14 @@ class ByteReader {
     return value;
   }
   bool flag() { return get_below<std::uint8_t>(2) == 1; }
-  // One of [0, end).
+  // Reads a number and requires that it lies in [0, end).
   template <class T>
   T get_below(std::uint64_t end) {
     const T value = get<T>();
     require(static_cast<std::uint64_t>(value) < end);
     return value;
   }
-  // A list's length, when each of its parts takes `least` bytes or more.
+  // Reads the number of elements of a list whose elements take at least `least` bytes each.
   std::size_t count(std::size_t least) {
     const std::size_t value = get<std::uint32_t>();
     require(value <= bytes_.size() / least);

@@ -21,9 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kAskMilliseconds = 20;  // whether the user has cancelled
+constexpr int kAskMilliseconds = 20;  // interval between two checks whether the user cancelled
 
-// Pages of this process's address space, in bytes.
+// Returns the size of this process's address space, in bytes.
 std::size_t mapped_bytes() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -58,7 +58,8 @@ void write_all(int to, const void* bytes, std::size_t size) {
 
 enum class Ending { closed, too_much, too_late, cancelled };
 
-// Up to one byte more than `most`.
+// Reads from the pipe into `bytes` until the pipe closes, more than `most` bytes arrived, the time `latest` is reached
+// or the user cancels. `bytes` exceeds `most` by at most one block.
 Ending read_all(int from, std::size_t most, Clock::time_point latest, const Progress& progress, std::string& bytes) {
   char block[1 << 16];
   while (bytes.size() <= most) {
@@ -75,7 +76,8 @@ Ending read_all(int from, std::size_t most, Clock::time_point latest, const Prog
   return Ending::too_much;
 }
 
-// How the child ended. One that closed its end of the pipe and lives on gets as long as the rest.
+// Waits for the child process and returns its exit status. A child that has closed its end of the pipe but still runs
+// is killed at the time `latest`, or when the user cancels.
 int status_of(pid_t child, Clock::time_point latest, const Progress& progress, Ending& ending) {
   int status = 0;
   while (ending == Ending::closed) {

@@ -13,19 +13,20 @@
 
 #include "core/base/error.h"
 
-// Of the OpenMP runtime that CHOLMOD itself is linked with.
+// Functions of the OpenMP runtime that CHOLMOD is linked with.
 extern "C" void omp_set_max_active_levels(int);
 extern "C" int omp_get_max_active_levels(void);
 
 namespace limber {
 
 namespace {
-constexpr double kMostMended = 0.125;            // of the nodes; with more, dissecting anew is sure to be better
-constexpr std::size_t kMostNumbers = INT32_MAX;  // in a factor: CHOLMOD counts them by int
-constexpr double kDearer = 1.16;  // than when the ordering was found: one that is mended for longer is given up
+// Largest share of the nodes that an adapted ordering may move; with more, a new dissection is better.
+constexpr double kMostMended = 0.125;
+constexpr std::size_t kMostNumbers = INT32_MAX;  // upper limit on the numbers in a factor: CHOLMOD counts them by int
+constexpr double kDearer = 1.16;  // upper limit on an adapted ordering's operations, relative to the last new ordering
 
-// Debian's CHOLMOD starts four threads inside a factorization, which on few cores doubles what it costs. Nested regions
-// that are not active run on the calling thread.
+// Limits CHOLMOD to one thread. Debian's CHOLMOD starts four threads inside a factorization, which doubles its time on
+// few cores; OpenMP regions that are not active run on the calling thread.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
@@ -37,11 +38,11 @@ class OneThread {
   int before_;
 };
 
-// OpenBLAS takes its working memory at its first call, and where there is none it asks again for ever. So it is led to
-// take it here, once the memory is seen to be there.
+// OpenBLAS allocates its working memory at its first call, and retries forever when memory does not suffice. So this
+// function first checks that enough memory can be mapped and then makes that first call.
 void require_blas_memory() {
   static const bool has_memory = [] {
-    constexpr std::size_t kMost = std::size_t{160} << 20;  // it takes 128 MB of address space
+    constexpr std::size_t kMost = std::size_t{160} << 20;  // OpenBLAS takes 128 MB of address space
     void* room = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED)
       throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
@@ -59,7 +60,8 @@ void require_blas_memory() {
   static_cast<void>(has_memory);
 }
 
-// Positions of A's entries, without values.
+// Returns a symmetric sparse matrix without values, given by its lower triangle: `row` lists the rows of its entries
+// column by column, and column[c] is the index in `row` of the first entry of column c.
 cholmod_sparse pattern_of(std::vector<int>& column, std::vector<int>& row) {
   cholmod_sparse A{};
   A.nrow = A.ncol = column.size() - 1;
@@ -82,7 +84,7 @@ void BlockGraphBuilder::add(std::span<const int> element) {
 }
 
 BlockGraph BlockGraphBuilder::build(const BlockGraph& base) const {
-  // The elements of every node.
+  // Lists for each node the elements that contain it.
   std::vector<std::int64_t> first(node_count_ + 1, 0);
   for (int node : node_) ++first[node + 1];
   for (int i = 0; i < node_count_; ++i) first[i + 1] += first[i];
@@ -122,14 +124,14 @@ struct Cholesky::Factor {
   double operations = 0;
 
   int node_count = 0;
-  std::vector<int> rank;                     // #nodes: place in the ordering
-  std::vector<int> parent;                   // #nodes, by rank: in the elimination tree
-  double fresh_operations = 0;               // of a factorization by nodes, when the ordering was last found anew
-  std::vector<std::int64_t> below_first{0};  // #nodes + 1, by rank
-  std::vector<int> below;                    // ranks of the blocks below the diagonal, rising
-  std::vector<int> column, row;              // scalar pattern, whole blocks, in ranks
+  std::vector<int> rank;        // #nodes: position in the ordering
+  std::vector<int> parent;      // #nodes, by rank: parent's rank in the elimination tree
+  double fresh_operations = 0;  // operations of a factorization of the node graph, at the last new ordering
+  std::vector<std::int64_t> below_first{0};  // #nodes + 1, by rank: first index into `below`
+  std::vector<int> below;                    // row ranks of the blocks below the diagonal, rising in each column
+  std::vector<int> column, row;              // positions of the matrix's entries, by rank; all nine of each block
   std::vector<double> value, right_side;
-  std::unique_ptr<double[]> room;  // of the factor's numbers
+  std::unique_ptr<double[]> room;  // memory of the factor's numbers
   std::size_t room_size = 0;
 
   Factor() {
@@ -147,7 +149,8 @@ struct Cholesky::Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
-  // Negative states of CHOLMOD are failures; of them only memory depends on the input.
+  // Throws Error after a failure of CHOLMOD (a negative status). The message names lack of memory, because no other
+  // failure depends on the input.
   void require(const char* what) const {
     if (common.status >= 0) return;
     throw Error("not enough memory for a system of " + std::to_string(node_count) + " mesh nodes",
@@ -167,8 +170,8 @@ struct Cholesky::Factor {
   void free_factor();
 };
 
-// By the old order, mended, or by nested dissection of the nodes; both then by postorder of the elimination tree, so
-// that supernodes are contiguous. Returns the supernodes of the graph's own factor, one row a node.
+// Orders the nodes by the adapted previous order or by nested dissection, then by postorder of the elimination tree, so
+// that supernodes are contiguous. Returns the analysed factor of the node graph, which has one row per node.
 Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> node_column{0}, node_row;
   node_count = graph.node_count();
@@ -187,7 +190,7 @@ Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> given;
   if (std::ssize(rank) == node_count) given = mended_order(graph, rank, parent, kMostMended);
   Analysed nodes(nullptr, FreeFactor{&common});
-  double by_nodes = INFINITY;  // operations
+  double by_nodes = INFINITY;  // operations of a factorization of the node graph
   if (!given.empty()) {
     common.method[0].ordering = CHOLMOD_GIVEN;
     nodes.reset(cholmod_analyze_p(&A, given.data(), nullptr, 0, &common));
@@ -241,7 +244,8 @@ void Cholesky::Factor::expand(const BlockGraph& graph) {
   value.assign(entries, 0);
 }
 
-// Of every node three rows and columns: supernodes of nodes are ones of their rows, and found in a ninth of the time.
+// Expands the analysed factor `nodes`, which has one row per node, to three rows and columns per node. A supernode of
+// nodes is also a supernode of the nodes' rows. To analyse the nodes takes a ninth of the time.
 void Cholesky::Factor::expand(const cholmod_factor& nodes) {
   factor = cholmod_allocate_factor(3 * nodes.n, &common);
   require("analysis");
@@ -273,9 +277,10 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
     for (int c = 0; c < 3; ++c) *rows++ = 3 * static_cast<const int*>(nodes.s)[k] + c;
 }
 
-// The numbers are not CHOLMOD's own, which would be given back to the system with each analysis.
+// Gives the factor memory that this class owns and reuses. CHOLMOD's own memory would return to the system at each
+// analysis.
 void Cholesky::Factor::take_room() {
-  constexpr std::size_t kSpare = 8;  // one part more in so many: the next graph is much like this one
+  constexpr std::size_t kSpare = 8;  // allocates 1/8 more than needed, because the next graph is similar
   if (factor->xsize > room_size) try {
       room.reset();
       room_size = factor->xsize + factor->xsize / kSpare;
@@ -340,7 +345,7 @@ void Cholesky::places(std::span<const int> nodes, Place* places) const {
               *end = factor_->below.data() + factor_->below_first[c + 1];
     const std::int64_t stride = 3 * (1 + end - begin), first = factor_->column[3 * c];
     place_of(j, j) = {first, stride};
-    const int* at = begin;  // both lists rise
+    const int* at = begin;  // `below` and `nodes` are both sorted by rank
     for (std::size_t i = j + 1; i < nodes.size(); ++i) {
       const int r = factor_->rank[nodes[i]];
       while (at != end && *at < r) ++at;

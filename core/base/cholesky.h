@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky
 // factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis &
-// Kumar 1998, METIS]. Ordered and analysed once per graph, factorized for as many values as one likes; for a graph that
-// is much like the one before the order is mended (elimination_tree.h), and found anew when that has made
-// factorizations a quarter dearer. Works on one thread, so that its results do not depend on how many there are.
+// Kumar 1998, METIS]. A graph is ordered and analysed once, then factorized for any number of values. When the next
+// graph differs little, the previous ordering is adapted to it (elimination_tree.h); a new ordering is computed when
+// the adapted one makes factorizations more than a sixth more expensive. All work runs on one thread, so that results
+// do not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +16,13 @@
 
 namespace limber {
 
-// The graph in which the nodes of every element meet. Elements are `size` nodes each, -1 is no node.
+// Builds the graph in which two nodes are neighbours when they share an element. An element is a list of nodes; -1
+// stands for no node.
 class BlockGraphBuilder {
  public:
   explicit BlockGraphBuilder(int node_count) : node_count_(node_count) {}
   void add(std::span<const int> element);
-  // What is in `base` (of as many nodes, or empty) meets too.
+  // Returns the graph of all added elements together with the edges of `base`, which is empty or has node_count nodes.
   BlockGraph build(const BlockGraph& base = {}) const;
 
  private:
@@ -31,40 +33,44 @@ class BlockGraphBuilder {
 
 class Cholesky {
  public:
-  // Where the block of two nodes lies in values(): entry (row, column) at `at` + column * `stride` + row.
+  // Location of a 3x3 block, of a row node and a column node, in values(). The block's entry (row, column), each 0 to
+  // 2, is values()[at + column * stride + row].
   struct Place {
     std::int64_t at;
     std::int64_t stride;
   };
 
-  // throws Error when memory does not suffice
+  // Orders and analyses `graph`. Throws Error when memory does not suffice.
   explicit Cholesky(const BlockGraph& graph);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;
-  // For another graph, in the memory that the factor has: touching as much anew costs half of a factorization.
+  // Analyses another graph and reuses the memory of the factor, because to fill fresh memory would take half as much
+  // time as a factorization.
   void analyse(const BlockGraph& graph);
 
   int node_count() const;
-  // Of the ordering that keeps the factor sparse. Only blocks whose row node comes at or after their column node are
-  // stored; of a node's own block only the lower triangle is read.
+  // Returns the node's position in the ordering that keeps the factor sparse. A block is stored only when
+  // rank(row node) >= rank(column node). Of a block on the diagonal only the lower triangle is read.
   int rank(int node) const;
-  // row, column  nodes with rank(row) >= rank(column); at -1 where they neither are the same nor meet in the graph
+  // Returns the location of the block of two nodes; requires rank(row) >= rank(column). The location's `at` is -1 when
+  // the nodes are different and not neighbours in the graph.
   Place place(int row, int column) const;
-  // Of all pairs of some nodes, whose ranks rise, to `places`: the lower triangle row by row. Where one is -1, no node,
-  // at is -1.
+  // Writes to `places` the locations of the blocks of all pairs of `nodes`: the lower triangle, row by row. The nodes
+  // must be sorted by rank. A pair with node -1 (no node) gets `at` = -1.
   void places(std::span<const int> nodes, Place* places) const;
 
   std::span<double> values();
-  void clear();  // all values to zero
+  void clear();  // sets all values to zero
 
-  // False when the matrix is not positive definite: nothing to solve with then.
+  // Factorizes the matrix. Returns false when it is not positive definite; solve() must not be called then.
   bool factorize();
-  // Solves in place: 3 numbers per node, in the graph's own order. After a factorize() that was true.
+  // Solves the system in place: `b` holds the right-hand side, then the solution, 3 numbers per node in the graph's
+  // order. Call it after factorize() returned true.
   void solve(std::span<double> b);
 
   std::int64_t factor_size() const;  // numbers in the factor, 8 bytes each
-  double factor_operations() const;  // floating point operations of a factorization, about
+  double factor_operations() const;  // approximate floating point operations of a factorization
 
  private:
   struct Factor;

@@ -10,16 +10,18 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kMost = std::size_t{1} << 30;  // bytes at a time; the library counts in 32 bits
-}
+// Upper limit on the bytes per library call, because the library counts them in 32 bits.
+constexpr std::size_t kMost = std::size_t{1} << 30;
+}  // namespace
 
-// The library reads gzip's wrap. Of zlib's (RFC 1950) it takes bytes that lie behind the stream, so that one is read
-// here: two bytes before, four of Adler-32 after.
+// The state of the stream. The library reads the gzip wrapper itself. With a zlib wrapper (RFC 1950) the library would
+// consume bytes after the stream, so this class reads that wrapper: a header of two bytes before the deflate data and
+// the Adler-32 checksum of four bytes after it.
 struct Inflater::State {
   inflate_state stream;
   std::array<std::uint8_t, 2> header;
   std::array<std::uint8_t, 4> trailer;
-  std::size_t in_header = 0, in_trailer = 0;  // bytes there
+  std::size_t in_header = 0, in_trailer = 0;  // bytes of the header and of the trailer read so far
 
   bool is_zlib() const { return stream.crc_flag == ISAL_ZLIB_NO_HDR; }
   bool header_is_right() const {
@@ -87,8 +89,8 @@ Inflater::Step Inflater::inflate(std::string_view packed, void* to, std::size_t 
   return {taken(), made};
 }
 
-// Level 1 packs label volumes at 2 GB/s. Higher ones gain nothing on runs of labels; a general compressor's best gains
-// a quarter for twenty times the time.
+// Compresses at level 1, which packs label volumes at 2 GB/s. Higher levels of this library make label volumes no
+// smaller. The best level of a general compressor makes them a quarter smaller, in twenty times the time.
 struct Deflater::State {
   isal_zstream stream;
   std::array<std::uint8_t, ISAL_DEF_LVL1_DEFAULT> work;
@@ -103,7 +105,7 @@ Deflater::Deflater(Wrap wrap, std::function<void(const void*, std::size_t)> put)
   stream.level = 1;
   stream.level_buf = state_->work.data();
   stream.level_buf_size = static_cast<std::uint32_t>(state_->work.size());
-  // The gzip header names no time and no file: the same bytes every time.
+  // The gzip header contains no time and no file name, so that the output is the same every time.
   stream.gzip_flag = wrap == Wrap::Gzip ? IGZIP_GZIP : IGZIP_ZLIB;
 }
 Deflater::~Deflater() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Deflate streams (RFC 1951) with a gzip or a zlib wrap, piece by piece. Every stream is closed by its checksum, and
-// the checksum is verified.
+// Reads and writes deflate streams (RFC 1951) with a gzip or zlib wrapper, in pieces. Each stream ends with a checksum,
+// which the reader verifies.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@ class Inflater {
   ~Inflater();
 
   struct Step {
-    std::size_t taken = 0, made = 0;  // bytes of the input, bytes put out
+    std::size_t taken = 0, made = 0;  // input bytes consumed, output bytes written
     bool damaged = false;
   };
-  // Goes on with the stream: gzip or zlib, told apart by its first byte. What was taken may be put out by a later step,
-  // so the stream is at a stop only where a step with no input makes nothing.
+  // Decompresses the next bytes of the stream into `to`, at most `room` bytes. The stream's first byte tells gzip from
+  // zlib. A later step may write the output of bytes that an earlier step consumed, so all output has been written only
+  // when a step without input writes no bytes.
   Step inflate(std::string_view packed, void* to, std::size_t room);
-  bool ended() const { return ended_; }  // and its checksum was right
-  std::size_t behind() const {
-    return behind_;
-  }                   // last bytes of those taken that lie behind the stream, once it has ended
-  void start_next();  // another stream may follow
+  bool ended() const { return ended_; }  // true after the end of the stream when the checksum was right
+  // Returns how many of the last consumed bytes lie behind the end of the stream; call it when ended().
+  std::size_t behind() const { return behind_; }
+  void start_next();  // resets the reader for another stream
 
  private:
   struct State;
@@ -38,12 +38,12 @@ class Inflater {
 class Deflater {
  public:
   enum class Wrap { Zlib, Gzip };
-  //   put  gets the packed bytes in order
+  // Creates a compressor; `put` receives the packed bytes in order.
   Deflater(Wrap wrap, std::function<void(const void*, std::size_t)> put);
   ~Deflater();
 
   void write(const void* bytes, std::size_t size);
-  void end();  // after the last byte; once
+  void end();  // call it once, after the last byte
 
  private:
   void pump(const void* bytes, std::size_t size, bool last);

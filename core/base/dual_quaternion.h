@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a rigid transform is at an even pace: every one is a screw, a turn about a line while it goes along that line
-// [Chasles 1830; logarithm as in Murray, Li & Sastry, A Mathematical Introduction to Robotic Manipulation, 1994,
-// appendix A]. After one unit of time the screw has done all of the transform.
+// Represents a rigid transform as a screw motion at constant speed: a rotation about an axis with a translation along
+// that axis [Chasles 1830; logarithm as in Murray, Li & Sastry, A Mathematical Introduction to Robotic Manipulation,
+// 1994, appendix A]. After one unit of time the motion has completed the transform.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@
 namespace limber {
 
 struct Screw {
-  glm::dvec3 turn{0};       // radians, about the line's direction; at most half a turn
-  glm::dvec3 at_origin{0};  // velocity of what is at the origin
+  glm::dvec3 turn{0};       // rotation vector (direction: the axis, length: the angle), radians, at most half a turn
+  glm::dvec3 at_origin{0};  // velocity of the body's point that lies at the origin, mm per unit of time
 
-  // Of what is at p, at the start.
+  // Returns the velocity of the body's point that lies at p, mm per unit of time.
   glm::dvec3 velocity(const glm::dvec3& p) const { return glm::cross(turn, p) + at_origin; }
 };
 

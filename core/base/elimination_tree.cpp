@@ -14,7 +14,8 @@ std::vector<int> inverse(const std::vector<int>& rank) {
   return node;
 }
 
-// Between two branches: ranks of its ends, and the first rank after both that joins them, #nodes where none does.
+// An edge between two branches of the elimination tree: the ranks of the edge's ends, and the rank of the lowest common
+// ancestor at which the branches join (#nodes where they never join).
 struct Joint {
   int low, high, joined_at;
 };
@@ -22,7 +23,8 @@ struct Joint {
 std::vector<Joint> edges_between_branches(const BlockGraph& graph, const std::vector<int>& rank,
                                           const std::vector<int>& parent) {
   const int n = graph.node_count();
-  std::vector<int> lowest(n);  // rank in the branch that ends at each: in a postorder all from there on
+  std::vector<int> lowest(
+      n);  // by rank: lowest rank in the subtree; in a postorder the subtree holds every rank from it to the root's
   for (int r = 0; r < n; ++r) lowest[r] = r;
   for (int r = 0; r < n; ++r)
     if (parent[r] >= 0) lowest[parent[r]] = std::min(lowest[parent[r]], lowest[r]);
@@ -62,9 +64,9 @@ std::vector<int> mended_order(const BlockGraph& graph, const std::vector<int>& r
   for (int j = 0; j < int(joints.size()); ++j)
     for (const int end : {joints[j].low, joints[j].high}) joints_of[end].push_back(j);
 
-  // Those with most such edges first, until every edge has an end among them.
+  // Moves nodes until every edge between branches has a moved end; the node with the most uncovered edges is first.
   std::vector<int> open(n), moved_to(n, -1);
-  std::priority_queue<std::pair<int, int>> next;  // how many are open, -rank
+  std::priority_queue<std::pair<int, int>> next;  // of each node: number of its uncovered edges, -rank
   for (int r = 0; r < n; ++r)
     if ((open[r] = int(joints_of[r].size())) > 0) next.emplace(open[r], -r);
   std::vector<char> covered(joints.size(), 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a user can act on. Thrown with three parts, shown as one line:
+// Defines the error that a user can act on. It has three parts, shown as one line:
 //   limber: WHAT is wrong: WHERE (file, label, bone): WHAT TO DO
-// Caught in exactly three places: the command line's main, the editor's operator runner, the end of a job.
-// A library's own exception becomes an Error at that library's door.
+// An Error is caught in exactly three places: the command line's main, the editor's operator runner and the end of a
+// job. An exception of a library is converted to an Error where that library is called.
 #pragma once
 
 #include <stdexcept>
@@ -16,7 +16,7 @@ class Error : public std::runtime_error {
       : std::runtime_error(what + ": " + where + ": " + what_to_do) {}
 };
 
-// The user asked to stop. Never shown as an error.
+// Exception that is thrown when the user has cancelled the work. The user never sees it as an error.
 class Cancelled : public std::exception {
  public:
   const char* what() const noexcept override { return "cancelled"; }

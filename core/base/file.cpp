@@ -19,8 +19,8 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// A file without a name in `folder`: if the process dies, by whatever signal, nothing is left of it. -1 where the file
-// system cannot do that.
+// Opens a nameless file in `folder` and returns its descriptor. When the process dies, even by SIGKILL, nothing is left
+// of the file. Returns -1 where the file system does not support nameless files.
 int open_nameless(const Path& folder, mode_t mode) {
   return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
 }
@@ -72,7 +72,8 @@ void check_place(const Path& path) {
 
 namespace {
 
-// Writes into the open file under the name `temporary`, and onto the disk, with the permissions of what it replaces.
+// Fills a new file: calls `write`, which writes to it through the path `temporary`, gives it the permissions of the
+// file `target` that it replaces, and flushes it to disk.
 void fill(int descriptor, const Path& temporary, const Path& target, const Path& path,
           const std::function<void(const Path&)>& write) {
   try {
@@ -84,7 +85,8 @@ void fill(int descriptor, const Path& temporary, const Path& target, const Path&
   if (::fsync(descriptor) != 0) throw not_written(path);
 }
 
-// Others may not read what is written over a file that they may not read.
+// Returns the permissions of a new file. A file that replaces another is private at first, so that nobody can read it
+// who may not read the replaced file.
 mode_t first_mode(const Path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
 
 }  // namespace
@@ -101,7 +103,7 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
     fill(nameless.number, from, target, path, write);
     if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, target.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
     if (errno != EEXIST) throw not_written(path);
-    // A name is taken over only by renaming another.
+    // First links the file to a temporary name and then renames it, because linkat() cannot replace an existing file.
     const Unfinished unfinished(name);
     if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) throw not_written(path);
     if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files whole or not at all.
+// Reads and writes files completely or not at all, and computes their hashes.
 #pragma once
 
 #include <array>
@@ -12,22 +12,23 @@ namespace limber {
 
 using Path = std::filesystem::path;
 
-// The file's bytes. Throws Error when it cannot be read or is larger than `limit` bytes.
+// Returns the file's bytes. Throws Error when it cannot be read or is larger than `limit` bytes.
 std::string read_file(const Path& path, std::uint64_t limit = std::uint64_t{1} << 32);
 
-// Throws Error when no file can be put there: the folder is missing, or a folder has that name. Commands ask this
-// first, before they compute.
+// Throws Error when no file can be written at `path`: its folder is missing, or `path` is itself a folder. Commands
+// call this before they compute.
 void check_place(const Path& path);
 
-// Writes a file without a name in the same folder (where the file system has none of those: under a temporary name),
-// flushes it, and gives it the name `path` in one step: whoever looks sees the old file or the new one, and a process
-// that is killed leaves nothing behind. When `write` throws, `path` is as before, and the error names `path`. A file
-// that is replaced keeps its permissions; a symbolic link stays, and the file that it names is replaced.
-//   write  gets a path to open for writing (with no meaningful extension)
+// Writes a nameless file in the folder of `path`, flushes it to disk and gives it the name `path` in one step. The file
+// has a temporary name where the file system has no nameless files. Readers see either the old file or the new one, and
+// a killed process leaves nothing behind. When `write` throws, `path` is unchanged and the error names `path`. The new
+// file gets the permissions of the file that it replaces. When `path` is a symbolic link, its target is replaced.
+//   write  receives the path of the unfinished file, which it opens for writing; its extension has no meaning
 void write_atomically(const Path& path, const std::function<void(const Path& temporary)>& write);
 void write_file_atomically(const Path& path, const std::string& bytes);
 
-// Lower-case hexadecimal SHA-256 of a file's bytes; of a folder, of its files' hashes in name order.
+// Returns the SHA-256 of a file's bytes in lower-case hexadecimal. For a folder it is the SHA-256 of the hashes of its
+// files, in the order of their names.
 std::string sha256_of_file(const Path& path);
 std::array<std::uint8_t, 32> sha256(const void* bytes, std::size_t size);
 std::string sha256_of_bytes(const void* bytes, std::size_t size);

@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Goes over the text event by event, which needs no recursion, and stops at the first problem.
+// Inspects a JSON text event by event, which needs no recursion, and stops at the first problem.
 class Inspector final : public nlohmann::json_sax<Json> {
  public:
   std::string problem;
@@ -47,7 +47,7 @@ class Inspector final : public nlohmann::json_sax<Json> {
     keys_.pop_back();
     return true;
   }
-  std::vector<std::set<std::string>> keys_;  // of each open object; none of an array
+  std::vector<std::set<std::string>> keys_;  // keys seen so far in each enclosing object or array; an array has none
 };
 }  // namespace
 

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What every JSON text from a file passes before it is parsed. A value that is nested a million deep fits in two
-// megabytes; the JSON library copies and prints by recursion, so such a value would end the program. And of two equal
-// keys in one object it keeps one, which would be a silent choice.
+// Checks every JSON text from a file before it is parsed. A value nested a million levels deep fits in two megabytes,
+// and the JSON library, which copies and prints by recursion, would overflow the stack on it. The library also keeps
+// only one of two equal keys in an object, without a message.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
-// Our deepest files (reports, glTF) have 12 levels.
+// Upper limit on the nesting of a JSON text, in levels. The deepest files that Limber writes or reads (reports, glTF)
+// have 12 levels.
 constexpr int kDeepestJson = 64;
 
-// What is wrong with the text: nested more than kDeepestJson levels, or a key twice in one object. Empty for sound
-// JSON, and for what is no JSON at all, which the parser says better.
+// Returns what is wrong with the text, as a message: nesting deeper than kDeepestJson levels, or a key twice in one
+// object. Returns "" for JSON without these problems. Also returns "" for text that is not JSON, because the parser
+// reports that better.
 std::string json_problem(const std::string& text);
 
-// The text itself.   throws Error with `where` when there is a problem
+// Returns the text itself. Throws Error with `where` (the file) when json_problem() finds a problem in the text.
 const std::string& checked_json(const std::string& text, const std::string& where);
 
-// The text itself, or "" when there is a problem: for those to whom damaged text is no text.
+// Returns the text itself, or "" when json_problem() finds a problem in it, for callers that treat damaged text as
+// missing.
 const std::string& sound_json(const std::string& text);
 
 }  // namespace limber

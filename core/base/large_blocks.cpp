@@ -11,7 +11,7 @@
 
 #include "core/base/memory_pages.h"
 
-// A sanitizer brings its own allocator.
+// A build with a sanitizer keeps the sanitizer's own allocator.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIMBER_HAS_SANITIZER
 #elif defined(__has_feature)

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a program that works on whole bodies takes its memory. Most of it are a few blocks of many megabytes, one value a
-// voxel. The usual allocator keeps freed ones for later, and blocks of other sizes then find no room among them: half
-// as much again as is in use. And the system hands memory out in pages of 4 KB, which costs more time than filling
-// them.
+// Sets how a program that works on whole bodies allocates memory. Most of that memory is a few blocks of many megabytes
+// with one value per voxel. The default allocator keeps freed blocks. Blocks of other sizes do not fit into them, so
+// the allocator holds half as much memory again as is in use. It also takes memory in pages of 4 KB, whose page faults
+// take more time than filling the pages.
 #pragma once
 
 namespace limber {
 
-// From here on, blocks of 8 MB and more go back to the system when they are freed, and come in large pages where the
-// system has them. Only a program calls this, once, at its start: it replaces the global operator new.
+// From this call on, blocks of 8 MB and more return to the system when they are freed, and use large pages where the
+// system has them. Only a program's main calls this, once, and never a library, because this file also replaces the
+// global operator new.
 void use_large_blocks();
 
-// Hands memory that was freed, and that the allocator keeps for later, back to the system.
+// Gives freed memory that the allocator still holds back to the system.
 void return_free_memory();
 
 }  // namespace limber

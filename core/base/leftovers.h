@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files on their way that a killed process could not remove. Each is noted in the user's state folder while it is
-// there; the note is locked by its process, and the system gives the lock back however that process ends. So a later
-// start of the program knows what nobody owns any more, and removes it.
+// Removes unfinished files that a killed process left behind. While a process writes a file, a note (a small text file
+// in the user's state folder) names that file. The process holds a lock on the note, which the system releases however
+// the process ends. So a later start of the program finds the files that no process owns any more and removes them.
 #pragma once
 
 #include <string>
@@ -10,13 +10,15 @@
 
 namespace limber {
 
-// A file or folder that must not outlive its process, unless it is given another name. What is not named as Limber
-// names such files (".limber-...", "limber-XXXXXX", "...edits.new") is never removed by a later start.
+// Owns a temporary file or folder, which must not outlive its process unless it is renamed. When the process is killed,
+// a later start of the program removes the file, if it has one of Limber's temporary names (".limber-...",
+// "limber-XXXXXX", "...edits.new").
 class Unfinished {
  public:
-  // Notes the path, before anything is there. Where no note can be written a later start removes nothing.
+  // Writes a note that names `path`; call it before the file is created. When the note cannot be written, a later start
+  // of the program removes nothing.
   explicit Unfinished(const Path& path);
-  // Removes what is there, a file with its journal or a folder with all that is in it, and then the note.
+  // Removes what exists at the path (a file with its "-journal" file, or a folder with its contents), then the note.
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
@@ -26,11 +28,11 @@ class Unfinished {
   int descriptor_ = -1;
 };
 
-// ".limber-PID-NAME" beside `path`, for a file that will take its name.
+// Returns ".limber-PID-NAME" beside `path`, the temporary name of a file that will be renamed to `path`.
 Path temporary_name(const Path& path);
 
-// Removes what killed processes of this user have left, and their notes. Nothing that a living process owns. Never
-// throws.
+// Removes the unfinished files that killed processes of this user left, and their notes. Files of a living process
+// stay. Never throws.
 void remove_leftovers();
 
 }  // namespace limber

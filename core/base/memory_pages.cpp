@@ -16,7 +16,7 @@ struct Pages {
   std::uintptr_t bytes = 0;
 };
 
-// The whole pages of a range.
+// Returns the memory pages that lie completely inside a range of addresses.
 Pages pages_of(void* begin, std::int64_t bytes) {
   static const std::uintptr_t page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const std::uintptr_t from = reinterpret_cast<std::uintptr_t>(begin), first = (from + page - 1) / page * page,
@@ -26,13 +26,14 @@ Pages pages_of(void* begin, std::int64_t bytes) {
 
 }  // namespace
 
-// A refusal costs time, nothing else.
+// Ignores a refusal by the system, because only speed is lost then.
 void want_large_pages(void* begin, std::int64_t bytes) {
   if (const Pages pages = pages_of(begin, bytes); pages.bytes) madvise(pages.begin, pages.bytes, MADV_HUGEPAGE);
 }
 
 namespace {
-constexpr std::size_t kUnreserved = std::size_t{1} << 30;  // from here on, room is not set aside
+// Size in bytes (1 GB) from which on a block of memory is mapped without a reservation.
+constexpr std::size_t kUnreserved = std::size_t{1} << 30;
 }  // namespace
 
 void* new_zeros(std::size_t bytes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The memory pages under large vectors. What will be filled whole asks for large pages: one fault where there were 512.
+// Controls the memory pages of large vectors. For memory that will be filled completely it asks for large pages (2 MB
+// instead of 4 KB), which cause one page fault instead of 512.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +8,16 @@
 
 namespace limber {
 
-// For a range of fresh memory that will be filled. Only a wish.
+// Asks for large pages in a range of fresh memory that will be filled. The system may ignore the request.
 void want_large_pages(void* begin, std::int64_t bytes);
 
-// Zeros, which take memory only where they are written. Very many need not fit into the machine's memory: a body's grid
-// may be mostly air. nullptr where there is no room; `bytes` are the same for both.
+// Returns zeroed memory that uses physical memory only where it is written. It may be larger than the machine's memory,
+// because a body's grid may be mostly air. Returns nullptr when the system has no memory. Free it by delete_zeros()
+// with the same `bytes`.
 void* new_zeros(std::size_t bytes);
 void delete_zeros(void* begin, std::size_t bytes);
 
-// Whether every byte is zero.
+// Returns whether every byte is zero.
 bool is_all_zero(const void* begin, std::size_t bytes);
 
 }  // namespace limber

@@ -13,8 +13,8 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Where what belongs to the program lies: beside it, in ../lib/limber from there, or where Limber is installed, for
-// another program that uses its library.
+// Returns the folders that may hold Limber's modules and helper programs: the program's folder, ../lib/limber relative
+// to it, and where Limber is installed. The last one serves another program that uses Limber as a library.
 std::vector<Path> own_folders() {
   std::error_code error;
   const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Code that is loaded while the program runs, always by its whole path: by a bare name the loader would also look where
-// the environment says (LD_LIBRARY_PATH, PATH), and an empty entry there is the working folder, where anybody's file
-// may lie.
+// Finds code to load and programs to start, always by an absolute path. For a bare name the loader would also search
+// the folders of LD_LIBRARY_PATH or PATH, and an empty entry there means the working folder, which may hold a
+// stranger's file.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,15 @@
 
 namespace limber {
 
-// Opens NAME.so beside the program, or in ../lib/limber from there. nullptr where neither holds one that can be opened.
-// It stays open until the program ends.
+// Opens the module NAME.so, a shared library, in the program's folder, in ../lib/limber relative to it or where Limber
+// is installed. Returns nullptr when none of them can be opened. The module stays open until the program ends.
 void* open_module(const std::string& name);
 
-// The program NAME in the same two places, which is part of Limber and no command. Nothing where neither holds it, as
-// in another program that uses Limber as a library.
+// Returns the path of the helper program NAME, which is a part of Limber and not a command. Searches the same folders
+// as open_module(). Returns nothing when no folder has the program.
 std::optional<Path> find_own_program(const std::string& name);
 
-// The program of that name in the first folder of PATH that has it; folders that are not named from the root are passed
-// over.
+// Returns the path of the program `name` in the first folder of PATH that has it. Skips relative folders of PATH.
 std::optional<Path> find_program(const std::string& name);
 
 }  // namespace limber

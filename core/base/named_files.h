@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files that a command names, and whether two names stand for one file: by device and inode where the file exists, so
-// that symbolic and hard links are seen through, else by the place that the name leads to.
+// Checks whether two file names of a command mean the same file: by device and inode where the file exists, so that
+// symbolic and hard links are recognized, else by the resolved path.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace limber {
 
-// What was asked for contradicts itself, whatever the files hold: the command line's exit code is 2.
+// Error of a command whose arguments contradict each other, whatever the files contain. The command line then ends with
+// exit code 2.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
 struct NamedFile {
-  std::string named_by;  // the option or the word, as in "--report"
+  std::string named_by;  // the option or argument, as in "--report"
   Path path;
 };
 
-// Throws UsageError when an output is also an input, lies as a file in a folder that is an input, or is another output.
-// What is no regular file (a device, a pipe) may be named twice: nothing is lost by writing to it.
+// Throws UsageError when an output is also an input, is a file in a folder that is an input, or is another output. A
+// file that is not regular (a device, a pipe) may be named twice: writing to it destroys nothing.
 void check_apart(const std::vector<NamedFile>& inputs, const std::vector<NamedFile>& outputs);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files that belong together: when a later one fails, the earlier ones are taken away again.
+// Writes files that belong together: when a later one fails, the earlier ones are removed.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ class Outputs {
     if (!complete_)
       for (const Path& path : written_) std::filesystem::remove(path, ignored);
   }
-  // Before the files are written: those that are there already are not taken away.
+  // Registers files before they are written. On failure, files that already exist now are not removed.
   void expect(const std::vector<Path>& paths) {
     for (const Path& path : paths)
       if (!std::filesystem::exists(path)) written_.push_back(path);

@@ -18,14 +18,14 @@
 namespace limber {
 
 namespace {
-// The arena of the living ThreadCount. It is a setting of the machine's use, not of any computation: results never
-// depend on it.
+// The TBB arena of the ThreadCount that is alive; nullptr: none. The number of threads changes speed, never results.
 std::atomic<tbb::task_arena*> current_arena = nullptr;
 
-// What the loops of this thread's present command or job listen to.
+// The Progress of the command or job that this thread runs; nullptr: none. Its parallel loops check it for a cancel.
 thread_local const Progress* current_progress = nullptr;
 
-// Threads that cannot begin lack memory, most often for their stacks; TBB says so in words alone.
+// Runs `run`, and converts TBB's error for a thread that cannot start to std::bad_alloc. The usual cause is lack of
+// memory for the thread's stack, and TBB reports the error only as text.
 template <class Run>
 void without_thread_failures(const Run& run) {
   try {

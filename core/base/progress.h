@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a long function tells how far it is and learns that it should stop.
-// The function calls update() from its own thread a few times a second's worth of work (so that a cancel takes
-// effect within 100 ms); loops inside parallel_for may poll cancelled(), which any thread may call.
+// Reports the progress of a long function and tells it to stop. The function calls update() from its own thread several
+// times a second, so that a cancel takes effect within 100 ms; loops inside parallel_for may poll cancelled(), which
+// any thread may call.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,10 @@ class Progress {
  public:
   virtual ~Progress() = default;
 
-  // stage  what is being done, as a user would say it ("weights"); fraction of that stage in [0, 1]
-  // throws Cancelled when cancel() was called before
+  // Reports progress.
+  //   stage     the present step, in a word for the user ("weights")
+  //   fraction  the completed share of that step, [0, 1]
+  //   throws Cancelled when cancel() was called earlier
   void update(std::string_view stage, double fraction) {
     if (cancelled()) throw Cancelled();
     on_update(stage, fraction);
@@ -31,7 +33,7 @@ class Progress {
   std::atomic<bool> cancelled_ = false;
 };
 
-// Listens to nothing and is never cancelled.
+// Returns a Progress that ignores updates and is never cancelled.
 Progress& no_progress();
 
 }  // namespace limber

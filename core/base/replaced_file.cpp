@@ -27,11 +27,12 @@ Path target_of(const Path& path) {
 void take_permissions(int descriptor, const Path& replaced) {
   struct stat status {};
   if (::stat(replaced.c_str(), &status) != 0) return;
-  // The owner first: giving a file away takes bits of its mode. Only root may, and then the owner's file stays theirs.
+  // Sets the owner before the permissions, because a change of owner clears some of them. Only root may set the owner;
+  // a process of another user sets only the group.
   if (::fchown(descriptor, status.st_uid, status.st_gid) != 0 &&
       ::fchown(descriptor, static_cast<uid_t>(-1), status.st_gid) != 0)
     status.st_mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
-  // A file system that keeps no permissions refuses; then those that it was opened with, the fewest, stay.
+  // A file system without permissions refuses. Then the file keeps the restrictive permissions that it was opened with.
   [[maybe_unused]] const int refused = ::fchmod(descriptor, status.st_mode & 07777);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a file that takes another's place takes over from it: the end of symbolic links, permissions, and in messages
-// the name that the user knows.
+// Determines what a new file inherits from the file that it replaces: its path (the target of symbolic links), its
+// permissions, and in messages the name that the user knows.
 #pragma once
 
 #include "core/base/error.h"
@@ -8,15 +8,16 @@
 
 namespace limber {
 
-// What a write to `path` replaces: at the end of symbolic links the file that they name, there or not; else the path
-// itself. throws Error when the links go round in a circle, or what is there is no regular file
+// Returns the path of the file that a write to `path` replaces. If `path` is a symbolic link, it is the link's target,
+// which need not exist; else it is `path` itself. Throws Error when the links form a circle, or when `path` exists and
+// is not a regular file.
 Path target_of(const Path& path);
 
-// Gives the open file the permissions, and where it may the owner and group, of the file that it is about to replace.
-// Nothing where there is none.
+// Gives the open file the permissions, and where allowed the owner and group, of the file that it replaces. Does
+// nothing when that file does not exist.
 void take_permissions(int descriptor, const Path& replaced);
 
-// The error with the name that the user knows in place of a temporary one.
+// Returns the error in which `name`, which the user knows, replaces the file's temporary name.
 Error with_name(const Error& error, const Path& temporary, const Path& name);
 
 }  // namespace limber

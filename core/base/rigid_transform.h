@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rotation followed by a translation, p' = R p + t. Lengths in mm. Named by both ends, read as a product:
-//   posed_from_rest * rest_point
+// A rotation followed by a translation, p' = R p + t, in mm. A variable's name states the result and the argument, so
+// that code reads as a product:
+//   posed_point = posed_from_rest * rest_point
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,13 +10,13 @@
 namespace limber {
 
 struct RigidTransform {
-  glm::dquat rotation{1, 0, 0, 0};  // unit
+  glm::dquat rotation{1, 0, 0, 0};  // unit quaternion
   glm::dvec3 translation{0};
 };
 
 inline glm::dvec3 operator*(const RigidTransform& t, const glm::dvec3& p) { return t.rotation * p + t.translation; }
 
-// (a * b) p = a (b p)
+// Composes transforms: (a * b) p = a (b p).
 inline RigidTransform operator*(const RigidTransform& a, const RigidTransform& b) {
   return {glm::normalize(a.rotation * b.rotation), a.rotation * b.translation + a.translation};
 }
@@ -25,7 +26,7 @@ inline RigidTransform inverse(const RigidTransform& t) {
   return {back, -(back * t.translation)};
 }
 
-// The rotation about a fixed point. Exactly the identity when `rotation` is.
+// Returns the rotation about `point`, which stays fixed. The result is exactly the identity when `rotation` is.
 inline RigidTransform rotation_about(const glm::dvec3& point, const glm::dquat& rotation) {
   if (rotation == glm::dquat(1, 0, 0, 0)) return {};
   return {rotation, point - rotation * point};

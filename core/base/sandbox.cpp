@@ -28,7 +28,7 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 #elif defined(__aarch64__)
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #else
-constexpr std::uint32_t kArchitecture = 0;  // no filter is known
+constexpr std::uint32_t kArchitecture = 0;  // 0: the system call filter supports no such architecture
 #endif
 
 std::size_t mapped_bytes() {
@@ -40,9 +40,10 @@ std::size_t mapped_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-constexpr std::size_t kMostMemory = std::size_t{1} << 46;  // an address space; sums with it cannot overflow
+// Upper limit on memory, bytes: half of a process's address space, so that sums with it cannot overflow.
+constexpr std::size_t kMostMemory = std::size_t{1} << 46;
 
-// A limit that stands already is never raised.
+// Sets a resource limit of this process. Never raises a limit that is in force.
 void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
   rlimit now{};
   if (::getrlimit(what, &now) != 0) return;
@@ -58,19 +59,21 @@ void limit_resources(const SandboxSettings& settings, std::size_t mapped) {
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_FSIZE, 0, 0);
   limit(RLIMIT_NPROC, 0, 0);
-  constexpr rlim_t kOpenFiles = 16;  // the reader holds its two ends and two files of a volume
+  // Upper limit on open files. The process needs two pipe ends and two files of a volume.
+  constexpr rlim_t kOpenFiles = 16;
   limit(RLIMIT_NOFILE, kOpenFiles, kOpenFiles);
 }
 
-// linux/landlock.h of the kernel that this is built on may be older than the one that it runs on.
+// The kernel's structure of Landlock's rules. It is declared here, because linux/landlock.h may be older on the build
+// machine than the kernel that runs the program.
 struct LandlockRules {
   std::uint64_t files, network, scopes;
 };
-constexpr int kLandlockVersion = 1;  // flag of the call that asks for it
+constexpr int kLandlockVersion = 1;  // flag that asks the system call for Landlock's version
 
 std::uint64_t first_bits(int count) { return (std::uint64_t{1} << count) - 1; }
 
-// Rights without a rule that grants them are refused.
+// Returns all rights that a Landlock version controls. Landlock refuses each of them, because no rule grants one.
 LandlockRules every_right(int version) {
   const int files = version >= 5 ? 16 : version >= 3 ? 15 : version == 2 ? 14 : 13;
   return {first_bits(files), version >= 4 ? first_bits(2) : 0, version >= 6 ? first_bits(2) : 0};
@@ -91,7 +94,8 @@ int enter_landlock() {
 #endif
 }
 
-// A program for the kernel's filter: each call that is allowed, some only with certain arguments.
+// Builds a program for the kernel's system call filter (seccomp). The program lists the system calls that are allowed,
+// some of them only with certain arguments.
 class Filter {
  public:
   Filter() {
@@ -104,9 +108,9 @@ class Filter {
     jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 1);
     give(SECCOMP_RET_ALLOW);
   }
-  // Where the argument's lower half has this value.
+  // Allows the system call when the lower half of its argument number `argument` has the value `value`.
   void allow_if_equal(long call, int argument, std::uint32_t value) { allow_if(call, argument, BPF_JEQ, value, true); }
-  // Where the argument's lower half has none of these bits.
+  // Allows the system call when the lower half of its argument number `argument` has none of these bits.
   void allow_without(long call, int argument, std::uint32_t bits) { allow_if(call, argument, BPF_JSET, bits, false); }
 
   bool enter() {
@@ -128,7 +132,8 @@ class Filter {
   void give(std::uint32_t answer) { code_.push_back(BPF_STMT(BPF_RET | BPF_K, answer)); }
   void allow_if(long call, int argument, int test, std::uint32_t value, bool wanted) {
     jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 4);
-    load(offsetof(seccomp_data, args) + 8 * static_cast<std::size_t>(argument));  // little-endian
+    load(offsetof(seccomp_data, args) +
+         8 * static_cast<std::size_t>(argument));  // the lower 32 bits of the little-endian argument
     jump(test, value, wanted ? 0 : 1, wanted ? 1 : 0);
     give(SECCOMP_RET_ALLOW);
     give(kRefused);
@@ -147,8 +152,8 @@ bool enter_seccomp() {
     filter.allow(call);
   filter.allow_without(SYS_mmap, 2, PROT_EXEC);
   filter.allow_without(SYS_mprotect, 2, PROT_EXEC);
-  filter.allow_if_equal(SYS_prlimit64, 0, 0);                                    // of this process
-  filter.allow_if_equal(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()));  // abort()
+  filter.allow_if_equal(SYS_prlimit64, 0, 0);  // pid 0: the limits of this process only
+  filter.allow_if_equal(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()));  // abort() sends a signal to itself
   return filter.enter();
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Takes this process's rights away, for code that parses what a stranger made. Four walls stand behind each other; each
-// holds where the one before has a hole, and where the kernel has no such wall the others stand alone:
-//   system calls  seccomp allows those that compute, take memory, and use what is open already. It refuses every other
-//                 one with EPERM: open, socket, fork, exec, ptrace, and memory that can be executed.
-//   files         Landlock refuses every path, TCP, and signals and sockets to processes outside.
-//   resources     limits on memory, processor time, file size, open files and new processes. They always stand.
-//   privileges    no new ones through set-user-ID programs, no core dump, no other process reads its memory.
+// Removes this process's rights before it parses a file from a stranger. Four protections work independently: where one
+// has a gap or the kernel lacks it, the others remain.
+//   system calls  seccomp allows calls that compute, allocate memory and use open files. It refuses every other one
+//                 with EPERM: open, socket, fork, exec, ptrace and executable memory.
+//   files         Landlock refuses every path, TCP, and signals and sockets to other processes.
+//   resources     limits on memory, processor time, file size, open files and new processes. They always apply.
+//   privileges    no new ones through set-user-ID programs, no core dump, no other process can read its memory.
 // Linux only: seccomp since 3.5 (x86-64 and AArch64), Landlock since 5.13.
 #pragma once
 
@@ -14,30 +14,33 @@
 namespace limber {
 
 struct SandboxSettings {
-  std::size_t memory_bytes = std::size_t{256} << 20;  // beyond what is mapped at the call; raised by allow_memory()
-  std::size_t most_memory = std::size_t{256} << 20;   // that allow_memory() can reach, likewise
+  std::size_t memory_bytes = std::size_t{256} << 20;  // limit beyond what is mapped at the call; see allow_memory()
+  // Upper limit of allow_memory(), beyond what is mapped at the call.
+  std::size_t most_memory = std::size_t{256} << 20;
   double processor_seconds = 600;
-  bool system_calls = true, files = true;  // off only to test the other wall alone
+  bool system_calls = true, files = true;  // which to use; a test switches one off to test the other alone
 };
 
-// What stands.
+// The protections that are in force.
 struct Protection {
-  bool own_process = false;   // apart from the program
+  bool own_process = false;   // the work runs in a process of its own
   bool system_calls = false;  // seccomp
-  int landlock = 0;           // the version of its interface in the kernel, 0: none
+  int landlock = 0;           // version of the kernel's Landlock interface, 0: none
 
   bool operator==(const Protection&) const = default;
 };
 
 struct Sandbox {
   Protection protection;
-  std::size_t mapped_bytes = 0;  // when it was entered: no file can be opened later to ask
+  std::size_t mapped_bytes = 0;  // address space at entry, recorded because no file can be opened later to ask
 };
 
-// For a process with one thread, for good. Keeps the files that are open. Never fails: says what stands.
+// Enters the sandbox permanently; the process must have one thread. Open files stay open. Never fails: returns the
+// protections that are in force.
 Sandbox enter_sandbox(const SandboxSettings& settings);
 
-// Address space beyond what was mapped when the sandbox was entered, in bytes, as far as `most_memory` allows.
+// Sets the limit of the process's address space: `bytes` beyond what was mapped when it entered the sandbox, at most
+// SandboxSettings::most_memory.
 void allow_memory(const Sandbox& sandbox, std::size_t bytes);
 
 }  // namespace limber

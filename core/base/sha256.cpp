@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The hashes of file.h, apart from it so that a program without them starts without OpenSSL.
+// Implements the hashes of file.h, in a separate file so that a program that does not use them starts without OpenSSL.
 #include <algorithm>
 #include <cerrno>
 #include <cstring>

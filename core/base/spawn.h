@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Starts another program. Safe with any number of threads: nothing of this process runs in the new one before exec.
+// Starts another program. It is safe with any number of threads, because no code of this process runs in the new one
+// before exec.
 #pragma once
 
 #include <string>
@@ -11,17 +12,19 @@
 
 namespace limber {
 
-// Its standard streams, open files of this process; -1: /dev/null.
+// The new program's standard streams, as file descriptors of this process; -1: /dev/null.
 struct Streams {
   int in = -1, out = -1, err = -1;
 };
 enum class Environment { Same, Empty };
 
-// Leads a process group of its own, so that a key at the terminal does not reach it and its own children end with it.
-// Gets no signal blocked, and SIGINT, SIGTERM, SIGPIPE and SIGHUP as usual.
-//   words    its arguments, its name first
-//   what     what is started, for the message: "a worker"
-//   returns  its process, which the caller must wait for          throws Error when it cannot be started
+// Starts the program as the leader of its own process group, so that Ctrl+C at the terminal does not reach it and its
+// children can be ended with it. The program starts with no signal blocked, and with the default actions of SIGINT,
+// SIGTERM, SIGPIPE and SIGHUP.
+//   words    arguments, the program's name first
+//   what     what is started, for the error message: "a worker"
+//   returns  the process, which the caller must wait for
+//   throws Error when the program cannot be started
 pid_t spawn(const Path& program, std::vector<std::string> words, const Streams& streams, Environment environment,
             const std::string& what);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small readers of header text. None of them throws or allocates more than its input; what is not wholly a number is
-// none.
+// Parses small texts of file headers. No function throws, and none allocates more memory than its input has. Text that
+// contains more than a number gives no number.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// ASCII only, whatever the locale.
+// Converts ASCII letters to lower case, whatever the locale.
 inline std::string lower_case(std::string_view text) {
   std::string low(text);
   for (char& c : low)
@@ -41,7 +41,7 @@ inline std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-// The next line without its end (LF, CRLF or CR), taken off the front of `rest`.
+// Removes the next line from the front of `rest` and returns it without its end (LF, CRLF or CR).
 inline std::string_view take_line(std::string_view& rest) {
   const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
   const std::string_view line = rest.substr(0, end);
@@ -61,7 +61,7 @@ std::optional<Number> number_of(std::string_view text) {
   return value;
 }
 
-// Every word as a number, or none.
+// Returns the words of a text as numbers, or nothing when one of the words is not a number.
 template <class Number>
 std::optional<std::vector<Number>> numbers_of(std::string_view text) {
   std::vector<Number> numbers;
@@ -73,7 +73,7 @@ std::optional<std::vector<Number>> numbers_of(std::string_view text) {
   return numbers;
 }
 
-// The shortest text that reads back as exactly this number; whole numbers without an exponent.
+// Returns the shortest text that reads back as exactly this number; whole numbers have no exponent.
 inline std::string text_of(double number) {
   constexpr double kExact = 9007199254740992;  // 2^53
   if (number >= -kExact && number <= kExact && number == static_cast<double>(static_cast<std::int64_t>(number)))
@@ -83,7 +83,7 @@ inline std::string text_of(double number) {
   return std::string(buffer, end);
 }
 
-// What a message may quote of a file: printable, short.
+// Returns text from a file in quotes, for a message: at most 60 characters of it, with "?" for unprintable characters.
 inline std::string in_quotes(std::string_view text) {
   std::string shown;
   for (char c : text.substr(0, 60)) shown += c >= ' ' && c <= '~' ? c : '?';

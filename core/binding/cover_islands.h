@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Tissue that no bone has reached (pieces that lie apart in the air): each piece follows the rig bone nearest to its
-// centre, and is named in the report's warnings, the largest first.
+// Gives weights to connected components of tissue that no bone has reached, because air separates them from the rest.
+// Each component follows the rig bone nearest to its centre. The report's warnings name the largest components first.
 void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
                    WeightsReport& report, const TissueTable* tissues = nullptr);
 

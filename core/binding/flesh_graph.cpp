@@ -9,12 +9,13 @@
 namespace limber {
 
 namespace {
-// Of 1 / distance^2. Beside weights painted by hand 1 to 4 do equally well; 0 (conduction alone) loses a fifth of them.
+// Factor of 1 / distance^2 in the heat that a soft voxel receives from its nearest bone. Factors from 1 to 4 agree
+// equally well with weights painted by hand; with a factor of 0 (conduction alone) the agreement is a fifth lower.
 constexpr float kAttraction = 2;
 }  // namespace
 
 float conductivity(TissueKind kind) {
-  // W/m/K of living tissue at 37 C over muscle's 0.49.
+  // Thermal conductivity of living tissue at 37 C, W/m/K, divided by that of muscle, 0.49.
   switch (kind) {
     case TissueKind::Skin: return 0.76f;
     case TissueKind::Fat: return 0.43f;
@@ -22,12 +23,12 @@ float conductivity(TissueKind kind) {
     case TissueKind::Nail: return 0.50f;
     case TissueKind::Brain: return 1.10f;
     case TissueKind::Blood: return 1.06f;
-    default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs: 0.46 to 0.52
+    default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs: 0.46 to 0.52 W/m/K
   }
 }
 
 namespace {
-constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
+constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 }  // namespace
 
 HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
@@ -49,15 +50,16 @@ HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, cons
   bones_in_brick_ = bones_in_bricks();
 }
 
-// A brick and one layer around it: places in the tissue list, -1 for air, and what soft voxels conduct, 0 for all
-// others.
+// A brick (8^3 voxels) and one layer of voxels around it. For each voxel: its index in the list of tissue voxels (-1:
+// air), and its conductivity (0 for all voxels that are not soft).
 struct HeatGraph::Window {
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
   std::array<std::int32_t, 1000> place;
   std::array<float, 1000> soft;
-  const Seams* seams = nullptr;  // where one is near
+  const Seams* seams = nullptr;  // null: no seam is near this brick
 
-  static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }  // v from the corner
+  // Returns the index of voxel v in the arrays; v is relative to the brick's lowest corner.
+  static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }
 
   bool is_cut(const glm::ivec3& voxel, int direction) const { return seams && seams->is_cut_towards(voxel, direction); }
 
@@ -77,8 +79,8 @@ struct HeatGraph::Window {
     if (body.held_by_[its_place] == kSoft) soft[at(from_corner)] = body.conductivity_[body.volume_.at(voxel)];
   }
 
-  // The layer of the brick beside it.
-  //   side  place of the layer along the axis, from the corner
+  // Fills the layer that belongs to the neighbouring brick along an axis.
+  //   side  position of the layer along the axis, relative to this brick's lowest corner
   void look_beside(const HeatGraph& body, const glm::ivec3& corner, int axis, int side) {
     glm::ivec3 first = corner;
     first[axis] += side;
@@ -96,7 +98,8 @@ struct HeatGraph::Window {
   }
 };
 
-// What a face of a soft voxel conducts: between two soft voxels, to a held one, or nothing.
+// Returns the conductance from a soft voxel through one of its faces, to a soft voxel or to one that a bone holds at a
+// fixed temperature. Returns 0 to air or across a seam.
 float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
   const int there = here + Window::kTo[direction], axis = direction >> 1;
   if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
@@ -110,7 +113,7 @@ float HeatGraph::attraction(std::int64_t place, const glm::ivec3& voxel) const {
   return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
 }
 
-// body(voxel, place, its place in the window) for every soft voxel of a brick.
+// Calls body(voxel, index in the list of tissue voxels, index in the window) for every soft voxel of a brick.
 template <class Body>
 void HeatGraph::for_soft(std::int64_t brick, Window& window, const Body& body) const {
   window.look(*this, brick);
@@ -156,7 +159,8 @@ void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system
   });
 }
 
-// Which bones hold or attract voxels of each brick, a bit each; bones that differ by 64 share one.
+// Returns for each brick which bones fix the temperature of its voxels, or give them heat at a distance. Each bone has
+// one bit; bones whose indices differ by 64 share a bit.
 std::vector<std::uint64_t> HeatGraph::bones_in_bricks() const {
   std::vector<std::uint64_t> bones(tissue_.bricks().size(), 0);
   parallel_for(std::ssize(bones), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -174,7 +178,8 @@ void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatS
   std::uint64_t wanted = 0;
   for (std::size_t bone = 0; bone < lane_of_bone.size(); ++bone)
     if (lane_of_bone[bone] >= 0) wanted |= std::uint64_t{1} << (bone & 63);
-  // A bone's heat comes from voxels of the brick itself or of one beside it; what is left out holds none that matters.
+  // A brick gets heat from a bone only if the bone fixes the temperature of voxels in the brick or its six neighbours,
+  // or gives them heat at a distance. Bricks for which this is not true for any solved bone are skipped.
   const auto is_near = [&](std::int64_t b) {
     std::uint64_t near = bones_in_brick_[bricks[b]];
     for (int direction = 0; direction < 6; ++direction) {
@@ -207,7 +212,8 @@ void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatS
   });
 }
 
-// Connected soft voxels of one octant of a brick are one cell. Cells count from those that were found before.
+// Makes each connected set of soft voxels in one octant (4^3 voxels) of a brick a cell. The cells get numbers after
+// those found before.
 void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
                            std::vector<CoarseCell>& found) const {
   std::array<glm::ivec3, 64> open;
@@ -237,8 +243,8 @@ void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::
 }
 
 namespace {
-// Adds what conducts to the entry from `start` on that is alike, or makes one. Neighbours are most often alike, so the
-// last go first.
+// Adds the conductance of `entry` to the equal entry at index `start` or later. Appends `entry` if there is none.
+// Neighbouring voxels mostly have equal entries, so the search starts at the end.
 template <class Entry, class IsLess>
 void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const IsLess& is_less) {
   for (size_t k = entries.size(); k > start; --k)
@@ -250,7 +256,8 @@ void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const
 }
 }  // namespace
 
-// One entry for each pair of cells; the way between their centres is four times as long as between voxels.
+// Makes one link for each pair of adjacent cells. The distance between cell centres is four times that between voxel
+// centres, so a face conducts a quarter.
 void HeatGraph::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of,
                            std::vector<float>& diagonal, std::vector<Link>& links, std::vector<HeldFace>& held) const {
   const size_t start = links.size(), held_start = held.size();
@@ -287,7 +294,7 @@ HeatGraph::Coarse HeatGraph::coarse() const {
   std::vector<glm::i16vec3> position;
   const std::int64_t bricks = std::ssize(tissue_.bricks());
 
-  // Connected soft voxels of one octant are one cell.
+  // Finds the cells of each brick, and then numbers the cells of all bricks.
   std::vector<std::vector<CoarseCell>> found((bricks + kGrain - 1) / kGrain);
   parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
     Window window;
@@ -305,7 +312,7 @@ HeatGraph::Coarse HeatGraph::coarse() const {
                      });
   }
 
-  // Colour 0 first.
+  // Sorts the cells so that those of colour 0 come first.
   const auto size = std::ssize(position);
   CellGraph& graph = coarse.graph;
   graph.spacing = 4.0 * volume_.grid.spacing;
@@ -324,7 +331,7 @@ HeatGraph::Coarse HeatGraph::coarse() const {
   for (std::int32_t& c : cell_of)
     if (c >= 0) c = number[c];
 
-  // Faces between cells add up.
+  // Sums the conductances of the voxel faces between each two cells.
   graph.diagonal.assign(size, 0);
   std::vector<std::vector<Link>> links_of(found.size());
   std::vector<std::vector<HeldFace>> held_of(found.size());

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue of a volume as heat sees it: voxels of fixed temperature (each held by one rig bone) and soft voxels
-// between them, joined through faces by conductances. Heat crosses faces only, never edges, corners or air, and spacing
-// counts: a face conducts area / distance times the harmonic mean of the two conductivities; towards a held voxel only
-// the soft half of the way resists.
+// The tissue of a volume as a graph for heat diffusion: voxels of fixed temperature (each held by one rig bone) and
+// soft voxels between them, joined through faces by conductances. Heat crosses faces only, never edges, corners or air.
+// The conductance of a face is area / distance times the harmonic mean of the conductivities on its two sides. At a
+// face to a held voxel only the half of the distance that lies in the soft voxel resists.
 //
-// A soft voxel is also warmed from afar, by one bone (attracting_bone), the nearest through the tissue, with a strength
-// that falls with the square of the distance [Baran & Popovic 2007, 4]. Without it a small bone loses the flesh beyond
-// it to a larger neighbour (fingertips to the palm), and the two sides of a joint mix over the whole thickness of the
-// limb; the law is free of scale, so a finger and a thigh blend alike.
+// A soft voxel also receives heat from one bone at a distance: from the bone that is nearest on a path through the
+// tissue (attracting_bone). The strength falls with the square of the distance [Baran & Popovic 2007, 4]. Without it a
+// small bone loses the flesh beyond it to a larger neighbour (fingertips to the palm), and the two sides of a joint mix
+// over the whole thickness of the limb. The law does not depend on scale, so a finger and a thigh blend alike.
 //
-// Conductivities are the thermal ones of living tissue relative to muscle. They matter where layers differ: fat
-// conducts half as much, so skin over a limb follows the limb all around instead of the nearest bit of bone.
+// Conductivities are the thermal conductivities of living tissue relative to muscle. They matter where layers differ:
+// fat conducts half as much, so skin over a limb follows the whole limb around it instead of the nearest piece of bone.
 #pragma once
 
 #include <array>
@@ -26,30 +26,35 @@
 
 namespace limber {
 
+// In place of a bone index: no bone fixes the temperature of this voxel.
 constexpr std::uint16_t kSoft = 0xFFFF;
 
-// Relative to muscle.
+// Returns the thermal conductivity of a tissue kind, relative to muscle.
 float conductivity(TissueKind kind);
 
-// Which rig bone holds each tissue voxel, kSoft where none does: the voxels of its parts; for a bone without a part the
-// soft voxels around its axis (a bone that has neither, because it lies outside the tissue, holds nothing).
+// Returns the rig bone that holds each tissue voxel at a fixed temperature, kSoft for a voxel that no bone holds. A
+// bone holds the voxels of its parts (BoneParts). A bone without parts holds the soft voxels around its axis, and a
+// bone outside the tissue holds nothing.
 std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                                       const Armature& armature);
 
-// For every soft voxel the bone nearest to it and how far it is, found by spreading through tissue: a bone across an
-// air gap does not count. Held voxels have distance 0; kSoft and infinity where no held voxel is reached.
+// The nearest bone of every voxel and its distance along a path through the tissue, so that a bone across an air gap
+// does not count. A voxel whose temperature a bone fixes has distance 0. A voxel that no bone reaches has kSoft and an
+// infinite distance.
 struct NearestBone {
   std::vector<std::uint16_t> bone;
   std::vector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by);
-// The same by what the bones stand for: the last bone of a chain counts as nearer than it is, a mere link to a limb as
-// further off, and flesh around a joint goes by the plane that halves its angle.
+// Finds the bone that gives heat to each voxel at a distance. This is the nearest bone as in nearest_bone, but with
+// distances adapted to the roles of bones. The last bone of a chain counts as nearer than it is. A bone that only links
+// a limb to the trunk counts as further away. Flesh around a joint is divided by the plane that bisects the angle of
+// the joint.
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const std::vector<std::uint16_t>& held_by);
 
-// Heat flowing from a bone into a cell, through a face or from afar.
+// Conductance of heat from a bone into a cell, through a face or at a distance.
 struct HeldFace {
   std::int32_t cell;
   std::uint16_t bone;
@@ -58,25 +63,27 @@ struct HeldFace {
 
 class HeatGraph {
  public:
-  // References are kept.
+  // Keeps references to its arguments, except to `tissues` and `stiffness`.
   HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
             const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
             const std::map<Label, double>& stiffness = {});
 
-  // Makes the soft voxels of some bricks (rising) the cells of a system; what lies in other bricks has temperature
-  // zero.
+  // Makes the soft voxels of some bricks the cells of a system. Soft voxels in other bricks have temperature zero.
+  //   bricks  indices of the bricks, ascending
   void fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const;
-  // What bones give to the cells of such a system, added to a solver's sources.
-  //   lane_of_bone  -1 for bones that are not solved for
+  // Adds the heat that bones give to the cells of such a system to a solver's sources.
+  //   lane_of_bone  index of the right-hand side for each bone; -1: the bone is not solved for
   void add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system,
                    const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
 
-  // The whole body in cells of up to 4^3 voxels: connected sets of soft voxels in one octant of a brick.
+  // The whole body as a graph of coarse cells. A cell is a connected set of soft voxels in one octant of a brick, so it
+  // has at most 4^3 voxels.
   struct Coarse {
     CellGraph graph;
     std::vector<HeldFace> held;
-    std::vector<std::int32_t> brick;          // #cells
-    std::vector<std::int32_t> cell_of_place;  // #tissue voxels, -1 for held ones
+    std::vector<std::int32_t> brick;  // for each cell: the brick that contains it
+    // For each tissue voxel: its cell; -1: a bone fixes the voxel's temperature.
+    std::vector<std::int32_t> cell_of_place;
   };
   Coarse coarse() const;
 
@@ -104,11 +111,14 @@ class HeatGraph {
   const TissueVoxels& tissue_;
   const std::vector<std::uint16_t>& held_by_;
   const NearestBone& nearest_;
-  std::vector<float> conductivity_;  // by label
-  std::vector<float> attraction_;    // likewise: the square of its stiffness, since blends are as wide as the root of
-                                     // conduction over attraction
-  std::array<float, 3> face_;        // area / distance of a face across each axis, largest 1
-  float volume_of_voxel_ = 1;        // mm3, in the same measure
+  std::vector<float> conductivity_;  // for each label
+  // For each label: strength of the heat that is received at a distance, times the square of the tissue's stiffness.
+  // The square is used because the width of a blend is proportional to the square root of conduction over this
+  // strength.
+  std::vector<float> attraction_;
+  // Area / distance of a voxel face across each axis, divided by the largest of the three.
+  std::array<float, 3> face_;
+  float volume_of_voxel_ = 1;  // mm3, divided by the same largest value as face_
   std::vector<std::uint64_t> bones_in_brick_;
 };
 

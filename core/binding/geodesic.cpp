@@ -14,9 +14,10 @@
 namespace limber {
 
 namespace {
-// A bone this many times further than the nearest has less than a fiftieth of its weight.
+// Upper limit of a bone's distance as a multiple of the nearest bone's distance. At this limit a bone has at most 1/49
+// of the nearest bone's weight (at stiffness 1). A bone that is further away is ignored.
 constexpr float kFurthest = 7;
-constexpr float kUnit = 100;  // mm
+constexpr float kUnit = 100;  // unit in which the weight formula measures distances, mm
 }  // namespace
 
 SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
@@ -31,7 +32,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     if (held_by[place] != kSoft) sources[held_by[place]].push_back({place, glm::i16vec3(v)});
   });
 
-  std::vector<float> stiffness;  // #tissue voxels; empty: 1
+  std::vector<float> stiffness;  // for each tissue voxel; empty: all are 1
   if (!settings.stiffness.empty()) {
     stiffness.assign(tissue.size(), 1);
     tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
@@ -65,7 +66,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
         for (std::int64_t place = first; place < first + tissue.bricks()[brick].count(); ++place) {
           const float way = std::exchange(distance[place], std::numeric_limits<float>::infinity());
           if (held_by[place] != kSoft || way == std::numeric_limits<float>::infinity()) continue;
-          // Over the nearest bone's, so that a weight is at most one before the sum is.
+          // The weight is relative to the nearest bone's weight, so that it is at most 1 before normalization.
           float weight = std::min(1.0f, strength(way) / strength(nearest.distance[place]));
           if (!stiffness.empty()) weight = std::pow(weight, stiffness[place]);
           best.offer(brick, place, bone, weight);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight falls with the length d of the shortest way to it
-// inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone stays exactly rigid.
-// What a bone has less than the nearest, as a share of it, is raised to the power of the tissue's stiffness.
+// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight falls with the length d of the shortest path to it
+// inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone tissue stays exactly
+// rigid. The ratio of a bone's weight to that of the nearest bone is raised to the power of the tissue's stiffness.
 #pragma once
 
 #include "core/binding/heat_diffusion.h"
@@ -9,7 +9,7 @@
 namespace limber {
 
 struct GeodesicBinding {
-  double falloff = 0.5;  // alpha of the paper, [0, 1]: 1 is sharper
+  double falloff = 0.5;  // alpha of the paper, [0, 1]; 1 gives the sharpest blends
   BlendStiffness stiffness;
 };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Shortest ways through tissue, spread as a front from voxel to voxel through faces, the shortest first. Each voxel
-// remembers the corner its way last came round (at first the voxel it started from) and the length of the way to there;
-// the rest is straight. Where the voxel before it on that straight line is air, or a seam is near, the way bends, and
-// the voxel the front came from is the new corner. So lengths are straight distances wherever one can see the start,
-// and most voxels are visited once.
+// Finds shortest paths through tissue. A front spreads from voxel to voxel through faces, the shortest paths first.
+// Each voxel stores the last corner of its path (at first the voxel where the path started) and the length of the path
+// up to this corner; from the corner to the voxel the path is straight. Where the previous voxel on that straight line
+// is air, or a seam is near, the path bends, and the voxel from which the front came becomes the corner. As a result,
+// lengths are straight distances wherever the start is visible, and most voxels are visited once.
 //
-// The tissue is cut into fixed domains of bricks. Threads advance domains by one step of length at a time; what crosses
-// from one domain into another is sent, and taken in a fixed order: the same ways for any number of threads.
+// The tissue is divided into fixed domains, each a set of bricks. Threads advance the fronts of different domains at
+// the same time, by one step of length. Paths from one domain into another are sent and accepted in a fixed order, so
+// that the paths do not depend on the number of threads. (In the code below a path is called "way".)
 #pragma once
 
 #include <algorithm>
@@ -26,7 +27,7 @@ class TissueFront {
  public:
   static constexpr std::uint16_t kNoSource = 0xFFFF;
 
-  // References are kept.
+  // Keeps references to its arguments.
   TissueFront(const LabelVolume& volume, const TissueVoxels& tissue)
       : grid_(volume.grid),
         tissue_(tissue),
@@ -37,14 +38,16 @@ class TissueFront {
     for (Domain& domain : domains_) domain.sent.resize(domains_.size());
   }
 
-  //   source  what the ways that start here belong to
+  // Starts paths at a voxel.
+  //   place   the voxel's index in the list of tissue voxels
+  //   source  a number that these paths carry, such as the index of a bone
   void start(std::int64_t place, const glm::ivec3& voxel, std::uint16_t source) {
     ways_[place] = {glm::i16vec3(voxel), source, 0, 0};
     add(domains_[domain_of(tissue_.brick_at(voxel))], {static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)}, 0);
   }
 
-  // Starts ways at all voxels that have a source, on several threads.
-  //   source_of  (place, voxel) -> what the way that starts there belongs to, kNoSource where none does
+  // Starts paths at all voxels that have a source, on several threads.
+  //   source_of  a function (place, voxel) -> the source of the paths that start there; kNoSource: no path starts there
   template <class SourceOf>
   void start_all(const SourceOf& source_of) {
     const auto bricks = std::ssize(tissue_.bricks()), domains = std::ssize(domains_);
@@ -57,13 +60,12 @@ class TissueFront {
     });
   }
 
-  // Lets the front go on until no way is shorter any more. Both are called from several threads, for different places.
-  //   is_shorter  (source, to, way) -> whether a way of that many mm to place `to` is better than what `to` has. Where
-  //   it is
-  //               not, no longer way may be.
-  //   take        (source, to, way): notes such a way; the front goes on from there
-  //   reached     #tissue voxels: what is_shorter compares with. Only its place in memory is used, which is fetched in
-  //   time.
+  // Spreads the front until no path gets shorter. is_shorter and take are called from several threads, for different
+  // voxels.
+  //   is_shorter  a function (source, to, way) -> whether a path of length `way` (mm) to voxel `to` is better than the
+  //               best known path to `to`. If it returns false, it must also return false for any longer path.
+  //   take        a function (source, to, way) that stores such a path; the front goes on from there
+  //   reached     #tissue voxels: the array that is_shorter reads. It is only prefetched into the cache.
   template <class IsShorter, class Take>
   void spread(const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
     const std::vector<bool> near_seam = bricks_near_seams();
@@ -91,11 +93,15 @@ class TissueFront {
 
  private:
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  static constexpr double kWidth = 0.5;  // of the shortest voxel edge: ways that differ by less may come in any order
+  // Width of a bucket of path lengths, as a share of the shortest voxel edge. Paths that differ by less may be advanced
+  // in any order.
+  static constexpr double kWidth = 0.5;
   static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
-  static constexpr std::size_t kAhead = 12;  // voxels: memory is fetched so long before it is read
+  // Number of voxels by which the prefetching of memory is ahead of the reading.
+  static constexpr std::size_t kAhead = 12;
 
-  // The shortest known to a voxel, mm: to the corner that it last came round, and all of it.
+  // The shortest known path to a voxel: its last corner, its source, its length up to the corner, and its whole length
+  // (both lengths in mm).
   struct Way {
     glm::i16vec3 corner;
     std::uint16_t source;
@@ -103,7 +109,7 @@ class TissueFront {
   };
   struct Reached {
     std::int32_t place;
-    float way;  // mm
+    float way;  // length of the path, mm
     glm::i16vec3 voxel;
   };
   struct Step {
@@ -112,7 +118,8 @@ class TissueFront {
     Way way;
   };
   struct Domain {
-    // Few buckets are open at a time: their memory goes round. That of the first, which may be far larger, does not.
+    // Few buckets are open at the same time, so the memory of finished buckets is reused. That of the first bucket is
+    // freed, since it may be far larger.
     void finish(std::size_t bucket) {
       std::vector<Reached> done_with = std::move(buckets[bucket]);
       done_with.clear();
@@ -127,10 +134,10 @@ class TissueFront {
       return buckets[bucket];
     }
 
-    std::vector<std::vector<Reached>> buckets;  // by length of the way
-    std::vector<std::vector<Reached>> spare;    // empty ones
-    std::size_t done = 0;                       // of the bucket that is worked on
-    std::vector<std::vector<Step>> sent;        // to each domain
+    std::vector<std::vector<Reached>> buckets;  // voxels that were reached, by the length of their paths
+    std::vector<std::vector<Reached>> spare;    // empty buckets for reuse
+    std::size_t done = 0;                       // number of finished entries of the current bucket
+    std::vector<std::vector<Step>> sent;        // for each domain: the steps that lead into it
   };
 
   template <class IsShorter, class Take>
@@ -142,7 +149,7 @@ class TissueFront {
         fetch(domain.buckets[bucket][ahead].place, reached);
       const auto [place, way_here, small_voxel] = domain.buckets[bucket][domain.done];
       const Way here = ways_[place];
-      if (way_here > here.length) continue;  // a shorter one came later
+      if (way_here > here.length) continue;  // a shorter path to this voxel was found later
       const glm::ivec3 voxel(small_voxel), corner(here.corner);
       const float before = here.to_corner;
       const int brick_here = tissue_.brick_at(voxel);
@@ -152,7 +159,7 @@ class TissueFront {
         if (there < 0 || corner == w) continue;
         Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
         const bool is_own = &beyond == &domain;
-        // A bent way is longer.
+        // The length of the straight path is a lower bound, since a bent path is longer.
         float way = before + straight(corner, w);
         if (is_own && !is_shorter(here.source, there, way)) continue;
         const bool near_seam = seams && is_near_seam[brick];
@@ -177,9 +184,9 @@ class TissueFront {
     add(domain, {step.to, step.way.length, step.voxel}, bucket);
   }
 
-  // Begins to read what advancing from a place needs: its way, and what its neighbours have. Those above and below lie
-  // a slice of a full brick away. Inlined always: as a function of its own it seems to do nothing, and compilers leave
-  // it out.
+  // Prefetches the memory that advancing from a voxel needs: its path and the values of its neighbours. The neighbours
+  // above and below are about one slice of a full brick away in memory. The function is always inlined: as a separate
+  // function it seems to have no effect, and compilers remove it.
   [[gnu::always_inline]] void fetch(std::int32_t place, const std::vector<float>& reached) const {
     constexpr int kSlice = TissueVoxels::kBrick * TissueVoxels::kBrick;
     __builtin_prefetch(&ways_[place]);
@@ -197,7 +204,7 @@ class TissueFront {
     for (const Domain& domain : domains_) most = std::max(most, domain.buckets.size());
     return most;
   }
-  // Those with something left to do in a bucket.
+  // Returns the domains that still have unfinished entries in a bucket.
   std::vector<Domain*> domains_waiting(std::size_t bucket) {
     std::vector<Domain*> waiting;
     for (Domain& domain : domains_)
@@ -207,7 +214,8 @@ class TissueFront {
 
   std::size_t domain_of(std::int64_t brick) const { return brick * domains_.size() / tissue_.bricks().size(); }
 
-  // The brick and place of a voxel beside another one, which lies in a brick; -1 for air and outside of the grid.
+  // Returns the brick of `voxel` and its index in the list of tissue voxels (-1: air, or outside the grid). `voxel` is
+  // a neighbour of the voxel `beside`, which lies in `brick`.
   std::pair<int, std::int64_t> brick_and_place(const glm::ivec3& voxel, const glm::ivec3& beside, int brick) const {
     const glm::ivec3 differs = voxel ^ beside;
     const bool is_in_brick = ((differs.x | differs.y | differs.z) & ~(TissueVoxels::kBrick - 1)) == 0;
@@ -227,7 +235,7 @@ class TissueFront {
     return near;
   }
 
-  // The step to one of the 26 neighbours that is nearest to a direction.
+  // Returns the step to that one of the 26 neighbours whose direction is nearest to `way`.
   static glm::ivec3 step_towards(const glm::ivec3& way) {
     const glm::ivec3 size = glm::abs(way);
     const int longest = std::max({size.x, size.y, size.z});
@@ -243,7 +251,7 @@ class TissueFront {
   const Grid& grid_;
   const glm::vec3 spacing_{grid_.spacing};
   const TissueVoxels& tissue_;
-  ZeroedVector<Way> ways_;  // by place
+  ZeroedVector<Way> ways_;  // for each tissue voxel
   float width_;
   std::vector<Domain> domains_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The level below the bricks: connected cells of one block, 2 x 2 x 2 where voxels are cubes, become one cell. Blocks
-// never reach over a brick's edge, so bricks are worked on apart from each other.
+// Makes the first coarse level of a heat system. Connected cells of one block become one coarse cell. A block is 2 x 2
+// x 2 cells where voxels are cubes. Blocks never cross a brick's boundary, so bricks are processed independently.
 #include <algorithm>
 #include <utility>
 
@@ -11,7 +11,7 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 32;  // bricks a block of a parallel loop
+constexpr std::int64_t kGrain = 32;  // number of bricks in one block of a parallel loop
 constexpr int kSlots = HeatSystem::kSlots;
 
 glm::ivec3 stepped(glm::ivec3 voxel, int direction) {
@@ -67,17 +67,18 @@ class Coarsening {
 
  private:
   struct Rows {
-    std::vector<std::int32_t> cell, count;  // of each row: whose it is, and how many links it has
+    std::vector<std::int32_t> cell, count;  // for each row: its coarse cell, and its number of links
     std::vector<std::int32_t> neighbour;
     std::vector<float> conductance, diagonal;
   };
 
-  // What one piece is joined to: eight cells have no more than 24 faces to others.
+  // The links of one coarse cell (called a "piece" here). It consists of up to eight cells, which have at most 24 faces
+  // to other cells.
   struct Row {
     int count = 0;
     std::array<std::int32_t, 24> to;
     std::array<float, 24> conductance;
-    std::array<int, 6> last;  // by direction: where in `to` the last link that way is
+    std::array<int, 6> last;  // for each direction: index in `to` of the latest link in this direction
     double linked = 0, lost = 0;
 
     void clear() { count = 0, last = {}, linked = 0, lost = 0; }
@@ -93,12 +94,14 @@ class Coarsening {
     }
   };
 
-  // The cells of one block in any brick, and where in a brick's conductances the links between them stand.
+  // A block of cells: its slots, which are the same in every brick, and the indices of the links between these slots in
+  // a brick's conductances.
   struct Block {
     glm::ivec3 place{0};
     std::vector<int> slots, links;
   };
-  // From a slot in one of six directions: the slot there, whether that is in the same brick, and in the same block.
+  // A step from a slot in one of six directions: the slot that it leads to, and whether this slot is in the same brick
+  // and in the same block.
   struct Step {
     int slot;
     bool stays_in_brick, stays_in_block;
@@ -106,7 +109,7 @@ class Coarsening {
 
   glm::ivec3 block_of(const glm::ivec3& voxel) const { return voxel >> glm::ivec3(halved_); }
 
-  // Where a cell's neighbour lies: its brick and slot.
+  // Returns the brick and slot of the neighbour of a cell.
   std::pair<std::int64_t, int> neighbour(std::int64_t brick, int slot, int direction) const {
     const Step& step = steps_[slot][direction];
     return {step.stays_in_brick ? brick : system_.beside[brick][direction], step.slot};
@@ -116,7 +119,7 @@ class Coarsening {
                                       : system_.conductance_of_red(other.first, direction ^ 1, other.second);
   }
 
-  // Whether all cells of a block are there, and all neighbours among them are linked.
+  // Returns whether all cells of a block exist and all adjacent cells in it are linked.
   bool is_whole(std::int64_t brick, const Block& block) const {
     const float* conductance = &system_.conductance[brick * 6 * HeatSystem::kColour];
     return std::all_of(block.slots.begin(), block.slots.end(),
@@ -124,7 +127,8 @@ class Coarsening {
            std::all_of(block.links.begin(), block.links.end(), [&](int link) { return conductance[link] > 0; });
   }
 
-  // Numbers a brick's pieces from 0, each colour apart: `parent_` holds twice the number, plus the colour of the block.
+  // Numbers the coarse cells of a brick from 0, separately for each colour. Until number_pieces() runs, an entry of
+  // `parent_` is twice this number, plus the colour of the block.
   void find_pieces(std::int64_t brick) {
     std::int32_t* parent = &parent_[brick * kSlots];
     std::fill_n(parent, kSlots, -1);
@@ -162,7 +166,8 @@ class Coarsening {
     return (at.x + at.y + at.z) & 1;
   }
 
-  // Colour 0 first, else in the order of bricks, which keeps neighbours close in memory.
+  // Numbers the coarse cells of all bricks. Colour 0 comes first; within a colour they have the order of the bricks,
+  // which keeps neighbours close in memory.
   void number_pieces() {
     graph_.spacing = system_.spacing * glm::dvec3(halved_ + glm::i16vec3(1));
     std::vector<std::array<std::int32_t, 2>> first(pieces_);
@@ -184,8 +189,8 @@ class Coarsening {
     first_ = std::move(first);
   }
 
-  // The links of a brick's pieces: sums over the faces of their cells.
-  //   found  room that bricks share
+  // Computes the links of the coarse cells of a brick: sums over the faces of their fine cells.
+  //   found  working memory, reused from brick to brick
   void find_rows(std::int64_t brick, std::vector<Row>& found, Rows& rows) const {
     const std::array<std::int32_t, 2>& count = pieces_[brick];
     found.resize(count[0] + count[1]);
@@ -245,9 +250,9 @@ class Coarsening {
   std::array<Block, kSlots> blocks_;
   std::array<const Block*, kSlots> block_of_slot_;
   std::array<std::array<Step, 6>, kSlots> steps_;
-  ZeroedVector<std::int32_t> parent_;                // bricks, slots
-  std::vector<std::array<std::int32_t, 2>> pieces_;  // of each brick, by colour: how many
-  std::vector<std::array<std::int32_t, 2>> first_;   // likewise: the number of the first
+  ZeroedVector<std::int32_t> parent_;                // for each brick and slot: the coarse cell; -1: none
+  std::vector<std::array<std::int32_t, 2>> pieces_;  // for each brick and colour: number of coarse cells
+  std::vector<std::array<std::int32_t, 2>> first_;   // for each brick and colour: its first coarse cell
   CellGraph graph_;
 };
 }  // namespace

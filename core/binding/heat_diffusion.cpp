@@ -15,16 +15,17 @@
 namespace limber {
 
 namespace {
-// A bone is solved for where the coarse solution gives it more than this. At 300 mm from the joint such a weight moves
-// a point by 0.1 mm under a turn of 60 degrees.
+// Weights up to this are negligible. A bone is solved for only in bricks where the coarse solution gives it more
+// weight. At 300 mm from the joint, this weight moves a point by 0.1 mm under a turn of 60 degrees.
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
-constexpr double kLaneCost = 0.25;   // of one more right side, over that of a region solved for one
-constexpr double kBlockBytes = 16;   // a tissue voxel of the body: what a block of several bones may take
-constexpr int kMostTogether = 4;     // right sides
-constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
+constexpr double kLaneCost = 0.25;  // cost of one right-hand side in a brick, relative to the fixed cost of the brick
+// Upper limit of the memory of a block of several bones, in bytes per tissue voxel of the body.
+constexpr double kBlockBytes = 16;
+constexpr int kMostTogether = 4;     // largest number of bones that are solved together
+constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 
-// Temperatures on the coarse body: by bone, the cells where it matters.
+// The coarse solution: for each bone, the temperatures of those cells in which they are above kNegligible.
 struct CoarseTemperatures {
   struct Entry {
     std::int32_t cell;
@@ -40,7 +41,7 @@ void fill_sources(const std::vector<HeldFace>& held, const std::vector<int>& lan
       b[std::int64_t{face.cell} * lanes + lane] += face.conductance;
 }
 
-// The cells that heat from some held voxel reaches.
+// Returns for each cell whether heat from some bone reaches it.
 std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFace>& held) {
   std::vector<bool> reached(graph.size(), false);
   std::vector<std::int32_t> open;
@@ -59,7 +60,7 @@ std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFa
 }
 
 CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vector<bool>& reached, int bone_count) {
-  // What no heat reaches stays at zero: a loss of its own keeps the system solvable.
+  // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
   CellGraph graph = coarse.graph;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (!reached[i]) graph.diagonal[i] += 1;
@@ -92,14 +93,15 @@ CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vect
   return temperatures;
 }
 
-// Bones that are solved together, and the bricks in which any of them matters.
+// A group of bones that are solved together, and the bricks in which any of these bones has weight.
 struct Block {
   std::vector<int> bones;
   std::vector<std::int32_t> bricks;
 };
 
-// Largest bone first; it takes along the bones that lie in its bricks anyway.
-//   most_bytes  that a block of several bones may take
+// Groups the bones into blocks. Each block starts with the remaining bone that has the most bricks. Bones that share
+// bricks with the block join it.
+//   most_bytes  memory limit of a block of several bones
 std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures,
                                    const std::vector<std::int32_t>& brick_of_cell, double most_bytes) {
   const int bone_count = static_cast<int>(temperatures.by_bone.size());
@@ -118,7 +120,7 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures,
     Block block{{waiting.front()}, bricks[waiting.front()]};
     waiting.erase(waiting.begin());
     while (std::ssize(block.bones) < kMostTogether) {
-      // The bone that saves most by sharing the region instead of having one of its own.
+      // Finds the bone that saves the most work by joining this block instead of starting a block of its own.
       double best_gain = 0;
       size_t best = waiting.size();
       std::vector<std::int32_t> joined;
@@ -146,7 +148,7 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures,
   return blocks;
 }
 
-// body(place, b, slot) for every cell of bricks[b].
+// Calls body(index in the list of tissue voxels, b, slot) for every cell of bricks[b].
 template <class Body>
 void for_cells(const TissueVoxels& tissue, const std::vector<std::int32_t>& bricks, const HeatSystem& system,
                const Body& body) {
@@ -173,7 +175,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   WeightsReport ignored;
   WeightsReport& said = report ? *report : ignored;
   progress.update("weights", 0);
-  return_free_memory();  // what splitting bones and finding seams leaves behind
+  return_free_memory();  // gives back the memory that splitting bones and finding seams has freed
   const int bone_count = static_cast<int>(armature.bones.size());
   const std::vector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = attracting_bone(volume, tissue, armature, held_by);
@@ -188,7 +190,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   std::vector<int> lane_of_bone(bone_count, -1);
   const std::vector<Block> blocks = blocks_of_bones(temperatures, coarse.brick, kBlockBytes * tissue.size());
   std::vector<float> guess(coarse.graph.size() * kMostTogether, 0.0f);
-  // Room that all blocks use, the largest first.
+  // Working memory that all blocks of bones reuse.
   HeatSystem system;
   HeatVectors vectors;
   for (size_t k = 0; k < blocks.size(); ++k) {
@@ -201,7 +203,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
         guess[std::int64_t{entry.cell} * lanes + lane] = entry.value;
     }
     body.fill(block.bricks, system);
-    // What no heat reaches stays at zero: a loss of its own keeps the system solvable.
+    // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
     for_cells(tissue, block.bricks, system, [&](std::int64_t place, std::int64_t b, int slot) {
       if (!reached[coarse.cell_of_place[place]]) system.diagonal[b * HeatSystem::kSlots + slot] += 1;
     });

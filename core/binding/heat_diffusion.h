@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights by heat diffusion through the tissue itself [after Baran & Popovic 2007, in the volume]: every bone part is
-// held at 1 for its own rig bone and at 0 for the others, heat flows through soft tissue (never through air) with a
-// conductivity by tissue kind, and the steady temperatures are the weights. Flesh is also warmed by the bone nearest to
-// it through tissue, which keeps joints as wide as the limb is thick (flesh_graph.h says how strongly, and which bone
-// that is beside a hinge or a link). A rig bone without bone tissue holds the flesh around its axis.
+// Computes weights by heat diffusion through the tissue [after Baran & Popovic 2007, in the volume]. For each rig bone,
+// the bone tissue that belongs to it has the fixed temperature 1, and that of all other bones 0. Heat flows through
+// soft tissue (never through air) with a conductivity that depends on the kind of tissue. The steady temperatures are
+// the weights. Soft tissue also receives heat from the bone that is nearest on a path through the tissue. This keeps
+// the blend at a joint as wide as the limb is thick. (flesh_graph.h says how strong this heat is, and which bone it
+// comes from near a joint or a collarbone.) A rig bone without bone tissue fixes the temperature of the flesh around
+// its axis.
 #pragma once
 
 #include <map>
@@ -18,27 +20,27 @@
 
 namespace limber {
 
-// How stiff tissues are where bones blend, by label, [0.1, 10]; 1 where nothing is said. A tissue of 2 goes over from
-// one bone to the next within about half the way.
+// The stiffness of tissues where bones blend, for each label, [0.1, 10]; 1 for labels that are not listed. Tissue of
+// stiffness 2 blends from one bone to the next within about half the distance.
 using BlendStiffness = std::map<Label, double>;
 
 struct HeatDiffusion {
-  double residual = 1e-5;  // relative 2-norm at which a bone's solve stops
+  double residual = 1e-5;  // the solve for a bone stops at this relative residual (2-norm)
   int maximum_iterations = 200;
   BlendStiffness stiffness;
 };
 
 struct WeightsReport {
-  double residual = 0;                // largest over bones, relative
-  int iterations = 0;                 // largest over bones
+  double residual = 0;                // largest relative residual of all bones
+  int iterations = 0;                 // largest number of iterations of all bones
   std::vector<std::string> warnings;  // "no bone reaches 213 voxels of label 3 near (..): given to Forearm"
 };
 
-// throws Error when the solve does not reach its residual
+// Computes the skin weights of a volume. Throws Error when the solve for a bone does not reach its residual.
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                          const HeatDiffusion& settings = {}, Progress& progress = no_progress(),
                          WeightsReport* report = nullptr);
-// The same with bones that are split already.
+// Computes the skin weights of a volume whose bone tissue was already split into parts, one rig bone for each part.
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                          const Armature& armature, const BoneParts& parts, const HeatDiffusion& settings = {},
                          Progress& progress = no_progress(), WeightsReport* report = nullptr);

@@ -12,8 +12,8 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 32;  // bricks a block of a parallel loop
-constexpr int kRow = 4;              // cells of one colour
+constexpr std::int64_t kGrain = 32;  // number of bricks in one block of a parallel loop
+constexpr int kRow = 4;              // number of cells of one colour in a row
 
 using Four = float __attribute__((vector_size(16)));
 
@@ -23,13 +23,13 @@ Four load(const float* from) {
   return four;
 }
 void store(const Four& four, float* to) { std::memcpy(to, &four, sizeof four); }
-// Each cell's neighbour one place before it, or after it, where the row goes on in another brick.
+// Return each cell's predecessor (or successor) in a row of cells; the row continues in another brick.
 Four before(const Four& previous_row, const Four& row) {
   return __builtin_shufflevector(previous_row, row, 3, 4, 5, 6);
 }
 Four after(const Four& row, const Four& next_row) { return __builtin_shufflevector(row, next_row, 1, 2, 3, 4); }
 
-// Makes room for values, which are zero; on several threads where it was used before.
+// Sets `values` to `count` zeros. New memory is already zero; reused memory is cleared on several threads.
 void make_zeros(std::size_t count, HeatValues& values) {
   const bool is_new = count > values.capacity();
   if (is_new) values = HeatValues();
@@ -81,7 +81,7 @@ void HeatSolver::for_bricks(const Body& body) const {
   });
 }
 
-// body(brick, sums) adds to the sums of the right sides.
+// Calls body(brick, sums) for every brick, and returns the totals of `sums`, one for each right-hand side.
 template <class Body>
 HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
   std::vector<Sums> part((system_.brick_count() + kGrain - 1) / kGrain, Sums{});
@@ -94,8 +94,9 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
   return total;
 }
 
-// body(lane, place, flow) for every row of one colour in a brick: `place` of its first cell in vectors of that colour,
-// and the heat that flows to its four cells from `other`, the cells of the other colour.
+// Calls body(lane, place, flow) for every row of one colour in a brick. `lane` is a right-hand side. `place` is the
+// index of the row's first cell in vectors of that colour. `flow` is the heat that flows to the row's four cells from
+// `other`, the cells of the other colour.
 template <bool kRed, class Body>
 void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
   const auto& beside = system_.beside[brick];
@@ -104,7 +105,7 @@ void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body&
   };
   for (int row = 0; row < 64; ++row) {
     const int y = row & 7, z = row >> 3;
-    // In an even row the red cells come first.
+    // The cells of the other colour are shifted by one voxel along the row. Red cells come first where y + z is even.
     const bool own_first = (((y + z) & 1) == 0) == kRed;
     const std::int64_t brick_of[4] = {y > 0 ? brick : beside[2], y < 7 ? brick : beside[3], z > 0 ? brick : beside[4],
                                       z < 7 ? brick : beside[5]};
@@ -143,7 +144,7 @@ void HeatSolver::relax_reds(const HeatValues& blacks, bool with_sources) {
   });
 }
 
-// The residual of the first guess. Returns the squares of the sources.
+// Computes the residual of the first guess. Returns the sum of the squared sources for each right-hand side.
 HeatSolver::Sums HeatSolver::start() {
   const Sums sources = sum_over_bricks([&](std::int64_t brick, Sums& sums) {
     for (int lane = 0; lane < lanes_; ++lane)
@@ -161,7 +162,7 @@ HeatSolver::Sums HeatSolver::start() {
   return sources;
 }
 
-// step = M^-1 residual. Returns their products.
+// Computes step = M^-1 * residual, where M is the preconditioner. Returns the dot products of step and residual.
 HeatSolver::Sums HeatSolver::precondition() {
   const auto diagonal_of = [&](std::int64_t brick) {
     return &system_.diagonal[brick * HeatSystem::kSlots + HeatSystem::kColour];
@@ -173,7 +174,8 @@ HeatSolver::Sums HeatSolver::precondition() {
               &step_[at(brick, lane) + slot]);
   });
   relax_reds(step_, false);
-  // Now only black cells have a residual, and it is what flows to them from the reds. Bricks share no coarse cell.
+  // At this point only black cells have a residual, the flow from the red cells. Two bricks never have cells in the
+  // same coarse cell, so threads do not write to the same one.
   std::fill(cycle_->b.begin(), cycle_->b.end(), 0.0f);
   for_bricks([&](std::int64_t brick) {
     const std::int32_t* parent = &coarse_.parent_of_black[brick * HeatSystem::kColour];
@@ -202,7 +204,8 @@ HeatSolver::Sums HeatSolver::precondition() {
   });
 }
 
-// step = A search, on the blacks alone. Returns their products.
+// Computes step = A * search for the black cells alone, where A is the system's matrix. Returns the dot products of
+// step and search.
 HeatSolver::Sums HeatSolver::apply() {
   relax_reds(search_, false);
   return sum_over_bricks([&](std::int64_t brick, Sums& sums) {

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Steady heat in the soft voxels of some bricks, solved for several bones at once:
+// Solves steady heat in the soft voxels of some bricks (8^3 voxels each), for several bones at once:
 //   diagonal_i x_i - sum over neighbours j of conductance_ij x_j = source_i
-// The diagonal also holds what a cell loses to voxels of fixed temperature and to bricks that are left out.
+// The diagonal also contains a cell's losses to voxels of fixed temperature and to bricks that are left out.
 //
-// Cells are coloured like a chess board, so that the red ones (x + y + z even) have black neighbours only. Reds are
-// eliminated: conjugate gradients run over the blacks alone, which halves every vector [Saad 2003, "Iterative Methods
-// for Sparse Linear Systems", 12.4]. One multigrid cycle preconditions them: half sweeps of Gauss-Seidel, black then
-// red, a visit to coarser levels (core/binding/multigrid.h), and back, red then black.
+// Cells are coloured like a chess board, so that red cells (x + y + z even) have only black neighbours. The red cells
+// are eliminated: conjugate gradients run over the black cells alone, which halves every vector [Saad 2003, "Iterative
+// Methods for Sparse Linear Systems", 12.4]. One multigrid cycle is the preconditioner: half sweeps of Gauss-Seidel,
+// black then red, a correction from coarser levels (core/binding/multigrid.h), then half sweeps red then black.
 //
-// A brick holds its cells in 512 slots, the reds before the blacks, and within a colour row by row along x, four a row.
-// The four cells of a row are worked on together; their neighbours along y and z have the same place in other rows,
-// along x the same or the next. Nothing else is stored to find neighbours: a cell costs 19 bytes, and 12 more for each
-// bone.
+// A brick stores its cells in 512 slots, red before black. Within a colour they are stored row by row along x, four
+// cells in a row. The four cells of a row are computed together. Their neighbours along y and z have the same position
+// in other rows; those along x have the same position or the next one. No other data are needed to find neighbours: a
+// cell takes 19 bytes, and 12 more for each bone.
 //
-// Vectors are floats, sums are doubles in fixed blocks: the same bits for any number of threads.
+// Vectors are floats; sums are doubles over fixed blocks, so that results are the same, bit for bit, for any number of
+// threads.
 #pragma once
 
 #include <array>
@@ -32,10 +33,10 @@ namespace limber {
 using HeatValues = ZeroedVector<float>;
 
 struct HeatSystem {
-  static constexpr int kColour = 256;  // slots of one colour in a brick
+  static constexpr int kColour = 256;  // number of slots of one colour in a brick
   static constexpr int kSlots = 2 * kColour;
 
-  // Of a voxel that lies `in` a brick, 0 .. 7 along each axis.
+  // Returns the slot of the voxel at position `in` within its brick, [0, 7] along each axis.
   static int slot_of(const glm::ivec3& in) {
     return kColour * ((in.x + in.y + in.z) & 1) + 4 * (in.y + 8 * in.z) + (in.x >> 1);
   }
@@ -44,9 +45,9 @@ struct HeatSystem {
     return {2 * (slot & 3) + ((slot / kColour + y + z) & 1), y, z};
   }
 
-  // Makes room for bricks whose lowest voxels are `corners`, in rising order of bricks, without a cell as yet.
-  //   beside   of each brick, the position of its neighbour to -x, +x, -y, +y, -z, +z; -1 where there is none
-  //   spacing  mm
+  // Allocates bricks whose lowest voxels are `corners`, in ascending order. The bricks have no cells yet.
+  //   beside   for each brick, the indices of its neighbours to -x, +x, -y, +y, -z, +z; -1: none
+  //   spacing  voxel size, mm
   void reset(std::vector<glm::ivec3> corners, std::vector<std::array<std::int32_t, 6>> beside,
              const glm::dvec3& spacing);
 
@@ -56,7 +57,7 @@ struct HeatSystem {
     cells[brick][slot >> 6] |= std::uint64_t{1} << (slot & 63);
     diagonal[brick * kSlots + slot] = its_diagonal;
   }
-  // From a red cell to its neighbour in a direction as above; 0 where they are not joined.
+  // Returns the conductance from a red cell to its neighbour in a direction (-x, +x, -y, +y, -z, +z); 0: not linked.
   float& conductance_of_red(std::int64_t brick, int direction, int slot) {
     return conductance[(brick * 6 + direction) * kColour + slot];
   }
@@ -66,45 +67,50 @@ struct HeatSystem {
 
   glm::dvec3 spacing{1};
   std::vector<glm::ivec3> corners;
-  std::vector<std::array<std::int32_t, 6>> beside;  // brick_count() where there is none: an empty brick
-  std::vector<std::array<std::uint64_t, 8>> cells;  // a bit a slot
-  HeatValues conductance;                           // bricks + the empty one, 6 directions, red slots
-  HeatValues diagonal;                              // bricks + the empty one, slots; 1 without a cell
+  // Indices of neighbouring bricks; brick_count(), an empty brick, means none.
+  std::vector<std::array<std::int32_t, 6>> beside;
+  std::vector<std::array<std::uint64_t, 8>> cells;  // for each brick: one bit for each slot, set if the slot has a cell
+  HeatValues conductance;                           // size: (bricks + the empty brick) x 6 directions x red slots
+  HeatValues diagonal;  // size: (bricks + the empty brick) x slots; 1 where there is no cell
 };
 
-// The next level of a system, and which of its cells each black cell belongs to.
+// The next coarser level of a system, and the coarse cell of each black cell.
 struct CoarseHeat {
   CellGraph graph;
-  ZeroedVector<std::int32_t> parent_of_black;  // bricks, black slots; -1 without a cell
+  ZeroedVector<std::int32_t> parent_of_black;  // for each brick and black slot: the coarse cell; -1: none
 };
 CoarseHeat coarsen(const HeatSystem& system);
 
-// What a solver works on: bricks + the empty one, lanes, slots of a colour.
+// The vectors of a solver. The size of each is (bricks + the empty brick) x lanes x slots of one colour. A lane is one
+// right-hand side.
 struct HeatVectors {
-  HeatValues red_source, red, black;  // of reds: b, x; of blacks: x
-  HeatValues residual, search, step;  // of blacks: r, p and, by turns, M^-1 r and A p
+  HeatValues red_source, red, black;  // right-hand side b and solution x of the red cells, x of the black cells
+  // Vectors of the conjugate gradients on the black cells: the residual r, the search direction p, and in turn M^-1 r
+  // or A p.
+  HeatValues residual, search, step;
 
-  // About what a brick takes here, in its system and on the coarser levels.
+  // Returns about how many bytes a brick takes: in these vectors, in its system and on the coarser levels.
   static double bytes_of_brick(int lanes) { return 12.0e3 + 7.5e3 * lanes; }
 };
 
 class HeatSolver {
  public:
-  // The system and the vectors are kept as references. Every connected piece of it must lose heat to something.
-  //   lanes  right sides, 1 to Multigrid::kMostLanes
+  // Keeps references to the system and the vectors. Every connected component of the system must lose heat to some cell
+  // of fixed temperature.
+  //   lanes  number of right-hand sides, 1 to Multigrid::kMostLanes
   HeatSolver(const HeatSystem& system, int lanes, HeatVectors& vectors);
   ~HeatSolver();
 
-  // Of one brick and right side, by slot of the colour; all are zero at first.
+  // Return the values of one brick and one right-hand side (lane), for each slot of the colour. All are zero at first.
   float* red_sources(std::int64_t brick, int lane) { return &red_source_[at(brick, lane)]; }
   float* black_sources(std::int64_t brick, int lane) { return &residual_[at(brick, lane)]; }
   float* first_guess_of_blacks(std::int64_t brick, int lane) { return &black_[at(brick, lane)]; }
 
-  // Called once.
-  //   residual   where a right side stops, |b - A x| / |b|
+  // Solves the system. It may be called only once.
+  //   residual   the solve for a right-hand side stops at this |b - A x| / |b|
   SolveReport solve(double residual, int most_iterations, const Progress& progress = no_progress());
 
-  // After solve().
+  // Returns the solution at a cell, after solve().
   float temperature(std::int64_t brick, int lane, int slot) const {
     const HeatValues& of_colour = slot < HeatSystem::kColour ? red_ : black_;
     return of_colour[at(brick, lane) + (slot & (HeatSystem::kColour - 1))];
@@ -129,7 +135,7 @@ class HeatSolver {
 
   const HeatSystem& system_;
   const int lanes_;
-  CoarseHeat coarse_;  // its graph is the multigrid's
+  CoarseHeat coarse_;  // the next coarser level; its graph was moved into multigrid_
   const Multigrid multigrid_;
   std::unique_ptr<Multigrid::Cycle> cycle_;
   HeatValues &red_source_, &red_, &black_, &residual_, &search_, &step_;

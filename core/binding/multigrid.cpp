@@ -14,8 +14,9 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 1024;       // cells a block of a parallel loop
-constexpr std::int64_t kCoarsestSize = 64;  // solved directly
+constexpr std::int64_t kGrain = 1024;  // number of cells in one block of a parallel loop
+// Upper limit on the number of cells of the coarsest level, which is solved directly.
+constexpr std::int64_t kCoarsestSize = 64;
 constexpr int kMostLevels = 12;
 
 int colour_of(const glm::i16vec3& p) { return (p.x + p.y + p.z) & 1; }
@@ -28,8 +29,9 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
 
 namespace {
 
-// Numbers the cells of the next level: connected sets of cells within one block, 2 x 2 x 2 where cells are cubes. A
-// cell that is joined to none has no part in it (-1): relaxing solves it.
+// Numbers the cells of the next level. Each of them is a connected set of cells within one block, which is 2 x 2 x 2
+// cells where cells are cubes. Returns the coarse cell of each cell; -1 for a cell without neighbours, since relaxation
+// solves it alone.
 std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
   const glm::i16vec3 halved = coarsened_axes(fine.spacing);
   coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
@@ -55,7 +57,8 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
     }
   }
 
-  // Colour 0 first, else in the order met, which keeps neighbours close in memory.
+  // Cells of colour 0 come first. Otherwise they stay in the order in which they were found, which keeps neighbours
+  // close in memory.
   std::vector<std::int32_t> number(position.size());
   std::int32_t next = 0;
   for (int colour = 0; colour < 2; ++colour) {
@@ -71,7 +74,8 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
   return parent;
 }
 
-// The cells below `count` of each aggregate, as lists one behind the other.
+// Lists, for each aggregate (coarse cell), its cells with an index below `count`. The lists are stored one after the
+// other in `child`, and `first` has the index at which each list begins.
 void list_children(const std::vector<std::int32_t>& parent, std::int64_t count, std::int64_t aggregates,
                    std::vector<std::int32_t>& first, std::vector<std::int32_t>& child) {
   first.assign(aggregates + 1, 0);
@@ -155,7 +159,7 @@ Multigrid::Multigrid(CellGraph finest) {
     levels_.push_back(std::move(next));
   }
   const CellGraph& graph = levels_.back().graph;
-  if (graph.size() > 8 * kCoarsestSize) return;  // many small pieces: sweeps do it
+  if (graph.size() > 8 * kCoarsestSize) return;  // the graph has many small components, which the sweeps solve
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(graph.size(), graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     dense(i, i) += graph.diagonal[i];
@@ -185,7 +189,7 @@ class Multigrid::Solver {
     const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       for (int l = 0; l < Lanes; ++l) sums[l] += double(b[i * Lanes + l]) * b[i * Lanes + l];
     });
-    std::vector<float>& r = b;  // from here on
+    std::vector<float>& r = b;  // from here on, b is the residual
     Sums rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       float acc[Lanes];
       gather(graph, x.data(), i, acc);
@@ -245,15 +249,15 @@ class Multigrid::Solver {
     return report;
   }
 
-  // x = M^-1 b on a level, where M is symmetric: one visit of the coarser levels between two mirrored half sweeps, or
-  // two.
+  // Computes x = M^-1 b on a level, where M is symmetric: mirrored sweeps, between which it visits the coarser levels
+  // once or twice.
   void cycle(size_t level, const std::vector<float>& b, bool twice = true) {
     const Level& here = grid_.levels_[level];
     const CellGraph& graph = here.graph;
     std::vector<float>& x = at_[level].x;
     if (here.parent.empty()) return solve_coarsest(graph, b, x);
 
-    // From x = 0 the first half sweep needs no neighbours.
+    // Since x is 0, the first half sweep needs no neighbours.
     for_cells(graph.red_count, [&](std::int64_t i) {
       for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
     });
@@ -300,7 +304,7 @@ class Multigrid::Solver {
     return total;
   }
 
-  // acc = sum over neighbours of conductance x
+  // Computes acc = sum over the neighbours of cell i of conductance * x.
   static void gather(const CellGraph& graph, const float* x, std::int64_t i, float (&acc)[Lanes]) {
     for (int l = 0; l < Lanes; ++l) acc[l] = 0;
     for (std::int32_t k = graph.first[i], end = graph.first[i + 1]; k < end; ++k) {
@@ -320,7 +324,8 @@ class Multigrid::Solver {
     });
   }
 
-  // After a half sweep over the black cells only the red ones have a residual.
+  // Adds the correction from the next coarser level. It is called after a half sweep over the black cells, so only red
+  // cells have a residual.
   void visit_coarser(size_t level, const std::vector<float>& b) {
     const Level& here = grid_.levels_[level];
     std::vector<float>& x = at_[level].x;
@@ -383,7 +388,7 @@ class Multigrid::LanesCycle : public Multigrid::Cycle {
 };
 
 namespace {
-// body(std::integral_constant<int, lanes>)
+// Calls body with the number of lanes (right-hand sides) as a compile-time constant.
 template <class Body>
 auto with_lanes(int lanes, const Body& body) {
   switch (lanes) {

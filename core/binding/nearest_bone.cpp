@@ -11,30 +11,35 @@
 namespace limber {
 
 namespace {
-// The last bone of a chain stands for all that comes after it (four fingers, the toes, the jaw), most of it further off
-// than the bone is long: beyond kOwnReach of its length, distances to it count as kLastBone of what they are.
+// Factors of the distance to the last bone of a chain. This bone also carries what lies beyond its tail (four fingers,
+// the toes, the jaw), most of it further away than the bone is long. The part of a distance that is longer than
+// kOwnReach times the bone's length is therefore multiplied by kLastBone.
 constexpr float kOwnReach = 0.5f;
 constexpr float kLastBone = 0.65f;
-// A bone that only links a limb to the trunk (a collarbone) stands for less than itself: what lies below it on the
-// chest is the trunk's. A link is shorter than kLinkShare of the bone it leads to and turns aside where its parent
-// forks.
+// Factors for a bone that only links a limb to the trunk (a collarbone). Its distance is multiplied by kLink, so that
+// it attracts less: the chest below it belongs to the trunk. A bone is a link if it is shorter than kLinkShare of the
+// bone it leads to, and turns aside from a parent that has several children.
 constexpr float kLink = 1 / kLastBone;
 constexpr double kLinkShare = 0.75;
-// Flesh beyond a joint is nearest to the joint itself when its distance is this share of the way to there.
+// Flesh belongs to the joint itself, rather than to one of its bones, if the distance to the nearest bone is at least
+// this share of the distance to the joint.
 constexpr float kAtJoint = 0.75f;
-// Bone that is not drawn is taken to fill this share of the flesh around its axis, a voxel's diagonal at least.
+// A bone without bone tissue is assumed to fill this share of the radius of the flesh around its axis, and at least
+// half a voxel's diagonal.
 constexpr double kBoneShare = 0.5;
-constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
+constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 }  // namespace
 
 namespace {
 
-// How far the air is from a bone's axis, mm: the median over points along it of the shortest of 26 rays.
+// Returns the distance from a bone's axis to the air, mm. For each of several points along the axis it takes the
+// shortest of 26 rays; the result is the median over the points.
 double flesh_around(const Bone& bone, const LabelVolume& volume) {
   const AffineTransform from_world = voxel_from_world(volume.grid);
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   const glm::dvec3 size(volume.grid.size);
-  // A rig may lie farther from the volume than whole numbers reach.
+  // The position is compared before it is converted to int, since a rig may lie further from the volume than an int can
+  // represent.
   auto is_air = [&](const glm::dvec3& at) {
     const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, size));
     return !inside || volume.at(glm::ivec3(at)) == 0;
@@ -72,7 +77,8 @@ std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVox
 
   const AffineTransform from_voxel = world_from_voxel(volume.grid), from_world = voxel_from_world(volume.grid);
   const double voxel = std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
-  std::vector<float> nearest(tissue.size(), -1);  // filled only where axes without a part run
+  // Distance to the axis of the bone that fixes the temperature of each voxel, mm; -1: none.
+  std::vector<float> nearest(tissue.size(), -1);
   for (size_t b = 0; b < armature.bones.size(); ++b) {
     if (has_part[b]) continue;
     const Bone& bone = armature.bones[b];
@@ -118,7 +124,8 @@ bool is_link(const Armature& armature, size_t b) {
   return forks && leads_on && glm::dot(along(bone), before) < 0.5 * length * glm::length(before);
 }
 
-// How the way to a bone counts: as it is up to `reach`, beyond that by `share`.
+// Converts the distance to a bone into the distance that is compared: unchanged up to `reach`, and the rest multiplied
+// by `share`.
 struct Count {
   float reach = std::numeric_limits<float>::infinity();  // mm
   float share = 1;
@@ -137,8 +144,9 @@ std::vector<Count> counts_of_bones(const Armature& armature) {
   return counts;
 }
 
-// Where exactly two bones meet, flesh nearest to the joint itself lies as near to the one as to the other, and goes
-// with the bone on whose side of the plane that halves their angle it lies: the heel with the foot, not with the shin.
+// Divides the flesh at joints where exactly two bones meet. Flesh nearest to the joint itself is equally near to both
+// bones, so it belongs to the bone on its side of the plane that bisects their angle: the heel belongs to the foot, not
+// to the shin.
 class Hinges {
  public:
   explicit Hinges(const Armature& armature) : ends_(armature.bones.size()) {
@@ -149,7 +157,8 @@ class Hinges {
       for (int side = 0; side < 2 && !last[b]; ++side) ends_[b][side] = end_of(armature, b, side);
   }
 
-  // The bone that flesh at `point` belongs to when `nearest` is its nearest bone, `distance` mm away.
+  // Returns the bone that the flesh at `point` belongs to.
+  //   nearest, distance  the nearest bone, and its distance, mm
   std::uint16_t bone_at(const glm::vec3& point, std::uint16_t nearest, float distance) const {
     for (const End& end : ends_[nearest]) {
       if (end.other < 0) continue;
@@ -163,7 +172,7 @@ class Hinges {
 
  private:
   struct End {
-    int other = -1;  // the bone met there, -1 if none or several
+    int other = -1;  // the other bone at this end of the bone; -1: none or several
     glm::vec3 joint, inward, parting;
   };
   static End end_of(const Armature& armature, size_t b, int side) {
@@ -192,7 +201,7 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
                               const std::vector<std::uint16_t>& held_by, const std::vector<Count>& counts) {
   NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
   TissueFront front(volume, tissue);
-  // No way is shorter than none: held voxels keep their bone.
+  // Voxels whose temperature a bone fixes have distance 0. No path to them is shorter, so they keep their bone.
   front.start_all([&](std::int64_t place, const glm::ivec3&) {
     if (held_by[place] != kSoft) nearest.distance[place] = 0;
     return held_by[place];

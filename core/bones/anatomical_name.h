@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads which bone of the body a label's name means. It knows the names of ICRP 110 ("Femora, upper half, spongiosa"),
+// Finds out which bone of the body a label's name means. Knows the names of ICRP 110 ("Femora, upper half, spongiosa"),
 // TotalSegmentator ("rib_left_7", "vertebrae_L5", "clavicula_right"), BodyParts3D ("Distal phalanx of left index
 // finger"), Visible Human and SPL ("femur_bone", "Hip bone (L)").
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// The bones that move together in a body, from the head downwards.
+// The groups of bones that move together in a body, from the head downwards.
 enum class BoneRegion {
   Head,
   Neck,
@@ -31,17 +31,20 @@ enum class BoneRegion {
 };
 
 struct AnatomicalName {
-  std::set<BoneRegion>
-      regions;  // several where one label holds several bones ("femur and tibia"); none: the name says nothing
-  BodySide side = BodySide::Middle;     // Middle: not said
-  BodyPart finger = BodyPart::Fingers;  // for Finger: Thumb .. Little, or Fingers where it is not said which
-  int segment = -1;     // for Finger: 0 metacarpal, 1 proximal, 2 middle, 3 distal, as in JointRole; -1: not said
+  // The regions that the name means: several where one label holds several bones ("femur and tibia"), none where the
+  // name means no known bone.
+  std::set<BoneRegion> regions;
+  BodySide side = BodySide::Middle;  // Middle: the name gives no side
+  // For the region Finger: the finger, Thumb to Little. Fingers: the name does not say which one.
+  BodyPart finger = BodyPart::Fingers;
+  // For the region Finger: 0 metacarpal, 1 proximal, 2 middle, 3 distal phalanx, as in JointRole. -1: not given.
+  int segment = -1;
   bool plural = false;  // the label holds several bones ("Ribs", "Wrists and hand bones")
 };
 
 AnatomicalName anatomical_name(std::string_view label_name);
 
-// "left hip bone" -> "pelvis": the words for messages and tables.
+// Returns the word for a region in messages and tables, such as "pelvis".
 std::string_view to_string(BoneRegion region);
 
 }  // namespace limber

@@ -9,9 +9,10 @@ namespace limber {
 
 namespace {
 
-constexpr float kFar = 1e4f;  // mm
+constexpr float kFar = 1e4f;  // upper limit on stored distances, mm
 
-// The lattice points of one axis, as the lower of two voxels and the share of the upper one.
+// A lattice point's position along one axis: the lower of the two voxels beside it, and the share of the upper one, [0,
+// 1].
 struct AxisPoint {
   int voxel;
   float share;
@@ -26,7 +27,7 @@ std::vector<AxisPoint> points_along(int voxels, double spacing, double edge) {
   return points;
 }
 
-// Of voxels, as seen from the points of a finer lattice.
+// Returns for every point of a finer lattice whether it lies inside the voxels, by trilinear interpolation.
 std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const glm::ivec3& size,
                                   const std::array<std::vector<AxisPoint>, 3>& points) {
   std::vector<std::uint8_t> inside;
@@ -48,7 +49,7 @@ std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const
   return inside;
 }
 
-// Each value the mean of itself and its two neighbours along one axis, in the shares 1, 2, 1.
+// Replaces each value by the mean of itself and its two neighbours along one axis, with weights 1, 2, 1.
 void blur(std::vector<float>& values, const glm::ivec3& size, int axis) {
   const std::int64_t step = axis == 0 ? 1 : axis == 1 ? size.x : std::int64_t{size.x} * size.y;
   const std::int64_t block = step * size[axis];
@@ -79,11 +80,11 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
     lattice_.size = glm::ivec3(points[0].size(), points[1].size(), points[2].size());
   }
   mm_ = signed_distance(lattice_, inside, glm::dvec3(edge_));
-  // From the centres of lattice points to the border between them; where there is none, far.
+  // Converts distances between centres of lattice points to distances to the border halfway between them.
   const auto half = static_cast<float>(edge_ / 2), least = static_cast<float>(edge_ / 10);
   for (float& d : mm_) d = std::clamp(d + (d > 0 ? -half : half), -kFar, kFar);
-  // The steps of a surface that is drawn in voxels go, the higher ones of thick slices too; no lattice point changes
-  // sides.
+  // Blurring removes the steps of a surface made of voxels, also the higher steps of thick slices. No lattice point
+  // changes its side of the surface.
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < std::lround(spacing[axis] / edge_); ++i) blur(mm_, lattice_.size, axis);
   for (std::int64_t i = 0; i < std::ssize(mm_); ++i)
@@ -108,11 +109,11 @@ std::optional<BoneDistance::Sample> BoneDistance::below(const glm::dvec3& point,
 std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
   if (!holds(place)) return std::nullopt;
-  const glm::ivec3 low(place);  // whole numbers below; std::floor would be a call
+  const glm::ivec3 low(place);  // rounds down, since place is not negative; std::floor would be a call
   const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
   const float* p = &mm_[lattice_.index(low)];
   const glm::dvec3 f = place - glm::dvec3(low);
-  // Along x, then y, then z; differences of the same give the slope.
+  // Interpolates along x, then y, then z. Differences of the interpolated values give the gradient.
   const double x00 = p[0] + f.x * (p[1] - p[0]), x10 = p[row] + f.x * (p[row + 1] - p[row]);
   const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]),
                x11 = p[slice + row] + f.x * (p[slice + row + 1] - p[slice + row]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The signed distance to the surface of one bone near a joint, on a lattice of cubes, so that distances mean the same
-// in every direction also where slices are thick: there the bone's membership is interpolated between slices first,
-// and the surface runs where it is one half. Points are in mm along the axes of the volume's grid, from the centre of
-// voxel 0.
+// Computes the signed distance to the surface of one bone near a joint. It uses a lattice of cubes, so that distances
+// are equally exact in every direction also where slices are thick: there the bone's membership is interpolated between
+// slices first, and the surface is where the membership is one half. Points are in mm along the axes of the volume's
+// grid, from the centre of voxel 0.
 #pragma once
 
 #include <optional>
@@ -15,28 +15,28 @@ namespace limber {
 class BoneDistance {
  public:
   struct Sample {
-    double mm;         // to the surface, negative inside the bone
-    glm::dvec3 slope;  // its gradient
+    double mm;         // signed distance to the surface, negative inside the bone
+    glm::dvec3 slope;  // gradient of the signed distance
   };
   struct SurfacePoint {
     glm::dvec3 place;
     double mm;
   };
 
-  // The lattice covers the voxel centres of `box`, its edge is the smallest spacing. Bone outside the box is not
-  // seen: a bone that goes on beyond it has no surface there.
-  //   voxels  of the bone; those outside the box are ignored
+  // Builds a lattice over the voxel centres of `box`, with the smallest spacing as its edge. Voxels outside the box are
+  // ignored: a bone that goes on beyond the box has no surface there.
+  //   voxels  all voxels of the bone
   BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ivec3>& voxels, const VoxelBox& box);
 
   double edge_mm() const { return edge_; }
-  // Linear between lattice points; none outside of the lattice.
+  // Returns the distance at a point, linear between lattice points; none outside the lattice.
   std::optional<Sample> at(const glm::dvec3& point) const;
-  // The same, and none where all lattice points around are `limit` mm or further from the bone: of many points that are
-  // looked at only some can lie in it.
+  // Returns the distance at a point like at(), but none also where all lattice points around it are `limit` mm or more
+  // from the bone. This fast test rejects most points of a long list.
   std::optional<Sample> below(const glm::dvec3& point, double limit) const;
-  // How far a point lies outside of the lattice along the axis where it is most, mm; 0 in it.
+  // Returns how far a point lies outside the lattice, mm: the largest distance along one axis, 0 inside.
   double outside(const glm::dvec3& point) const;
-  // The lattice points next to the surface, on both sides, x fastest.
+  // Returns the lattice points next to the surface, on both sides, x fastest.
   std::vector<SurfacePoint> surface() const;
 
  private:
@@ -45,7 +45,9 @@ class BoneDistance {
   glm::dvec3 lowest_;
   double edge_;
   VoxelBox lattice_;
-  std::vector<float> mm_, least_;  // at each lattice point, and of the eight from it on
+  // The signed distance at each lattice point, and the smallest of the eight distances at the corners of the lattice
+  // cell that begins at the point.
+  std::vector<float> mm_, least_;
 };
 
 }  // namespace limber

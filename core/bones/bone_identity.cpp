@@ -13,9 +13,9 @@
 namespace limber {
 
 namespace {
-constexpr std::uint64_t kLargestMap = 1 << 20;  // bytes
+constexpr std::uint64_t kLargestMap = 1 << 20;  // upper limit on the size of a bone map file, bytes
 
-// The rig's bones by the part of the body that they stand for.
+// Finds rig bones by the body part that the bones' names mean.
 class RigRegions {
  public:
   explicit RigRegions(const Armature& armature) {
@@ -25,7 +25,7 @@ class RigRegions {
     roles_ = joint_roles(names, parents);
     for (int b = 0; b < std::ssize(roles_); ++b) {
       if (parents[b] < 0) roots_.push_back(b);
-      // A rig that ends below the neck gives its trunk no roles, yet names it.
+      // In a rig without a neck, the bones of the trunk get no roles. Then their own names decide.
       if (roles_[b] && roles_[b]->part != BodyPart::Spine) continue;
       const AnatomicalName name = anatomical_name(names[b]);
       const std::string plain = plain_name(names[b]);
@@ -39,12 +39,12 @@ class RigRegions {
     }
   }
 
-  // Whether names say enough of the rig to match anything with it.
+  // Returns whether at least one rig bone has a known role.
   bool is_recognised() const {
     return std::count_if(roles_.begin(), roles_.end(), [](const auto& role) { return role.has_value(); }) > 0;
   }
 
-  // All bones of one side, by their names.
+  // Returns all rig bones of one side.
   std::vector<int> of_side(BodySide side) const {
     return with_role([&](const JointRole& role) { return role.side == side; });
   }
@@ -91,13 +91,14 @@ class RigRegions {
     return bones;
   }
   std::vector<int> of_part(BodyPart part, BodySide side) const {
-    // A rig of one limb may not say its side.
+    // The bone names of a rig of a single limb may not name the side.
     auto bones = with_role([&](const JointRole& role) { return role.part == part && role.side == side; });
     if (bones.empty() && side != BodySide::Middle)
       bones = with_role([&](const JointRole& role) { return role.part == part && role.side == BodySide::Middle; });
     return bones;
   }
-  // Of the spine's bones those that may be meant; where the rig tells none of them apart, all.
+  // Returns the rig bones `meant`. Where there are none, returns the bones of the spine without `others`, or the whole
+  // spine where none is left.
   std::vector<int> of_spine(const std::vector<int>& meant, const std::vector<int>& others) const {
     if (!meant.empty()) return meant;
     std::vector<int> spine = of_part(BodyPart::Spine, BodySide::Middle), rest;
@@ -108,7 +109,7 @@ class RigRegions {
 
   static bool is_finger(BodyPart part) { return part >= BodyPart::Thumb && part <= BodyPart::Little; }
 
-  // A finger's segment, else the next one towards the hand that the rig has.
+  // Returns the rig bones of a finger's segment, or of the next segment towards the hand that the rig has.
   std::vector<int> of_finger(const AnatomicalName& name, BodySide side) const {
     const bool all_fingers = name.finger == BodyPart::Fingers;
     const auto of_segments = [&](int lowest, int highest) {
@@ -165,7 +166,7 @@ std::optional<LabelBones> bones_by_name(const AnatomicalName& name, const RigReg
     const BodySide own = side == 0 ? BodySide::Left : BodySide::Right;
     for (const BoneRegion region : name.regions) {
       const auto in_rig = rig.find(region, name, name.side == BodySide::Middle ? own : name.side);
-      // A label of several bones (a hand with its fingers) has those that the rig has.
+      // A label of several bones (a hand with its fingers) may follow the rig bones of all its regions.
       bones.insert(in_rig.bones.begin(), in_rig.bones.end());
       found.is_substitute |= in_rig.is_substitute;
     }
@@ -176,7 +177,7 @@ std::optional<LabelBones> bones_by_name(const AnatomicalName& name, const RigReg
   return found;
 }
 
-// ---- the user's map
+// ---- the user's bone map
 
 int bone_named(const Armature& armature, const std::string& name, const std::string& key) {
   for (int b = 0; b < std::ssize(armature.bones); ++b)
@@ -187,7 +188,7 @@ int bone_named(const Armature& armature, const std::string& name, const std::str
 
 struct MapKey {
   std::string label;
-  std::optional<int> side;  // 0 left, 1 right
+  std::optional<int> side;  // 0: left, 1: right, none: the whole label
 };
 MapKey parts_of(const std::string& key) {
   const auto at = key.rfind('@');
@@ -207,7 +208,7 @@ bool is_meant(const Tissue& tissue, const std::string& label) {
 
 void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armature, const RigRegions& rig,
            std::map<Label, LabelBones>& found) {
-  // What is said of a whole label first, then of its sides.
+  // Entries for whole labels are applied first, then entries for one side, which override them.
   for (const bool of_sides : {false, true})
     for (const auto& [key, bone_name] : map) {
       const MapKey parts = parts_of(key);
@@ -254,7 +255,7 @@ BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
   std::string twice;
   std::set<std::string> keys;
   using Json = nlohmann::json;
-  // The parser keeps the last of two equal keys; here that would be a silent choice.
+  // Of two equal keys the parser would silently keep the last one, so keys are counted here.
   const auto note_keys = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start) {
       if (depth >= 1) throw wrong("the bone map is nested");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Decides which rig bones a label of bone tissue may follow. What the user's bone map says counts first, then the
-// label's name read as anatomy (anatomical_name.h) and matched with the roles of the rig's bones (rig/joint_names.h).
-// Where the rig lacks the bone that a name means, the label follows the next bone towards the trunk that the rig has: a
-// hand without a hand bone follows the forearm, a shoulder blade without a collarbone the thorax.
+// Decides which rig bones a label of bone tissue may follow. The user's bone map counts first, then the anatomical
+// meaning of the label's name (anatomical_name.h), matched with the roles of the rig's bones (rig/joint_names.h). Where
+// the rig lacks the bone that a name means, the label follows the next rig bone towards the trunk: a hand follows the
+// forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without collarbones.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@
 
 namespace limber {
 
-// What the user says: a label's name or value, alone or with "@left" or "@right", to the name of a rig bone.
+// The user's assignments: maps a label's name or value, with or without "@left" or "@right", to the name of a rig bone.
 using BoneMap = std::map<std::string, std::string>;
 
-// JSON: {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. Throws Error for what is no such file, and for a key
-// that is there twice.
+// Read JSON such as {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. Both throw Error when the text is no bone
+// map or has a key twice.
 BoneMap read_bone_map(const Path& path);
 BoneMap parse_bone_map(const std::string& bytes, const std::string& where);
 
@@ -29,23 +29,27 @@ enum class FoundBy { Map, Name, Kind, Shape };
 std::string_view to_string(FoundBy found_by);
 
 struct LabelBones {
-  // Rig bones that the label's tissue may follow on the body's left and on its right; the same where it has no sides.
+  // Rig bones that the label's tissue may follow on the body's left [0] and right [1]. The two lists are equal where
+  // the label has no sides.
   std::array<std::vector<int>, 2> candidates;
   bool has_sides = false;
-  std::array<std::vector<int>, 2> side_bones;  // where it has: what lies nearer to the first is left
-  bool single = true;  // one bone of the body, that must follow one rig bone whole (on each side)
+  // For a label with sides: its voxels nearer to rig bones [0] are left, those nearer to rig bones [1] are right.
+  std::array<std::vector<int>, 2> side_bones;
+  // true: the label is one bone of the body (per side) and follows one rig bone as a whole.
+  bool single = true;
   FoundBy found_by = FoundBy::Name;
-  bool is_substitute =
-      false;  // the rig has neither what the name means nor anything towards the trunk: its roots stand in
+  // true: the rig has neither the named bone nor one further towards the trunk. Then the candidates are the rig's
+  // roots.
+  bool is_substitute = false;
 };
 
-// The labels of bone tissue whose rig bones are known; one that is not there must be found by its shape.
-// throws Error where the map names a rig bone or a label that is not there
+// Returns the labels of bone tissue whose rig bones are known; the rig bones of other labels must be found by shape.
+// Throws Error when the map names a rig bone or a label that does not exist.
 std::map<Label, LabelBones> bones_of_labels(const TissueTable& tissues, const Armature& armature,
                                             const BoneMap& map = {});
 
-// The rig bones of a region of the body on one side, or where the rig has none of it, the next towards the trunk. None
-// where the rig's names say nothing of it.
+// Returns the rig bones of a body region on one side, or the next ones towards the trunk where the rig has none there.
+// Returns none where the rig's names are not recognised.
 std::vector<int> bones_of_region(BoneRegion region, BodySide side, const Armature& armature);
 
 }  // namespace limber

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bone maps of a project: kept while tissues and rig change, handed to commands as files, and shown label by label.
+// Operations on a project's bone map, by which the user assigns labels to rig bones. The map is kept while tissues and
+// rig change, passed to commands as a file, and shown label by label.
 #pragma once
 
 #include <optional>
@@ -11,34 +12,37 @@
 
 namespace limber {
 
-// What of a map names bone tissue and bones that are there, and can be used. The rest is in `left_out`, by its key.
+// The entries of a bone map that name existing bone tissue and rig bones.
 struct FittingBoneMap {
   BoneMap map;
-  std::vector<std::string> left_out;
+  std::vector<std::string> left_out;  // keys of the entries that cannot be used
 };
 FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, const Armature& armature);
 
-// As read_bone_map() reads it.
+// Returns the JSON text of a bone map, as read_bone_map() reads it.
 std::string to_json(const BoneMap& map);
 void write_bone_map(const BoneMap& map, const Path& path);
 
-// A label of bone tissue, or one side of it, with the rig bones that it follows.
+// A label of bone tissue, or one side of a label, with the rig bones that it follows.
 struct MappedLabel {
   Label label = 0;
-  std::optional<BodySide> side;  // where the label's two sides follow bones of their own: left or right
-  std::vector<int> bones;        // those that it follows, by most voxels; empty: it has no voxels there
+  // Left or Right where the label's sides follow different rig bones. None: the row is for the whole label.
+  std::optional<BodySide> side;
+  // Rig bones that the label follows, the one with most voxels first. Empty: the label has no voxels there.
+  std::vector<int> bones;
   std::int64_t voxels = 0;
   FoundBy found_by = FoundBy::Shape;
-  bool is_sure = true;  // the rig has a bone for what the label's name means
+  bool is_sure = true;  // false: the rig has no bone for the label's name
 };
-// Every label of bone tissue in the order of the table, left before right.
+// Returns a row for every label of bone tissue, or for each of its sides, in the order of the tissue table.
 std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature,
                                        const BoneMap& map);
 
-// The key of a label in a map: its value in files, which no other tissue shares.
+// Returns the key of a label in a map: its value in files, which is unique.
 std::string map_key(const Tissue& tissue, std::optional<BodySide> side = {});
 
-// The map that says that a label, or one side of it, follows a bone; without a bone, that it says nothing of it.
+// Returns the map with an entry by which a label, or one side of it, follows the rig bone `bone`. Where `bone` is null,
+// returns the map without such an entry.
 BoneMap with_entry(BoneMap map, const Tissue& tissue, std::optional<BodySide> side, const std::string* bone);
 
 }  // namespace limber

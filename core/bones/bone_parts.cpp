@@ -21,11 +21,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kWiggleVoxels = 0.6;  // what rounding to voxels makes of the smooth ridge of a thick tube
-constexpr std::int64_t kMostDistances = 16'000'000;  // basins x rig bones: 64 MB
+// Height that rounding to voxels adds to the smooth ridge of a thick tube, in voxels.
+constexpr double kWiggleVoxels = 0.6;
+constexpr std::int64_t kMostDistances = 16'000'000;  // upper limit on basins x rig bones: 64 MB of distances
 
-// A basin that holds most of the length of several rig bones is several bones grown together (or drawn as one tube):
-// there each voxel goes with the nearest of those.
+// Cuts basins that contain at least half the length of each of several rig bones: these are bones grown together (or
+// drawn as one tube). Each voxel is given to the nearest of those rig bones.
 void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid,
                                  const TissueVoxels& tissue, const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
@@ -33,7 +34,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   std::map<std::int32_t, std::vector<int>> bones_inside;
   for (int b = 0; b < hugging.bone_count(); ++b) {
     const glm::dvec3 head = from_world * armature.bones[b].head, tail = from_world * armature.bones[b].tail;
-    constexpr int kMostSteps = 4096;  // a segment may be far longer than the volume
+    constexpr int kMostSteps = 4096;  // upper limit on sampled points, for a rig bone far longer than the volume
     const int steps = static_cast<int>(std::clamp(2 * glm::length(tail - head), 8.0, double(kMostSteps)));
     std::map<std::int32_t, int> inside;
     for (int k = 0; k <= steps; ++k) {
@@ -50,7 +51,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 
   std::int32_t next = basin.empty() ? 0 : *std::max_element(basin.begin(), basin.end()) + 1;
-  std::map<std::int32_t, std::int32_t> first_of;  // basin to the first of its cuts
+  std::map<std::int32_t, std::int32_t> first_of;  // number of the first new basin, by number of the cut basin
   for (const auto& [which, bones] : bones_inside)
     if (bones.size() >= 2) first_of[which] = std::exchange(next, next + static_cast<std::int32_t>(bones.size()));
   if (first_of.empty()) return;
@@ -67,13 +68,12 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 }
 
-// Basins joined to the pieces that move as one, each with its rig bone. Two touching basins join, broadest contact
-// first, unless the rig objects: that following one bone together would take the smaller one much further from its
-// bone than it would be alone.
+// Joins touching basins to pieces that each follow one rig bone, broadest contact first. Two basins are not joined
+// where this would take the smaller one much further from its rig bone than it is alone.
 class Pieces {
  public:
-  //   beyond      which voxels lie beyond a joint
-  //   may_follow  rig bones that the basin of a voxel may follow; none means any
+  //   beyond      voxels that lie beyond a joint
+  //   may_follow  returns the rig bones that the basin of a given voxel may follow; empty: any
   Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging,
          const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond, double voxel,
          const std::vector<ShoulderGirdle>& girdles, const auto& may_follow)
@@ -88,7 +88,7 @@ class Pieces {
       cluster.voxels = std::ssize(members[p]);
       for (std::int32_t i : members[p]) cluster.summit = std::max(cluster.summit, height[i]);
       if (members[p].empty()) continue;
-      // 256 voxels spread evenly tell a mean distance to a few percent.
+      // 256 evenly spread voxels give the mean distance with an error of a few percent.
       const size_t stride = std::max<size_t>(1, members[p].size() / 256);
       const size_t samples = (members[p].size() + stride - 1) / stride;
       cluster.distance.resize(bones_);
@@ -150,7 +150,8 @@ class Pieces {
     while (cluster_[p].parent != p) p = cluster_[p].parent;
     return p;
   }
-  // After settle(): the rig bone of a basin, or -1 for one that touches nothing and lies far from every bone.
+  // Returns the rig bone of a basin, after settle(); -1: the basin touches no other one and lies far from every rig
+  // bone.
   int bone(std::int32_t p) const {
     const int bone = bone_[root(p)];
     const auto before = before_.find(p);
@@ -162,12 +163,13 @@ class Pieces {
         ->trunk;
   }
 
-  // Gives every piece its rig bone. A piece that lies along a bone follows that bone. One that lies further from its
-  // nearest bone than the piece along it does by half again (a rib beside the hanging arm, the breastbone between two
-  // collarbones) must touch bones that are joined to its nearest, or it follows what it touches: of a chain of bones
-  // the nearest, of several chains the bone they spring from. So it does where it lies three times as far and does not
-  // touch its nearest itself, but for one of about the size of the piece along it that hangs on the same bone (a toe
-  // beside a toe). What is nearest to a shoulder's bone may be the trunk's (shoulder_girdles.h).
+  // Gives every piece (group of joined basins) its rig bone. A piece that lies along a rig bone follows it. Another
+  // piece may be more than 1.5 times as far from its nearest rig bone (a rib beside the hanging arm, the breastbone
+  // between two collarbones). It follows that bone only if all pieces that it touches follow the bone, its parent or
+  // its children. Else it follows the bones that it touches: the nearest one of a chain, or the common ancestor of
+  // several chains. The same holds for a piece that is three times as far and does not touch its nearest bone, except
+  // where it is about as large as the piece along that bone and touches the bone's parent (a toe beside a toe). A piece
+  // nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
@@ -191,7 +193,8 @@ class Pieces {
     }
     for (bool settled = true; settled;) {
       settled = false;
-      std::vector<std::pair<std::int32_t, int>> found;  // all of a round see the same neighbours
+      // The rig bones found are assigned after the loop, so that the order of pieces does not matter.
+      std::vector<std::pair<std::int32_t, int>> found;
       for (std::int32_t p : waiting)
         if (bone_[p] < 0)
           if (const int b = bone_of_touched(p, armature); b >= 0) found.push_back({p, b});
@@ -201,32 +204,37 @@ class Pieces {
   int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
 
  private:
-  // A pass this much lower than the summit is a joint, not a waist. Marrow runs through a bone and never across a
-  // joint, so its raised passes tell a condyle's own shaft from the bone it rolls on also where voxels are coarse.
+  // Lowest pass between two joined basins, as a share of the lower summit. A lower pass is a joint and not a waist of
+  // one bone. Marrow runs through a bone but never across a joint, and it raises passes: so a condyle is joined to its
+  // own shaft and not to the bone it rolls on, even where voxels are coarse.
   static constexpr float kWeakestContact = 0.35f;
-  static constexpr double kBeyondJoint = 4;     // how much further off a bone counts that lies beyond a joint
-  static constexpr float kForbidden = 1e6f;     // mm: further than any bone
-  static constexpr double kMostlyBefore = 0.7;  // of a basin's voxels: it lies before a collarbone begins
-  static constexpr double kAcross =
-      0.35;  // ... on the other side of the body: it is no collarbone grown to the breastbone
-  static constexpr double kFar = 3,
-                          kSmall = 4;  // times the distance of the piece along a bone; so much smaller than it
+  static constexpr double kBeyondJoint = 4;  // a rig bone counts (1 + 4) times as far for voxels beyond its joint
+  static constexpr float kForbidden = 1e6f;  // added to the distance of rig bones that a basin must not follow, mm
+  // Share of a basin's voxels before a collarbone's head, measured along the collarbone, above which the basin does not
+  // follow the collarbone.
+  static constexpr double kMostlyBefore = 0.7;
+  // Share of a basin's voxels on the other side of the body, above which the basin does not follow a collarbone: the
+  // collarbone has grown to the breastbone there.
+  static constexpr double kAcross = 0.35;
+  // A piece counts as far from a rig bone above kFar times the distance of the piece that lies along the bone. It
+  // counts as small with less than 1 / kSmall of that piece's voxels.
+  static constexpr double kFar = 3, kSmall = 4;
 
   struct Cluster {
     std::int32_t parent = 0;
     std::int64_t voxels = 0;
     float summit = 0;
-    std::vector<float> distance;            // mean, mm, by rig bone
-    std::vector<float> to_shoulder;         // of the nearest voxel, mm, by girdle
-    std::map<std::int32_t, float> contact;  // by cluster: height of the highest pass
+    std::vector<float> distance;            // mean distance of the voxels to each rig bone, mm
+    std::vector<float> to_shoulder;         // distance of the nearest voxel to each girdle's shoulder, mm
+    std::map<std::int32_t, float> contact;  // height of the highest pass to each touching cluster
   };
 
   static bool above(const Armature& armature, int ancestor, int bone) {
     while (bone > ancestor) bone = armature.bones[bone].parent;
     return bone == ancestor;
   }
-  // Of a piece whose nearest bone is a shoulder's: the trunk where it neither lies along that bone nor reaches the
-  // shoulder, else -1.
+  // Returns the trunk's rig bone for a piece whose nearest rig bone is a shoulder's, but that neither lies along this
+  // bone nor reaches the shoulder joint; else -1.
   int trunk_instead_of(int bone, std::int32_t p) const {
     for (std::size_t g = 0; g < girdles_.size(); ++g) {
       const ShoulderGirdle& girdle = girdles_[g];
@@ -267,11 +275,11 @@ class Pieces {
     return nearest;
   }
 
-  // What lies beyond a joint is as far from the bone there as it seemed to be from the one before the joint, and
-  // further from that.
+  // Corrects the distances of basins to rig bones where voxels lie beyond a joint: the distance to the bone beyond the
+  // joint becomes as small as that to the bone before the joint, which is then increased.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
-    std::map<std::tuple<std::int32_t, int, int>, std::int64_t>
-        voxels;  // by basin, bone before and bone beyond the joint
+    // Number of voxels beyond a joint, by basin, bone before the joint and bone beyond it.
+    std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;
     for (const BeyondJoint& b : beyond) ++voxels[{basin[b.voxel], b.bone, b.other}];
     auto share_of = [&](std::int32_t p, std::int64_t count) {
       return std::min(1.0, double(count) / double(cluster_[p].voxels));
@@ -312,8 +320,8 @@ class Pieces {
     const double apart = a.distance[of_a] * a.voxels + b.distance[of_b] * b.voxels;
     const Cluster& smaller = a.voxels < b.voxels ? a : b;
     const double own = smaller.distance[a.voxels < b.voxels ? of_a : of_b];
-    // A quarter of its distance a piece may be further off without belonging elsewhere: so the ball of a joint goes
-    // with its shaft, and a finger bone does not with its neighbour.
+    // Joining may take the smaller piece further from its rig bone by a quarter of its distance. So the ball of a joint
+    // joins its shaft, but a finger bone does not join its neighbour.
     return together - apart <= 0.25 * own * smaller.voxels;
   }
   void absorb(std::int32_t a, std::int32_t b) {
@@ -334,35 +342,35 @@ class Pieces {
     cluster_[b].parent = a;
   }
 
-  // The piece along a rig bone.
+  // The piece that lies along a rig bone: the one with most voxels in proportion to its squared distance.
   struct Own {
-    double distance = 0;  // mean, mm
+    double distance = 0;  // mean distance to the rig bone, mm
     std::int64_t voxels = 0;
     std::int32_t piece = -1;
   };
 
   int bones_;
-  float surface_;  // mm: depths are counted to the next voxel's centre, which lies this much outside the bone
+  float surface_;  // depth of the bone's surface, mm: half a voxel, since depths end at voxel centres outside
   std::vector<Cluster> cluster_;
-  std::vector<int> bone_;  // by cluster
-  std::vector<Own> own_;   // by rig bone
+  std::vector<int> bone_;  // rig bone of each cluster; -1: not settled
+  std::vector<Own> own_;   // the piece along each rig bone
   std::vector<ShoulderGirdle> girdles_;
-  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the collarbones that it is no part of
+  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the shoulders' rig bones that the basin cannot follow
 };
 
-// The rig bone of every basin. A piece that touches none with a bone takes that of the bone voxel nearest to it through
-// the tissue, or where that is far, of the rig bone nearest in space.
+// Returns the rig bone of every basin. A piece that touches no piece with a rig bone gets the rig bone of the nearest
+// bone voxel that can be reached through tissue. Where that is too far away, it gets the rig bone nearest in space.
 std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
                                  const std::vector<std::int32_t>& basin, const Pieces& pieces) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
   std::vector<int> bone(basins);
-  std::map<std::int32_t, std::vector<glm::ivec3>> lonely;  // by piece
+  std::map<std::int32_t, std::vector<glm::ivec3>> lonely;  // voxels of each piece without a rig bone
   for (std::int32_t p = 0; p < basins; ++p) bone[p] = pieces.bone(p);
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (bone[basin[i]] < 0) lonely[pieces.root(basin[i])].push_back(graph.voxel[i]);
 
   std::vector<int> found(basins, -1);
-  std::int64_t budget = 20'000'000;  // voxels looked at in all
+  std::int64_t budget = 20'000'000;  // upper limit on the voxels that all searches visit together
   for (auto& [piece, front] : lonely) {
     found[piece] = pieces.nearest_bone(piece);
     std::set<std::int64_t> seen;
@@ -393,9 +401,9 @@ std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tis
   return bone;
 }
 
-// The touching voxels of one rig bone are one part; what touches none of its bone's other voxels and is small (under a
-// hundredth of its largest) belongs to that largest one.
-//   bone  #graph
+// Groups the connected voxels of each rig bone into parts. A part smaller than a hundredth of its bone's largest part
+// is added to the largest one.
+//   bone  rig bone of each voxel of the graph
 void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<int>& bone, BoneParts& result) {
   std::vector<std::int32_t> joined(graph.size());
   std::iota(joined.begin(), joined.end(), 0);
@@ -413,7 +421,7 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
   for (std::int32_t p = 0; p < graph.size(); ++p)
     if (voxels[p] > 0)
       if (auto [at, is_new] = largest.insert({bone[p], p}); !is_new && voxels[p] > voxels[at->second]) at->second = p;
-  constexpr int kMostParts = 60'000;  // part numbers have 16 bits
+  constexpr int kMostParts = 60'000;  // part numbers are stored in 16 bits
   std::vector<int> number(graph.size(), -1);
   auto number_of = [&](std::int32_t p) {
     const std::int32_t home = largest[bone[p]];
@@ -434,18 +442,18 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
 }
 
 struct ShapeBones {
-  std::vector<int> bone;  // #graph
+  std::vector<int> bone;  // rig bone of each voxel of the graph
   std::vector<BroadCut> broad_cuts;
 };
-// The rig bone of every voxel by shape: bones that touch are cut at the rig's joints, then a watershed, whose basins
-// join to the pieces that move as one.
-//   group       #graph, into `candidates`
+// Finds the rig bone of every voxel by shape: cuts touching bones at the rig's joints, splits them by a watershed, and
+// joins its basins to pieces that follow one rig bone.
+//   group       index in `candidates` for each voxel of the graph
 ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue,
                           const std::vector<TissueKind>& kinds, const Armature& armature, const Hugging& hugging,
                           const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates,
                           Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
-  // Marrow raises the ground: two cores are two summits however thin the shells between them.
+  // Marrow counts twice as high, so that two marrow cores are two summits however thin the shells between them are.
   std::vector<float> height = cuts.depth;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow) height[i] *= 2;
@@ -469,7 +477,7 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   std::vector<int> bone(graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     bone[i] = of_basin[basin[i]];
-    // What touched nothing of its own took what lay nearest, which its name may forbid.
+    // A piece that touches no other one got the nearest rig bone, which its label's name may forbid.
     const std::vector<int>& allowed = candidates[group[i]];
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
       bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) {
@@ -483,7 +491,7 @@ std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const Lab
                                                const NamedBones& named, const std::vector<int>& bone,
                                                const std::map<Label, LabelBones>& labels) {
   std::map<std::pair<Label, int>, BoneParts::Identity> found;
-  BoneParts::Identity* identity = nullptr;  // neighbours most often share one
+  BoneParts::Identity* identity = nullptr;  // identity of the previous voxel, most often the same
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     const Label label = volume.at(graph.voxel[i]);
     if (!identity || identity->label != label || identity->bone != bone[i]) {

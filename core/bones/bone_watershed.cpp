@@ -16,12 +16,13 @@ namespace limber {
 
 namespace {
 
-// Passes above this share of the lower summit are wiggles along one bone. On a whole arm whose true bones are known,
-// 0.9 puts 0.4 % of bone voxels into a basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs
-// nothing: its pieces find the same rig bone.
+// Two basins are merged where the pass between them is higher than this share of the lower summit: then it is only a
+// wiggle of the height along one bone. On a whole arm whose true bones are known, 0.9 puts 0.4 % of bone voxels into a
+// basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs nothing: its pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
-constexpr std::int64_t kBricks = 64;  // a block of a parallel loop
-constexpr double kWiggleShare = 0.2;  // of the depth, at most: a finger bone is two voxels deep
+constexpr std::int64_t kBricks = 64;  // bricks per block of a parallel loop
+// Upper limit on a wiggle of the height as a share of the summit: a finger bone is only two voxels deep.
+constexpr double kWiggleShare = 0.2;
 
 std::array<glm::ivec3, 26> offsets_26() {
   std::array<glm::ivec3, 26> offsets;
@@ -34,9 +35,9 @@ std::array<glm::ivec3, 26> offsets_26() {
 }
 const std::array<glm::ivec3, 26> kOffsets = offsets_26();
 
-// Which pairs of bone labels are different bones that merely touch. Two labels of plain bone are ("Right humerus",
-// "Right ulna"), unless one is wrapped in the other, as marrow is in its shell: then more than half of its faces that
-// do not lie against itself lie against bone.
+// Decides which pairs of bone labels are different bones that merely touch. Two labels of plain bone ("Right humerus",
+// "Right ulna") are different bones, unless one lies inside the other, as marrow does in its shell: more than half of
+// the inner label's faces touch bone.
 class LabelWalls {
  public:
   LabelWalls(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds)
@@ -68,7 +69,7 @@ class LabelWalls {
   bool between(Label a, Label b) const { return a != b && plain_[a] && plain_[b]; }
 
  private:
-  std::vector<std::uint8_t> plain_;  // by label: a bone of its own
+  std::vector<std::uint8_t> plain_;  // by label: 1: plain bone that does not lie inside another bone
 };
 
 }  // namespace
@@ -81,7 +82,8 @@ void BoneGraph::resize(std::int64_t count) {
 }
 
 BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
-  // Bricks of tissue that know their bone: where a voxel stands in the graph is found by counting bits.
+  // Each brick (block of 8^3 voxels) gets a mask of its bone voxels. The graph index of a voxel is found by counting
+  // bits.
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<TissueVoxels::Brick> bone(bricks);
   parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
@@ -120,7 +122,7 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 }
 
 namespace {
-// Carries the nearest border from voxel to voxel, the nearest first.
+// Computes the distance of voxels to the nearest border. It is passed on from voxel to voxel, nearest voxels first.
 class DepthFront {
  public:
   DepthFront(const BoneGraph& graph, const glm::dvec3& spacing, std::vector<float>& depth)
@@ -129,7 +131,7 @@ class DepthFront {
         depth_(depth),
         offset_(graph.size(), glm::ivec3(0)) {}
 
-  // Whether a voxel whose connections end lies nearer to that than it was known to.
+  // Lowers the depth of a voxel to the distance from those neighbours that are not bone. Returns whether it changed.
   bool start(std::int32_t i) {
     bool starts = false;
     for (int k = 0; k < 26; ++k) starts |= graph_.neighbour[i][k] == kNotBone && take(i, kOffsets[k]);
@@ -166,7 +168,7 @@ class DepthFront {
   const BoneGraph& graph_;
   const glm::dvec3 spacing_;
   std::vector<float>& depth_;
-  std::vector<glm::ivec3> offset_;  // #graph, to the border
+  std::vector<glm::ivec3> offset_;  // offset from each voxel of the graph to its nearest border, voxels
 };
 }  // namespace
 
@@ -196,8 +198,8 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 }
 
 namespace {
-// The places of heights, which are not negative, the highest first; of equal ones the first. Sorts by the bits of the
-// numbers, which rise with them, eleven at a time.
+// Returns the indices of non-negative heights, the highest first and equal ones in their order. Sorts by the bits of
+// the floats, which rise with their values, eleven bits at a time.
 std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
   constexpr int kBits = 11;
   std::vector<std::int32_t> order(height.size()), next(height.size());
@@ -230,7 +232,7 @@ std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>
     while (parent[b] != b) b = parent[b] = parent[parent[b]];
     return b;
   };
-  constexpr std::size_t kAhead = 8;  // voxels: memory is fetched so long before it is read
+  constexpr std::size_t kAhead = 8;  // memory is prefetched this many voxels before it is read
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (k + kAhead < order.size()) {
       const std::array<std::int32_t, 26>& ahead = graph.neighbour[order[k + kAhead]];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bone tissue as a graph of voxels, and its basins: a watershed on the bone's depth, grown from its deepest points
-// (with marrow from the marrow cores) outwards, cuts the one blob that all bones of a limb often are where it is thin
-// [Vincent & Soille 1991, on a priority queue].
+// Builds a graph of the bone voxels and splits it into basins. All bones of a limb are often one connected blob; a
+// watershed on the bone's depth, grown outwards from the deepest points (with marrow from the marrow cores), cuts the
+// blob where it is thin [Vincent & Soille 1991, on a priority queue].
 #pragma once
 
 #include <array>
@@ -14,34 +14,35 @@
 
 namespace limber {
 
-// The bone voxels and which of their 26 neighbours are bone of the same connected tissue.
+// The bone voxels, and which of their 26 neighbours are bone connected to them.
 struct BoneGraph {
-  std::vector<std::int64_t> place;  // in the tissue list
+  std::vector<std::int64_t> place;  // index in the list of tissue voxels
   std::vector<glm::ivec3> voxel;
-  ZeroedVector<std::array<std::int32_t, 26>> neighbour;  // place in this list, kNotBone or kOutside
+  ZeroedVector<std::array<std::int32_t, 26>> neighbour;  // index in the graph; kNotBone or kOutside: none
   std::int64_t size() const { return std::ssize(place); }
-  // Makes room for so many voxels, which threads are going to fill.
+  // Allocates `count` voxels, which the caller's threads fill.
   void resize(std::int64_t count);
 };
 constexpr std::int32_t kNotBone = -1, kOutside = -2;
 
 BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds);
 
-// Distance in mm of every bone voxel to the nearest voxel that is not its bone. Beyond the grid the bone goes on.
+// Returns the distance in mm from every bone voxel to the nearest voxel that does not belong to the same bone. Outside
+// the grid, bone is assumed to continue.
 std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing);
-// The same where connections of the graph were removed since: `at_borders` are the voxels that lost some.
+// Updates `depth` after connections of the graph were removed. `at_borders` lists the voxels that lost connections.
 void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::vector<std::int32_t>& at_borders,
                  std::vector<float>& depth);
 
-// The basin of every voxel, numbered from 0: a summit of `height` and what slopes up to it. Where two meet, the lower
-// one is a mere wiggle of the higher when the pass between them is nearly as high as its summit; then they are one.
-//   wiggle  mm of height that voxels make of a smooth ridge
+// Returns the basin of every voxel, numbered from 0. A basin is a summit of `height` with all voxels that slope up to
+// it. Two basins are merged when the pass between them is nearly as high as the lower summit.
+//   wiggle  height differences up to this come from rounding a smooth ridge to voxels, mm
 std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle);
 
-// Basins of fewer than `fewest` voxels join the neighbouring basin they share most faces with.
+// Merges each basin of fewer than `fewest` voxels into the neighbouring basin that it touches most.
 void join_specks(const BoneGraph& graph, std::int64_t fewest, std::vector<std::int32_t>& basin);
 
-// The voxels of every basin.
+// Returns the voxels of every basin.
 std::vector<std::vector<std::int32_t>> members_of(const std::vector<std::int32_t>& basin);
 
 }  // namespace limber

@@ -11,23 +11,30 @@ namespace limber {
 
 namespace {
 
-constexpr double kEnds = 0.15;  // of a bone's length at either end, where joints are and no bone tissue need be
-// Distances from the axis as shares of the bone's length: a rig may run beside the bone by half the limb's thickness,
-// and limbs are some 0.15 thick.
+// Share of a rig bone's length that is skipped at each end: joints lie there, and bone tissue may be missing.
+constexpr double kEnds = 0.15;
+// Radii around a rig bone's axis, as shares of its length. Points count as beside the axis up to kBeside, and as around
+// it from kAroundFrom to kAroundTo. A rig may run beside the bone by half the limb's thickness, and limbs are some 0.15
+// thick.
 constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
-constexpr double kLeastOfDisc = 0.05;  // so much of the disc beside the axis: the label is there
-// Bone came out at 0.5 to 0.94 and 30 times and more; others at 8 times had 0.33, others at 0.4 had 5 times.
+// Share of the points beside the axis from which on a label counts as present there.
+constexpr double kLeastOfDisc = 0.05;
+// A label counts as bone from these values on: the share of the rig's length that has the label beside it, and the
+// ratio of the label's frequencies beside and around the axis. Measured bone had shares of 0.5 to 0.94 and ratios of 30
+// or more. Other labels with a ratio of 8 had shares up to 0.33, those with a share of 0.4 had ratios up to 5.
 constexpr double kShareOfRig = 0.4, kEnrichment = 8;
-constexpr double kLong = 0.5;               // of the longest bone: shorter ones are as thick as long, and tell nothing
-constexpr int kSlices = 60, kPoints = 120;  // per bone, and per slice
+// Shortest rig bone examined, as a share of the longest one: short bones are as thick as long and tell nothing.
+constexpr double kLong = 0.5;
+constexpr int kSlices = 60, kPoints = 120;  // slices per rig bone, and points per slice
 
 struct Lengths {
   double in_tissue = 0;
-  std::map<Label, double> with;            // mm of the rig that have the label beside them
-  std::map<Label, double> beside, around;  // mm by the share of tissue
+  std::map<Label, double> with;  // length of the rig bones with the label beside them, mm
+  // Length of the rig bones, weighted by the label's share of the tissue beside or around them, mm.
+  std::map<Label, double> beside, around;
 };
 
-// Points of a disc of radius 1, evenly spread [Vogel 1979, the sunflower's head].
+// Returns evenly spread points of a disc of radius 1, in the pattern of a sunflower's head [Vogel 1979].
 std::vector<glm::dvec2> disc() {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   std::vector<glm::dvec2> points;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far voxels lie from each rig bone. Bones that share the point in which they meet are told apart by direction.
+// Measures how far voxels lie from each rig bone. Connected rig bones share an end point, so their ends are cut off:
+// near the joint, the direction of the bones then decides which one is nearer.
 #pragma once
 
 #include <vector>
@@ -13,11 +14,13 @@ class Hugging {
  public:
   Hugging(const Armature& armature, const Grid& grid);
   int bone_count() const { return static_cast<int>(segments_.size()); }
-  // Two bones share the point where they meet; a tenth cut off at either end decides by direction there.
+  // Returns the distance of a voxel to a rig bone, mm. A tenth of the rig bone's length is left out at either end.
   double distance(int bone, const glm::ivec3& voxel) const {
     return distance_to_bone(segments_[bone], world_from_voxel_ * glm::dvec3(voxel));
   }
-  // Cut back by the same length where they meet, so that bones part at the plane that halves the angle between them.
+  // Returns the distance of a voxel to a rig bone, mm. At each joint, the rig bone and the bones that it meets there
+  // are shortened by the same length, so that the border between two bones is the plane that halves the angle between
+  // them.
   double parting_distance(int bone, const glm::ivec3& voxel) const {
     return distance_to_bone(parting_[bone], world_from_voxel_ * glm::dvec3(voxel));
   }

@@ -17,33 +17,38 @@
 namespace limber {
 
 namespace {
-constexpr double kReach = 0.6;       // of the shorter bone's length: how far along the bones a joint is looked at
-constexpr double kReachAside = 0.3;  // of the longer one's: how far in any direction at least
-constexpr double kShaft = 0.2;  // of the shorter one's: from there on what lies along a rig bone is surely that bone
-constexpr double kShaftWidth = 0.1;  // of it: what lies along a rig bone, beyond what lies nearest to it
-constexpr double kFarAside = 0.35;   // of a bone's length: nothing so far from a rig bone is its shaft
-constexpr double kCoarse =
-    0.04;  // of the shorter bone's length: with voxels of this size the place of the joint counts twice as much
-constexpr double kAway = 8;  // area counts as much more where the shafts begin, and four times that twice as far away
-constexpr double kSteep = 0.4;      // of the way to where the shafts begin: from there on it counts more by the fourth
-                                    // power, or the thin shaft beside a broad joint would be the cheapest place
-constexpr double kSlender = 8;      // radii of the joint: shorter bones than that say less of where it is
-constexpr double kSide = 0.6;       // of the shorter bone's length: how far apart bones may run that touch side by side
-constexpr double kSideShaft = 0.5;  // of the distance to the other bone: what lies nearer to its own is surely of it
-constexpr double kBroad = 1.5;  // times the thinner bone's cross-section: from there on a cut is not sure. Bones that
-                                // touch at 1 to 3 mm though their joints are open stay below it
-constexpr double kMarrow = 4;   // times that area counts through marrow
-constexpr double kBall = 0.02;  // of the bone's length: the smallest radius of the ball at its head
-constexpr double kLargestBall = 0.1;
-constexpr double kBallCore = 0.8;     // of the radius of a joint's ball: so much of it is surely the ball
-constexpr double kBallWidth = 0.5;    // of it: in place of the distance to the shafts
-constexpr double kSitsAlong = 0.25;   // of a bone's length from its head: where another bone may sit on it
-constexpr double kClosed = 0.5;       // of a joint's cross-section: bones that touch in more are closed up there
-constexpr double kJointReach = 0.15;  // of the parent's length: so far from the joint, at least, its radius is measured
-constexpr double kJointSlice = 0.06;  // of the shorter bone's length: where the joint's radius is measured
+// A joint's domain holds the voxels among which its cut is searched. "Shorter" and "longer" mean its two rig bones.
+constexpr double kReach = 0.6;       // reach of a joint's domain along the bones, share of the shorter bone
+constexpr double kReachAside = 0.3;  // least reach of a joint's domain in any direction, share of the longer bone
+constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
+constexpr double kShaftWidth = 0.1;  // thickness of a shaft from its innermost tissue, share of the shorter bone
+constexpr double kFarAside = 0.35;   // distance from a bone beyond which tissue is never its shaft, share of its length
+constexpr double kCoarse = 0.04;  // voxel size that doubles the weight of squared distance, share of the shorter bone
+constexpr double kAway = 8;       // extra weight of cut area where the shafts begin; grows with the squared distance
+// Share of the distance to the shafts from which on the weight rises by the fourth power: else the thin shaft beside a
+// broad joint would be the cheapest cut.
+constexpr double kSteep = 0.4;
+// Rig bones shorter than this many radii of the joint place it less exactly, so the weight rises less steeply.
+constexpr double kSlender = 8;
+constexpr double kSide = 0.6;  // largest distance of bones that touch side by side, share of the shorter bone
+// Ratio of a voxel's distances to its two nearest bones below which the voxel surely belongs to the nearer one.
+constexpr double kSideShaft = 0.5;
+// Ratio of a cut's area to the thinner bone's cross-section from which on the cut is uncertain. Bones that touch in
+// scans of 1 to 3 mm though their joints are open stay below it.
+constexpr double kBroad = 1.5;
+constexpr double kMarrow = 4;         // factor of the weight of cut area through marrow
+constexpr double kBall = 0.02;        // smallest radius of a ball at a bone's head, share of that bone's length
+constexpr double kLargestBall = 0.1;  // largest radius of a ball at a bone's head, share of that bone's length
+constexpr double kBallCore = 0.8;     // share of a ball's radius inside which tissue surely belongs to the ball
+constexpr double kBallWidth = 0.5;    // distance from a ball that counts like that to the shafts, in radii of the ball
+// Distance from a bone's head, as a share of its length, beyond which another child of its parent may start on it.
+constexpr double kSitsAlong = 0.25;
+constexpr double kClosed = 0.5;  // contact area above which bones count as fused, share of the joint's cross-section
+constexpr double kJointReach = 0.15;  // least distance up to which a joint is measured, share of the parent's length
+constexpr double kJointSlice = 0.06;  // half thickness of the slice that measures a joint, share of the shorter bone
 constexpr std::int32_t kHard = 1 << 28;
 
-// Area in mm^2 that a cut through the edge to each of the 26 neighbours stands for.
+// Returns for each of the 26 neighbours the area in mm^2 that is cut where the connection to the neighbour is cut.
 std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
   std::array<glm::dvec3, 26> edge;
   int count = 0;
@@ -62,7 +67,7 @@ std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
     for (int k = 0; k < 13; ++k)
       if (const double along = std::abs(glm::dot(direction, edge[k])) / glm::length(edge[k]); along > most)
         most = along, nearest = k;
-    share[nearest] += 2.0 / kDirections;  // of the half sphere's solid angle, 2 pi, over pi
+    share[nearest] += 2.0 / kDirections;  // share of the half sphere's solid angle, 2 pi, divided by pi
   }
   std::array<double, 26> area;
   for (int k = 0; k < 13; ++k)
@@ -71,13 +76,13 @@ std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
 }
 
 double length_of(const Bone& bone) { return glm::length(bone.tail - bone.head); }
-// Where along the bone the point nearest to p lies, mm from its head.
+// Returns the distance along a bone from its head to the point of the bone that is nearest to p, mm.
 double along_bone(const Bone& bone, const glm::dvec3& p) {
   const double length = length_of(bone);
   return length > 0 ? std::clamp(glm::dot(p - bone.head, (bone.tail - bone.head) / length), 0.0, length) : 0;
 }
 
-// The two rig bones that lie nearest to a voxel, and its place among the voxels nearest to the first.
+// The two rig bones nearest to a voxel, and the voxel's index in the list of voxels nearest to the first of them.
 struct Near {
   std::array<int, 2> bone{-1, -1};
   std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
@@ -93,7 +98,7 @@ struct Near {
   }
 };
 
-// What every cut reads. Only connections of the graph change, each by the one cut whose domain holds both its ends.
+// The data that all cuts share. Each connection of the graph is changed only by the cut whose domain holds both ends.
 struct Scene {
   BoneGraph& graph;
   const LabelVolume& volume;
@@ -103,18 +108,18 @@ struct Scene {
   const std::vector<std::vector<int>>& candidates;
   AffineTransform world_from_voxel;
   std::array<double, 26> area;
-  std::vector<float> depth;                      // #graph, mm, before the cuts
-  std::vector<Near> near;                        // #graph
+  std::vector<float> depth;                      // depth of each voxel of the graph before the cuts, mm
+  std::vector<Near> near;                        // of each voxel of the graph
   std::vector<std::vector<std::int32_t>> along;  // by rig bone: the voxels nearest to it
-  std::vector<bool> is_ball;                     // by rig bone: its head is the centre of a ball
-  std::vector<std::optional<JointShape>> shape;  // by rig bone: of the joint at its head
+  std::vector<bool> is_ball;                     // by rig bone: its head is the centre of a ball joint
+  std::vector<std::optional<JointShape>> shape;  // by rig bone: shape of the joint at its head; none: unknown
 
   glm::dvec3 world(std::int32_t i) const { return world_from_voxel * glm::dvec3(graph.voxel[i]); }
   bool is_marrow(std::int32_t i) const { return kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow; }
-  // Distance in mm from a point to the nearest voxel that is not bone, at most `most`.
+  // Returns the distance from a point to the nearest voxel that is not bone, mm; `most` where it is larger than that.
   double depth_at(const glm::dvec3& point, double most) const {
     const glm::dvec3 centre = voxel_from_world(volume.grid) * point;
-    const glm::dvec3 first(-1), last(volume.grid.size);  // the air around the grid included
+    const glm::dvec3 first(-1), last(volume.grid.size);  // includes the air around the grid
     const glm::ivec3 low(glm::clamp(glm::floor(centre - most / volume.grid.spacing), first, last));
     const glm::ivec3 high(glm::clamp(glm::ceil(centre + most / volume.grid.spacing), first, last));
     double nearest = most;
@@ -127,20 +132,20 @@ struct Scene {
   }
 };
 
-// What one cut found.
+// The result of one cut.
 struct Found {
   std::vector<BeyondJoint> beyond;
   std::optional<BroadCut> broad;
   std::vector<std::int32_t> at_cuts;  // voxels that lost connections
 };
 
-// One cut between two rig bones. Its domain holds only voxels that lie nearest to either, and it reads and changes no
-// connection of others: cuts that share no rig bone may run at once.
+// One cut between two rig bones. Its domain (the voxels that it may separate) holds only voxels whose nearest rig bone
+// is one of the two, and it reads and changes no other connections. So cuts that share no rig bone may run in parallel.
 class Cut {
  public:
   Cut(Scene& scene, int first, int second) : scene_(scene), bones_(scene.bones), bone_{first, second} {}
 
-  // Where a bone, the second of the two, begins at the first.
+  // Places the cut between a parent bone and its child at the joint where the child begins.
   Found at_joint() && {
     const auto [parent, child] = bone_;
     const Bone &p = bones_[parent], &c = bones_[child];
@@ -166,7 +171,7 @@ class Cut {
     } else {
       cut_across(normal, shorter);
     }
-    const double shaft = (kReach - kShaft) * shorter;  // mm of it that lie in the domain
+    const double shaft = (kReach - kShaft) * shorter;  // length of each shaft inside the domain, mm
     const double thinner =
         std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
     if (cut_area_ > 0 && cut_area_ >= kBroad * thinner) found_.broad = BroadCut{parent, child, cut_area_};
@@ -174,8 +179,8 @@ class Cut {
     return std::move(found_);
   }
 
-  // Where two bones that have no joint lie side by side.
-  //   voxels  nearest to one of them, and next to the other
+  // Cuts between two bones without a joint that lie side by side.
+  //   voxels  voxels whose two nearest rig bones are these two
   Found side_by_side(const std::vector<std::int32_t>& voxels) && {
     for (const std::int32_t i : voxels) add(i);
     link();
@@ -191,13 +196,13 @@ class Cut {
 
  private:
   struct Voxel {
-    std::int32_t at;  // in the graph
-    int nearest;      // 0 or 1 of the two bones that are cut apart
-    bool is_allowed;  // to follow that bone
-    int shaft;        // 0, 1 or -1
+    std::int32_t at;  // index in the graph
+    int nearest;      // 0 or 1: the nearer one of the two bones
+    bool is_allowed;  // whether the voxel may follow that bone
+    int shaft;        // 0 or 1: the bone whose shaft holds the voxel; -1: none
   };
 
-  // At a plane across the joint, or where its shape is known at that surface.
+  // Cuts near the plane across the joint, or near the joint's anatomical surface where the shape of that is known.
   void cut_across(const glm::dvec3& normal, double shorter) {
     const glm::dvec3& joint = bones_[bone_[1]].head;
     const glm::dvec3& spacing = scene_.volume.grid.spacing;
@@ -214,13 +219,14 @@ class Cut {
     };
     const JointSurface surface = surface_at(normal, shorter);
     std::vector<std::uint8_t> side = cut_along(surface, 1);
-    // Where the two are closed up, only the joint's own shape tells where one ends.
+    // Where the two bones are fused, only the shape of the joint tells where one bone ends.
     const double section = std::numbers::pi * surface.radius * surface.radius;
     if (surface.shape.sharp > 1 && area_of(side) > kClosed * section) side = cut_along(surface, surface.shape.sharp);
     part(side);
   }
 
-  // mm, of the bones of the domain in a slice across `axis` that is twice `half` mm thick.
+  // Returns the radius of a circle with the area of the domain's bone tissue in a slice at right angles to `axis`, mm.
+  //   half  half the thickness of the slice, mm
   double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half) const {
     const glm::dvec3& spacing = scene_.volume.grid.spacing;
     const auto voxels = std::count_if(domain_.begin(), domain_.end(), [&](const Voxel& v) {
@@ -242,8 +248,8 @@ class Cut {
                             std::min({spacing.x, spacing.y, spacing.z}));
   }
 
-  // The direction from the parent to the child across the plane that halves the angle between them, or the child's own
-  // where it springs from the parent's side.
+  // Returns the normal of the plane that halves the angle between parent and child, towards the child. Where the
+  // child's head does not lie on the parent, returns the child's own direction.
   static glm::dvec3 normal_of_joint(const Bone& parent, const Bone& child) {
     const glm::dvec3 along = glm::normalize(child.tail - child.head),
                      of_parent = glm::normalize(parent.tail - parent.head);
@@ -260,9 +266,11 @@ class Cut {
     domain_.push_back({i, nearest == bone_[1],
                        allowed.empty() || std::find(allowed.begin(), allowed.end(), nearest) != allowed.end(), -1});
   }
-  // Finds what is connected within the domain.
+  // Fills neighbour_ with the connections inside the domain.
   void link() {
-    std::array<std::vector<std::int32_t>, 2> place;  // by bone and rank there: in the domain or -1
+    // For each of the two bones and each of its voxels along the bone: the voxel's index among those in which the cut
+    // is computed (the domain); -1: not among them.
+    std::array<std::vector<std::int32_t>, 2> place;
     for (int which = 0; which < 2; ++which) place[which].assign(scene_.along[bone_[which]].size(), -1);
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
       place[domain_[i].nearest][scene_.near[domain_[i].at].rank] = i;
@@ -276,15 +284,15 @@ class Cut {
       }
   }
 
-  // What hangs on the shaft of one of the two bones cannot be of the other.
+  // Records that the voxels connected with the shaft of one bone do not belong to the other bone.
   void tell_sides() {
     for (int which = 0; which < 2; ++which)
       for (const std::int32_t i : reached_from(which))
         found_.beyond.push_back({domain_[i].at, bone_[1 - which], bone_[which]});
   }
 
-  // The shaft of one of the two bones: what lies nearest to it, in each of several slices along it, and no nearer to
-  // the joint than `beginning`.
+  // Marks the shaft of one of the two bones: in each of several slices along the bone, the tissue nearest to it. Slices
+  // less than `beginning` mm from the joint are left out.
   void find_shaft(int which, const glm::dvec3& joint, double beginning, double width) {
     constexpr int kSlices = 16;
     const Bone& bone = bones_[bone_[which]];
@@ -304,7 +312,7 @@ class Cut {
         voxel.shaft = which;
   }
 
-  // Of the bone tissue beside one of the two bones, no nearer to the joint than `beginning`; mm^3.
+  // Returns the volume of bone tissue beside one of the two rig bones, at least `beginning` mm from the joint; mm^3.
   double volume_along(int which, const glm::dvec3& joint, double beginning) const {
     const Bone& bone = bones_[bone_[which]];
     const double at_joint = along_bone(bone, joint);
@@ -315,7 +323,7 @@ class Cut {
     return double(voxels) * spacing.x * spacing.y * spacing.z;
   }
 
-  // Voxels of the domain connected with a shaft.
+  // Returns the voxels of the domain that are connected with the shaft of one of the two bones.
   std::vector<std::int32_t> reached_from(int which) const {
     std::vector<std::int32_t> front;
     std::vector<std::uint8_t> seen(domain_.size(), 0);
@@ -331,12 +339,13 @@ class Cut {
     return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].shaft == 1; });
   }
 
-  // How many times its area a place counts.
-  //   off  from the surface where the two ought to part; 1 where the shafts begin
+  // Returns the weight of cut area at a distance from the expected cut.
+  //   off  distance from the surface where the cut is expected; 1 where the shafts begin
   static double weight_away(double off) { return 1 + kAway * off * off; }
 
-  // #domain, 1 on the side of the first of the two bones; empty where nothing connects their shafts.
-  //   weight  (voxel, world) how many times its area a place counts
+  // Returns the cut of least weighted area: 1 for the domain's voxels on the side of the first bone, else 0; empty
+  // where nothing connects the shafts.
+  //   weight  returns the factor of area at (voxel, world point)
   std::vector<std::uint8_t> least_cut(const auto& weight) const {
     if (!is_connected()) return {};
     CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()),
@@ -357,13 +366,13 @@ class Cut {
     }
     return min_cut(std::move(cut));
   }
-  // mm^2 of the contact between the two sides.
+  // Returns the area of contact between the two sides of a cut, mm^2.
   double area_of(const std::vector<std::uint8_t>& side) const {
     double area = 0;
     for (std::int32_t i = 0; i < std::ssize(side); ++i)
       for (int k = 0; k < 26; ++k)
         if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i])
-          area += scene_.area[k] / 2;  // the neighbour counts the other half
+          area += scene_.area[k] / 2;  // half, as each pair is visited from both its voxels
     return area;
   }
   void part(const std::vector<std::uint8_t>& side) {
@@ -385,12 +394,13 @@ class Cut {
   const std::vector<Bone>& bones_;
   const std::array<int, 2> bone_;
   std::vector<Voxel> domain_;
-  std::vector<std::array<std::int32_t, 26>> neighbour_;  // #domain, in the domain or -1
-  double cut_area_ = 0;                                  // mm^2
+  // Neighbours of each voxel of the domain, as indices in the domain; -1: none.
+  std::vector<std::array<std::int32_t, 26>> neighbour_;
+  double cut_area_ = 0;  // mm^2
   Found found_;
 };
 
-// Makes all cuts, several at once.
+// Makes all cuts, several in parallel.
 class JointCutter {
  public:
   explicit JointCutter(Scene scene) : scene_(std::move(scene)) {
@@ -402,16 +412,16 @@ class JointCutter {
       scene_.is_ball.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
       scene_.shape.push_back(shape_of_joint(role));
     }
-    // Depths come from one thread, so the others do the rest meanwhile.
+    // Depths are computed by one thread only, so the nearest bones are found meanwhile.
     parallel_for(2, 1, [&](std::int64_t begin, std::int64_t end) {
       if (begin == 0) scene_.depth = bone_depth(scene_.graph, scene_.volume.grid.spacing);
       if (end == 2) find_nearest();
     });
   }
 
-  // Where a bone meets its parent; and where it sits on another child of that, nearer than on the parent itself, as a
-  // thumb does that the rig hangs on the forearm beside the hand, also where it meets that one. A wave of cuts at a
-  // time: those of a wave share no bone, and those that share one keep the order of the rig.
+  // Cuts each bone from its parent. A bone whose head lies nearer to another child of its parent is also cut from that
+  // child, such as a thumb that the rig attaches to the forearm beside the hand. Cuts run in waves: the cuts of one
+  // wave share no bone, and cuts that share a bone keep the order of the rig.
   void cut_joints(Progress& progress) {
     std::vector<std::array<int, 2>> joints;
     for (int child = 0; child < std::ssize(scene_.bones); ++child) {
@@ -439,7 +449,7 @@ class JointCutter {
     keep(found);
   }
 
-  // Where bones that have no joint lie side by side, as fingers do that are pushed together.
+  // Cuts bones without a joint that lie side by side, such as fingers that are pressed together.
   void cut_sides() {
     std::map<std::array<int, 2>, std::vector<std::int32_t>> between;
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
@@ -478,8 +488,8 @@ class JointCutter {
   }
 
   void find_nearest() {
-    std::vector<Bone> inner =
-        scene_.bones;  // bones share the point where they meet: away from it the direction decides
+    // Bones that meet share an end point, so they are shortened: near a joint, the bones' directions then decide.
+    std::vector<Bone> inner = scene_.bones;
     for (Bone& bone : inner)
       bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
     scene_.near.resize(scene_.graph.size());
@@ -493,7 +503,7 @@ class JointCutter {
     scene_.along.resize(scene_.bones.size());
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
       Near& near = scene_.near[i];
-      if (near.bone[0] < 0) continue;  // the rig is too far away for numbers
+      if (near.bone[0] < 0) continue;  // the distances to the rig are not finite
       near.rank = static_cast<std::int32_t>(scene_.along[near.bone[0]].size());
       scene_.along[near.bone[0]].push_back(i);
     }

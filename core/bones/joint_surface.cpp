@@ -8,25 +8,29 @@
 namespace limber {
 
 namespace {
-constexpr double kRim = 1.3;    // of a joint's radius, squared: farther out its surface does not fall off any more
-constexpr double kRound = 1.1;  // times as wide as deep: below that no direction is the hinge
-constexpr double kClearlyWide = 1.25;  // from there on one is
+// Squared distance from the axis, in squared radii of the joint, beyond which the surface stays level.
+constexpr double kRim = 1.3;
+constexpr double kRound = 1.1;  // ratio of a joint's width to its depth below which it has no hinge direction
+// Ratio of a joint's width to its depth from which on the widest direction is surely the hinge.
+constexpr double kClearlyWide = 1.25;
 
-// Measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. Where a rig's joint lies
-// elsewhere than in the middle of the joint's gap, the level is off by as much. Where the rig's bone is short, as a
-// hand's, its direction is off by more, and a sharp surface would do harm: the wrist's does not turn with it.
-constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // a ball in a shallow cup
-constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a roller across the finger
+// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. Where a rig's joint
+// does not lie in the middle of the joint's gap, JointShape::level is off by the same distance. The direction of a
+// short rig bone, such as a hand's, is less exact, and a sharp surface would do harm: so the wrist's surface does not
+// turn with the hand.
+constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // the knuckle, a ball in a shallow cup
+constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a finger's middle joint, a roller across it
 constexpr JointShape kFingerEnd{-0.1, 0.1, -0.45, 0.4, 2};
-constexpr JointShape kThumbBase{-0.05, 0.3, 0, 0.5, 2};  // a saddle
+constexpr JointShape kThumbBase{-0.05, 0.3, 0, 0.5, 2};  // the thumb's base, a saddle joint
 constexpr JointShape kThumbKnuckle{0.08, -0.17, -0.1, 0.8, 2};
 constexpr JointShape kThumbEnd{-0.02, 0.2, -0.5, 0.5, 2};
-constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};  // metacarpals on the wrist
-constexpr JointShape kWrist{-0.1, 0.1, 0.2, 0, 1};       // an egg in the hollow of the radius
-constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};           // the shank's cup, a kneecap in front
-constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};    // the talus between the ankle bones
+constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};  // a metacarpal on the wrist
+constexpr JointShape kWrist{-0.1, 0.1, 0.2, 0, 1};       // the wrist, an egg in the hollow of the radius
+constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};           // the knee, a shallow cup of the shank with a kneecap in front
+constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};    // the ankle, the talus between the ankle bones
 
-// The widest direction across `axis` of places around their middle, and how many times as wide as deep they are.
+// The direction at right angles to an axis in which points spread most, and the ratio of their width in it to their
+// depth.
 struct Width {
   glm::dvec3 direction;
   double ratio;
@@ -79,7 +83,7 @@ JointSurface flat_surface(const glm::dvec3& joint, const glm::dvec3& axis) {
 JointSurface surface_of_joint(const JointShape& shape, const glm::dvec3& joint, const glm::dvec3& axis,
                               const std::vector<glm::dvec3>& bone, double volume, double half, double reach,
                               double smallest) {
-  std::vector<glm::dvec3> slice;  // from the joint
+  std::vector<glm::dvec3> slice;  // positions relative to the joint
   for (const glm::dvec3& at : bone) {
     const glm::dvec3 from = at - joint;
     if (std::abs(glm::dot(from, axis)) < half && glm::length(from) < reach) slice.push_back(from);
@@ -88,7 +92,8 @@ JointSurface surface_of_joint(const JointShape& shape, const glm::dvec3& joint, 
   surface.radius = std::max(smallest, std::sqrt(double(slice.size()) * volume / (2 * half) / std::numbers::pi));
   const Width width = widest(slice, axis);
   surface.hinge = width.direction;
-  // Where the joint is as deep as wide its hinge is not known, and the surface is curved alike all around.
+  // Where the joint is as deep as wide, its hinge direction is not known, and the surface gets the same curvature in
+  // all directions.
   const double sure = std::clamp((width.ratio - kRound) / (kClearlyWide - kRound), 0.0, 1.0);
   const double mean = (shape.along_hinge + shape.across_hinge) / 2;
   surface.shape.along_hinge = mean + sure * (shape.along_hinge - mean);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface along which two bones meet in a joint, as anatomy knows it: a knuckle is a ball in a shallow cup, the
-// joints of a finger beyond it are rollers about an axis across the finger, the wrist is an egg in a hollow. Where a
-// scan shows two bones as one, a cut along that surface leaves each bone its own end.
+// Models the anatomical surface along which two bones meet in a joint: a knuckle is a ball in a shallow cup, the finger
+// joints beyond it are rollers about an axis across the finger, the wrist is an egg in a hollow. Where a scan shows two
+// bones as one, a cut along that surface leaves each bone its own end.
 #pragma once
 
 #include <optional>
@@ -15,37 +15,39 @@ namespace limber {
 
 // A paraboloid through the joint. Lengths and curvatures are in radii of the bones at the joint.
 struct JointShape {
-  // How far beyond the joint, towards the child, the middle of the surface lies.
+  // Distance of the surface's middle from the joint, towards the child bone.
   double level = 0;
-  // Curvature along the widest direction across the joint, and across that; negative where the parent's end is round.
+  // Curvatures along the hinge (the widest direction of the joint) and at right angles to it. They are negative where
+  // the parent's end is round.
   double along_hinge = 0, across_hinge = 0;
-  // How far the surface turns from halving the angle between the bones (0) to stand across the child (1), or where
-  // negative the other way.
+  // Orientation of the surface. 0: on the plane that halves the angle between the bones; 1: at right angles to the
+  // child bone; negative: turned away from the child.
   double turn = 0;
-  // Where the bones are closed up, what lies off the surface counts as if it were so many times as far off.
+  // Factor for distances from the surface where the bones are fused. Above 1, the cut follows the surface more closely.
   double sharp = 1;
 };
 
-// The shape of the joint at the head of a bone with this role; none where it is not known.
+// Returns the shape of the joint at the head of a bone with this role; none where the shape is not known.
 std::optional<JointShape> shape_of_joint(const std::optional<JointRole>& role);
 
 struct JointSurface {
-  glm::dvec3 joint, axis;  // world, mm; unit, from the parent towards the child
-  glm::dvec3 hinge;        // unit, across the axis
-  double radius;           // mm, of the bones at the joint
+  // Position of the joint (world, mm), and unit vector from the parent towards the child.
+  glm::dvec3 joint, axis;
+  glm::dvec3 hinge;  // unit vector at right angles to the axis
+  double radius;     // radius of the bones at the joint, mm
   JointShape shape;
-  // mm that a place lies beyond the surface, along the axis.
+  // Returns the distance of a point from the surface along the axis, mm; positive beyond it, towards the child.
   double height_of(const glm::dvec3& at) const;
 };
 
 JointSurface flat_surface(const glm::dvec3& joint, const glm::dvec3& axis);
 
-// Measures the bones at the joint.
-//   bone      world, mm: the places of voxels of either bone
-//   volume    mm^3 that each stands for
-//   half      mm: half the thickness of the slice across the axis in which they count
-//   reach     mm: farther from the joint they do not count
-//   smallest  mm: the radius is at least that
+// Measures the radius and the hinge direction of the bones at a joint.
+//   bone      positions of the voxels of both bones; world, mm
+//   volume    volume of a voxel, mm^3
+//   half      only voxels in a slice through the joint, perpendicular to the axis, are used; half its thickness, mm
+//   reach     voxels further than this from the joint are ignored, mm
+//   smallest  smallest radius that is returned, mm
 JointSurface surface_of_joint(const JointShape& shape, const glm::dvec3& joint, const glm::dvec3& axis,
                               const std::vector<glm::dvec3>& bone, double volume, double half, double reach,
                               double smallest);

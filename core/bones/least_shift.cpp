@@ -10,18 +10,18 @@ namespace {
 
 using Points = std::vector<BoneDistance::SurfacePoint>;
 
-// What a place of the shift costs: the squares of all depths beyond what is allowed, Gauss and Newton's derivatives
-// of their half, and the deepest.
+// The overlap for one shift: the sum of the squares of all depths beyond the allowed ones, the gradient and the
+// Gauss-Newton Hessian of half that sum, and the largest depth.
 struct Overlap {
   double cost = 0, depth = 0;
   glm::dvec3 gradient{0};
   glm::dmat3 hessian{0};
 };
 
-// Two bones at one place of the joint's turn.
+// The two bones of a joint at one step of the joint's rotation.
 class TurnedBones {
  public:
-  //   reach  mm: how far shifts can go
+  //   reach  upper limit on the length of a shift, mm
   TurnedBones(const JointBones& bones, const Points& fixed, const Points& turning, const AffineTransform& motion,
               double reach)
       : bones_(bones),
@@ -46,14 +46,15 @@ class TurnedBones {
   }
 
  private:
-  // Whether some shift may make a surface point of one bone lie in the other: a distance between lattice points
-  // changes by little more than a millimetre a millimetre.
+  // Returns whether a shift of at most `reach` mm may bring a surface point of one bone into the other bone. The
+  // interpolated distance changes by little more than a millimetre per millimetre: hence the factor 1.2.
   static bool comes_near(const BoneDistance& bone, const glm::dvec3& place, double mm, double reach) {
     const auto there = bone.at(place);
     return there ? there->mm + mm < 1.2 * reach : bone.outside(place) < reach;
   }
 
-  // Half a voxel across the contact, the mean of both bones' voxels.
+  // Returns the allowed overlap, mm: half a voxel along the contact's normal, averaged over the voxel axes of both
+  // bones.
   double allowed(const glm::dvec3& normal) const {
     return (glm::length(bones_.spacing * normal) + glm::length(bones_.spacing * (back_.linear * normal))) / 4;
   }
@@ -73,20 +74,20 @@ class TurnedBones {
 
   const JointBones& bones_;
   AffineTransform motion_, back_;
-  Points fixed_, turning_;  // that can come to the other bone; of the turning one where the motion takes them
+  Points fixed_, turning_;  // surface points that can reach the other bone; turning_ after the motion
 };
 
-// The part of a shift that the bound allows, towards none: both bounds hold there.
+// Returns the shift, shortened as far as both limits of `bound` require.
 glm::dvec3 within(glm::dvec3 shift, const ShiftBound& bound) {
   if (const double length = glm::length(shift); length > bound.most_mm) shift *= bound.most_mm / length;
   if (shift == glm::dvec3(0) || glm::length(bound.carried + shift) <= bound.whole_mm) return shift;
-  // |carried + s shift| = whole
+  // Solves |carried + s shift| = whole_mm for s.
   const double a = glm::dot(shift, shift), b = glm::dot(bound.carried, shift);
   const double c = std::min(glm::dot(bound.carried, bound.carried) - bound.whole_mm * bound.whole_mm, 0.0);
   return shift * std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
 }
 
-// From `shift` to where the square of the shift and `weight` times the squares of the depths are least together.
+// Minimizes the square of the shift plus `weight` times the squares of the depths, starting from `shift`.
 glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, const ShiftBound& bound, int iterations) {
   Overlap at = bones.overlap(shift);
   double damping = 1e-3, cost = glm::dot(shift, shift) + weight * at.cost;
@@ -109,7 +110,7 @@ glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, co
   return shift;
 }
 
-// As short as it can be with no more overlap than `depth`, which it has now.
+// Returns the shift, shortened as far as possible while the overlap stays at most `depth`.
 glm::dvec3 shortened(const TurnedBones& bones, const glm::dvec3& shift, double depth) {
   double blocked = 0, free = 1;
   for (int i = 0; i < 8; ++i) {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The least translation of one bone that frees it from another. The bones overlap where the sum of their signed
-// distances is negative: along the way from one surface to the other that sum is the width of the gap between them,
-// or less than zero the depth of the overlap, and moving a bone by a millimetre changes it by a millimetre at most.
-// It is sampled at the surface points of both bones; at rest it is nowhere negative, since a voxel belongs to one
-// bone.
+// Finds the smallest translation that separates one bone from another. Bones overlap where the sum of their signed
+// distances is negative. Between the surfaces that sum is the width of the gap, or if negative the depth of the
+// overlap; moving a bone by a millimetre changes it by a millimetre at most. The sum is sampled at the surface points
+// of both bones. At rest it is nowhere negative, since a voxel belongs to one bone only.
 //
-// Bones may overlap by half a voxel: so far off may their drawn surfaces be, more so where slices are thick. What is
-// deeper pays by its square, beside the square of the shift, under a rising weight: a problem of three numbers,
-// solved by Levenberg-Marquardt [More 1978]. The bone is led to its place along the way that the joint turns, so that
-// it is pushed back to the side that it comes from, also where the other bone is thin. Last the shift is shortened by
-// bisection as far as the bone stays free.
+// An overlap of half a voxel is allowed, since the surfaces in a volume are only that exact, and less exact where
+// slices are thick. The cost is the square of the shift plus the weighted squares of all deeper overlaps, with a rising
+// weight: a problem in three variables, solved by Levenberg-Marquardt [More 1978]. The bone is moved along the path
+// that the joint turns, so that it is pushed back to the side that it comes from, also where the other bone is thin.
+// Finally bisection shortens the shift as far as the bones stay separate.
 #pragma once
 
 #include <vector>
@@ -19,29 +18,30 @@
 
 namespace limber {
 
-// Two bones that meet in a joint, each in the box that the other can come to, both in the same frame at rest.
+// The distance fields of two bones that meet in a joint, each near the other bone, both in the same frame at rest.
 struct JointBones {
   const BoneDistance& fixed;
   const BoneDistance& turning;
-  glm::dvec3 spacing;  // of the volume, mm
+  glm::dvec3 spacing;  // voxel spacing of the volume, mm
 };
 
 struct LeastShift {
-  glm::dvec3 shift{0};  // mm; exactly zero where nothing overlaps without
-  bool free = true;     // whether nothing overlaps any more, by more than a twentieth of a voxel beyond what is allowed
-  double depth_before = 0;  // mm, of the deepest place: by how much the bones overlap beyond half a voxel
-  double depth_after = 0;
+  glm::dvec3 shift{0};      // mm; exactly zero where the bones do not overlap
+  bool free = true;         // true: with the shift, overlaps exceed half a voxel by a twentieth of a voxel at most
+  double depth_before = 0;  // deepest overlap beyond half a voxel without the shift, mm
+  double depth_after = 0;   // deepest overlap beyond half a voxel with the shift, mm
 };
 
-// How long a shift may be. What would need more is led as far as that goes.
+// Limits of a shift. A bone that would need a longer shift is shifted as far as the limits allow.
 struct ShiftBound {
-  double most_mm;         // of the shift itself
-  double whole_mm = 1e9;  // of the shift and of what the fixed bone has been carried along by, together
-  glm::dvec3 carried{0};  // mm, no longer than whole_mm
+  double most_mm;         // upper limit on the length of the shift, mm
+  double whole_mm = 1e9;  // upper limit on the length of shift + carried, mm
+  glm::dvec3 carried{0};  // shift of the fixed bone by the joints above it, mm; no longer than whole_mm
 };
 
-//   path      rigid motions of the turning bone, the last one where it shall be; as steps of some ten degrees
-// Shifts are along the axes of the grid as the fixed bone stands, after the motion.
+// Returns the smallest shift of the turning bone that separates it from the fixed one. The shift is given along the
+// axes of the grid in the frame of the fixed bone, and is applied after the motion.
+//   path      rigid motions of the turning bone in steps of some ten degrees; the last one is the pose
 LeastShift least_shift(const JointBones& bones, const std::vector<AffineTransform>& path, const ShiftBound& bound);
 
 }  // namespace limber

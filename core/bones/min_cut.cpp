@@ -42,16 +42,17 @@ class TwoTrees {
 
  private:
   enum Side : std::int8_t { kFree, kSource, kSink };
-  static constexpr std::int8_t kTerminal = Edges, kOrphan = Edges + 1;  // in place of the edge to the parent
+  // Values of Node::parent that are no edge numbers.
+  static constexpr std::int8_t kTerminal = Edges, kOrphan = Edges + 1;
 
   struct Node {
     Side side = kFree;
-    std::int8_t parent = kOrphan;  // edge that leads to the parent
-    std::int32_t distance = 0;     // to the terminal, as it was at `time`
+    std::int8_t parent = kOrphan;  // number of the edge to the parent
+    std::int32_t distance = 0;     // number of edges to the terminal, as known at `time`
     std::int64_t time = 0;
     bool is_active = false;
   };
-  // Edge `edge` of `from_source` joins the two trees.
+  // An edge that joins the two search trees: edge number `edge` of node `from_source`.
   struct Meeting {
     std::int32_t from_source = -1;
     int edge = 0;
@@ -69,7 +70,8 @@ class TwoTrees {
     tree_[active_.front()].is_active = false;
     active_.pop_front();
   }
-  // What can still flow along the tree: away from the source, towards the sink.
+  // Returns the remaining capacity of edge k of node i: away from the source in the source's tree, towards the sink in
+  // the sink's tree.
   std::int32_t outward(std::int32_t i, int k) const {
     return tree_[i].side == kSource ? graph_.capacity[i][k] : graph_.capacity[graph_.neighbour[i][k]][back(k)];
   }
@@ -132,7 +134,8 @@ class TwoTrees {
     push(n, flow);
   }
 
-  // Steps to the terminal, or -1 where the way up ends at an orphan. Marks the way as known now.
+  // Returns the number of edges from a node to its terminal, or -1 where the path to the root ends at an orphan. Stores
+  // the distances of the nodes on the path.
   std::int32_t distance_to_terminal(std::int32_t i) {
     std::int32_t steps = 0, at = i;
     for (;; ++steps, at = graph_.neighbour[at][tree_[at].parent]) {

@@ -12,9 +12,11 @@
 namespace limber {
 
 namespace {
-constexpr double kClearMajority =
-    0.85;  // of a piece's voxels on one side: the rest are the other side's rig bone reaching across
-constexpr double kAttached = 0.1;  // of a bone's voxels, those nearest to the rig bones that may carry it
+// Share of a connected piece's voxels on one side of the body from which on the whole piece belongs to this side: the
+// other voxels only lie nearer to a rig bone of the other side that reaches across.
+constexpr double kClearMajority = 0.85;
+// Share of a bone's voxels that decide which rig bone carries the bone: those nearest to rig bones.
+constexpr double kAttached = 0.1;
 
 class Assigning {
  public:
@@ -40,8 +42,8 @@ class Assigning {
   }
 
  private:
-  // Voxels that may follow the same rig bones. A bone that must stay whole has a set of its own where there is a
-  // choice.
+  // Voxels that may follow the same rig bones. A bone that must stay whole has its own set where it may follow several
+  // rig bones.
   struct Set {
     const LabelBones* bones;
     std::vector<std::int32_t> voxels;
@@ -88,7 +90,7 @@ class Assigning {
     for (int side = 0; side < 2; ++side) follow(sides[side], bones.candidates[side], bones.single);
   }
 
-  // Connected pieces of a set.
+  // Returns the connected components of a set of voxels.
   std::vector<std::vector<std::int32_t>> pieces_of(const Set& set) {
     std::vector<std::vector<std::int32_t>> pieces;
     std::vector<bool>& seen = seen_;
@@ -141,7 +143,7 @@ class Assigning {
         ->first;
   }
 
-  // Breadth first from the named bones through marrow and spongy bone without a name.
+  // Spreads the rig bones of named labels, breadth first, into marrow and spongy bone without a name.
   void spread_into_marrow() {
     std::vector<std::int32_t> front;
     for (std::int32_t i = 0; i < graph_.size(); ++i)
@@ -167,7 +169,7 @@ class Assigning {
   const std::map<Label, LabelBones>& labels_;
   AffineTransform world_from_voxel_;
   std::vector<Set> sets_;
-  std::vector<int> set_of_;  // #graph, -1: no name
+  std::vector<int> set_of_;  // index in sets_ for each voxel of the graph; -1: the label has no known name
   std::vector<bool> seen_;
   NamedBones named_;
 };

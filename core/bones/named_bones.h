@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives bone voxels whose labels say which bone of the body they are to their rig bones. A label with left and right in
-// one is parted by its connected pieces, or where one piece holds both by the nearer side of the rig. One bone of the
-// body is never cut: where several rig bones may carry it (a rib on a rig with two thoraces), those of its voxels that
-// lie nearest to them decide for all, since that is where it is attached. Marrow and spongy bone without a name follow
-// the named bone that they lie in.
+// Assigns bone voxels to rig bones where the labels' names say which bone of the body they are. A label that holds left
+// and right is split into its connected pieces, and a piece that holds both sides is split by the nearer side of the
+// rig. A single bone of the body is never cut: where several rig bones may carry it (a rib on a rig with two thorax
+// bones), its voxels nearest to them decide for all its voxels, since the bone is attached there. Marrow and spongy
+// bone without a name follow the named bone around them.
 #pragma once
 
 #include <map>
@@ -15,20 +15,21 @@
 namespace limber {
 
 struct NamedBones {
-  std::vector<int> bone;            // #graph, rig bone; -1 where shape must tell
-  std::vector<std::int32_t> group;  // #graph, into `candidates`: voxels of different groups are different bones
-  std::vector<std::vector<int>> candidates;  // by group: the rig bones it may follow; none means any
-  std::vector<FoundBy> found_by;             // #graph
+  std::vector<int> bone;  // rig bone of each voxel of the graph; -1: to be found by shape
+  // Index in `candidates` for each voxel of the graph. Voxels of different groups are different bones.
+  std::vector<std::int32_t> group;
+  std::vector<std::vector<int>> candidates;  // by group: rig bones that the group may follow; empty: any
+  std::vector<FoundBy> found_by;             // for each voxel of the graph
   static constexpr std::int32_t kUnnamed = 0;
 };
 
 NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
                               const Armature& armature, const std::map<Label, LabelBones>& labels);
 
-// The part of the graph that names do not decide. Voxels of different groups are not neighbours there.
+// The voxels whose rig bones the names do not decide. Their graph has no connections between different groups.
 struct Unsettled {
   BoneGraph graph;
-  std::vector<std::int32_t> from;  // #graph, in the whole one
+  std::vector<std::int32_t> from;  // index in the whole graph of each voxel of this one
 };
 Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named);
 

@@ -10,8 +10,9 @@ namespace limber {
 
 namespace {
 
-// Of the upper arm's length. In the BodyParts3D man the shoulder blade comes as near to the joint as a fifteenth of it,
-// a rib as near as a fifth.
+// Distance from the shoulder joint within which a shoulder blade comes, as a share of the upper arm's length. In the
+// BodyParts3D man the shoulder blade comes within a fifteenth of that length of the joint, but a rib only within a
+// fifth.
 constexpr double kReach = 0.15;
 
 }  // namespace

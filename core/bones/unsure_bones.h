@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the user should know of how the bones of a volume were told apart.
+// Writes warnings about uncertain results of separating bone tissue into bones.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// One line for each label that follows a rig bone only because the rig has none for it, and one for the bones that
-// touch so broadly that the place of the cut between them is not sure.
+// Returns one line for each label that follows a substitute because the rig has no bone for it, and one line about
+// bones that touch so broadly that the cut between them is uncertain.
 std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
 
 }  // namespace limber

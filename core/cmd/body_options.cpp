@@ -16,7 +16,7 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
   command.add_option("VOLUME", options.volume, "label volume")->required();
   command.add_option("--rig", options.rig, "rig (JSON, Bender .vtk or .arm, BVH)")->required();
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command.add_option("--bones", options.bones, "labels that are bone, as in the file")
+  command.add_option("--bones", options.bones, "labels that are bone, as numbered in the file")
       ->delimiter(',')
       ->type_name("L,L");
   command

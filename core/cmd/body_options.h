@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a command is told a body: VOLUME --rig RIG [--tissues T] [--bones L,L] [--bone-map FILE].
+// The options that name a body: VOLUME --rig RIG [--tissues T] [--bones L,L] [--bone-map FILE].
 #pragma once
 
 #include <string>
@@ -15,23 +15,22 @@
 namespace limber::cmd {
 
 struct BodyOptions {
-  std::string volume, rig, tissues, bone_map;  // files
-  std::vector<double>
-      bones;  // labels that are bone, as in the file; none: what the tissue table says, else a guess by the rig
+  std::string volume, rig, tissues, bone_map;  // file names; empty: not given
+  std::vector<double> bones;                   // bone labels as in the file; empty: from the tissue table, else guessed
 };
 
 struct Body {
   VolumeFile file;
   TissueTable tissues;
   Armature rig;
-  BoneMap bone_map;                 // which rig bones labels follow, where the user says
-  std::vector<std::string> doubts;  // of files that do not belong together [input_doubts.h]
+  BoneMap bone_map;                 // the rig bones that the user assigned to labels
+  std::vector<std::string> doubts;  // reasons for which the files may not belong together (input_doubts.h)
 };
 
-// `options` must live as long as the command.
+// Adds the options. `options` must live as long as the command.
 void add_body_options(CLI::App& command, BodyOptions& options);
 
-// Warnings of the files go to stderr.
+// Reads the files that the options name. Warnings about the files go to stderr.
 Body read_body(const BodyOptions& options, Progress& progress);
 
 }  // namespace limber::cmd

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The command line's subcommands: one file each, one function each, gathered in run.cpp. A function adds its
-// subcommand with its options to the app and sets a callback that does the work; errors are thrown, never printed
-// there. Exit codes: 0 done, 1 the input or the request is wrong, 2 usage, 3 cancelled, 4 a pose that could not be
-// reached: outputs are written, of the last place on the way to it; 5 with --strict, a gate of the result failed:
-// outputs are written as without.
+// The subcommands of the command line: one file and one function each, added in run.cpp. A function adds its subcommand
+// with its options to the app, and a callback that does the work. Errors are thrown, never printed there. Exit codes: 0
+// done; 1 the input or the request is wrong; 2 usage; 3 cancelled; 4 the pose could not be reached, so the outputs show
+// the last pose that was reached on the way to it; 5 with --strict, a gate of the result failed, but the outputs are
+// written as without --strict.
 #pragma once
 
 #include <string>
@@ -37,37 +37,39 @@ void add_skin_points(CLI::App& app);
 void add_tissues(CLI::App& app);
 void add_weights(CLI::App& app);
 
-// Every subcommand above, and --version.
+// Adds every subcommand above and --version.
 void add_commands(CLI::App& app);
-// Parses and runs; prints an error as one line and returns the exit code. The program's only place that catches.
+// Parses and runs the command line. Prints an error as one line and returns the exit code. Only this function turns
+// exceptions into exit codes.
 int run(CLI::App& app, int argc, char** argv);
 
-// Thrown once everything is written, where exit code 0 would say too much.
+// Exceptions for the exit codes 4 and 5, thrown after all outputs are written.
 struct PoseNotReached {};
 struct GateFailed {};
 
-// One line each on stderr: "limber: gate failed: ...".
+// Prints "limber: gate failed: ..." on stderr, one line for each sentence.
 void tell_failed_gates(const std::vector<std::string>& sentences);
 
-// The report on stdout, as a table.
+// Prints the report on stdout as a table.
 void print_table(const Report& report);
 
-// A description of a file on stdout: as JSON, or as text.
+// Prints on stdout the description of a file, as JSON or as text made from the JSON.
 void print_description(const std::string& json, bool as_json);
 
-// One line on stderr: "limber: warning: ...".
+// Prints "limber: warning: ..." on stderr as one line.
 void warn(const std::string& line);
 void warn(const std::vector<std::string>& lines);
 
-// What a long command shows while it works: a bar when stderr is a terminal, JSON lines ({"stage", "fraction"}) with
-// --progress json, else nothing. Ctrl-C cancels it.
+// Shows the progress of a long command: a bar when stderr is a terminal, JSON lines ({"stage", "fraction"}) with
+// --progress json, otherwise nothing. Ctrl-C cancels the command.
 class CommandProgress final : public Progress {
  public:
-  // `mode`: "" (choose by terminal) or "json"
+  // Shows JSON lines if `mode` is "json". If `mode` is "", shows a bar on a terminal.
   explicit CommandProgress(const std::string& mode);
   ~CommandProgress() override;
   bool cancelled() const override;
-  // A line of the stage "solving": {"stage", "fraction", "angle_degrees", "iteration", "residual_mm", "seconds_left"}.
+  // The values of a progress line of the stage "solving": {"stage", "fraction", "angle_degrees", "iteration",
+  // "residual_mm", "seconds_left"}.
   struct Iteration {
     double fraction, angle_degrees;
     int iteration;
@@ -75,8 +77,8 @@ class CommandProgress final : public Progress {
   };
   void show(const Iteration& iteration);
 
-  // While it lives, Ctrl-C and SIGTERM end the program at once, with the exit code of a cancelled one: for stages that
-  // take long between two updates and have nothing on the disk.
+  // While this object lives, Ctrl-C and SIGTERM end the program at once, with the exit code of a cancelled command. It
+  // is for stages that take long between two progress updates and have written nothing to the disk yet.
   class LeavesAtOnce {
    public:
     LeavesAtOnce();
@@ -95,9 +97,9 @@ class CommandProgress final : public Progress {
   double shown_ = -1;
 };
 
-// Adds --threads N and --progress json.
+// The values of the options --threads N and --progress json.
 struct RunOptions {
-  int threads = 0;  // 0: every core
+  int threads = 0;  // 0: all cores
   std::string progress;
 };
 void add_run_options(CLI::App& command, RunOptions& options);

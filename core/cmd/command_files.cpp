@@ -12,8 +12,9 @@
 namespace limber::cmd {
 
 namespace {
-// CLI11 keeps validators by name with an option. This one is asleep while options are parsed, and tells the files when
-// it is asked: each as 'r' or 'w' and its path, ended by a zero byte, which no path holds.
+// CLI11 stores validators by name with an option. The validator "files" tells which files the option's value names. It
+// is inactive while options are parsed; files_of() calls it afterwards. It returns the files as text: for each file the
+// letter 'r' (read) or 'w' (written), its path and a zero byte, which no path contains.
 constexpr const char* kFiles = "files";
 constexpr char kRead = 'r', kWritten = 'w';
 
@@ -44,7 +45,7 @@ OptionFiles files_of(CLI::Option& option, std::string value) {
   }
 }
 
-// A file and what is read with it.
+// Returns a file and the files that are read together with it, such as a project's journal.
 std::vector<Path> with_companions(const Path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return {path};
@@ -52,15 +53,16 @@ std::vector<Path> with_companions(const Path& path) {
   return is_volume_path(path) ? files_of_volume(path) : std::vector<Path>{path};
 }
 
-// Whether the word is "nan", "inf" or beyond what a number can be. CLI11 takes those, and no range that it checks holds
-// for "nan".
+// Returns whether the word is "nan", "inf" or a number too large for a double. CLI11 accepts these words, and its range
+// checks do not refuse "nan".
 bool is_no_finite_number(const std::string& word) {
   char* end = nullptr;
   const double number = std::strtod(word.c_str(), &end);
   return end != word.c_str() && *end == '\0' && !std::isfinite(number);
 }
 
-// A word of that kind is a number where it is no file.
+// Throws UsageError for an option with the value "nan", "inf" or a number too large, unless the option takes text or
+// the value is the name of a file.
 void check_numbers(CLI::App& command) {
   std::error_code error;
   for (CLI::Option* option : command.get_options())
@@ -82,7 +84,7 @@ void check_files(CLI::App& command, const Path& job) {
   std::vector<NamedFile> inputs, outputs;
   if (!job.empty()) inputs.push_back({"the job", job});
   for (CLI::Option* option : command.get_options()) {
-    if (option->get_expected_max() == 0) continue;  // a flag
+    if (option->get_expected_max() == 0) continue;  // a flag, which has no value
     for (const std::string& value : option->results()) {
       const OptionFiles files = files_of(*option, value);
       const std::string name = option->get_name();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The files of a command line. An option that names what is written says so where it is added; every other word that
-// names a file is one that is read. From that, one check for all commands refuses an output that is also an input, or
-// two outputs that are one file, before anything is read.
+// Knows which files a command line reads and writes. An option that names an output is marked where it is added. Every
+// other value that names a file is an input. Before a command reads anything, one check refuses an output that is also
+// an input, and two outputs that are one file.
 #pragma once
 
 #include <functional>
@@ -18,18 +18,19 @@ struct OptionFiles {
   std::vector<Path> read, written;
 };
 
-// Of an option's value. Called when all options are parsed.
+// Returns the files that an option's value names. It is called after all options have been parsed.
 using FilesOfValue = std::function<OptionFiles(const std::string& value)>;
 
-// Marks an option whose value names what the command writes: the file of that name and what a volume of that name puts
-// beside it, or the `files` that it tells of.
+// Marks an option whose value names an output. The output's files are those that `files` returns for this value.
+// Without `files` they are the file of that name and those that a volume's format writes beside it.
 CLI::Option* writes(CLI::Option* option, FilesOfValue files = {});
 
-// Throws UsageError for a command whose options are parsed, also where an option is given "nan" or "inf" as a number.
-// `job`: a file that is read besides, "" for none.
+// Checks the files of a command whose options have been parsed. Throws UsageError for an output that is also an input
+// or another output, and for an option whose number is "nan" or "inf".
+//   job  another file that the command reads; "": none
 void check_files(CLI::App& command, const Path& job = {});
 
-// Every command of the program has its files checked before it runs.
+// Makes every command of the app check its files before it runs.
 void check_files_of_all(CLI::App& app);
 
 }  // namespace limber::cmd

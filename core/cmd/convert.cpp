@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: the same thing in another format, chosen
-// by the name of OUT.
+// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: converts a file to the format that the
+// extension of OUT names.
 #include <memory>
 
 #include "core/base/error.h"
@@ -38,13 +38,13 @@ void export_body(const Exporter& exporter, const VolumeFile& file, const Options
   warn(warnings);
 }
 
-// Label volumes keep every value as it was; grey ones with fractions go as float.
+// Converts a volume. Labels keep their values. A grey volume with fractional values is written as float.
 void convert_volume(const Options& options) {
   const Exporter* exporter = exporter_for(options.out);
   if (exporter && !exporter->takes_voxels)
     throw Error("a volume has no mesh to write", options.out, "`limber resample --method fem --mesh-out` makes one");
   if (exporter && exporter->needs_frequency && !options.material.frequency)
-    materials_of({}, options.material, options.out);  // says what is missing
+    materials_of({}, options.material, options.out);  // throws the Error that says which option is missing
   if (exporter) check_place(options.out);
   else check_writable(options.out);
   CommandProgress progress(options.progress);
@@ -60,7 +60,7 @@ void convert_volume(const Options& options) {
   warn(file.warnings);
   if (exporter) {
     require_labels(file.volume, tissues_of(file, options.material.tissues), options.in);
-    if (is_surface_path(options.out))  // which is also told in numbers
+    if (is_surface_path(options.out))  // this also prints the sizes of the surfaces
       return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
     return export_body(*exporter, file, options, progress);
   }
@@ -73,7 +73,7 @@ OptionFiles files_of_output(const std::string& name) {
   try {
     if (const Exporter* exporter = exporter_for(name)) files.written = files_exported_as(*exporter, name);
   } catch (const Error&) {
-    // The conversion says what is wrong with the name.
+    // The conversion itself throws an Error for a wrong name.
   }
   return files;
 }

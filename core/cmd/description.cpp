@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a file is, as text: each kind is described once, as JSON, and shown from that.
+// Prints the description of a file. Each kind of file is described once, as JSON; the text is made from that JSON.
 #include <algorithm>
 #include <sstream>
 

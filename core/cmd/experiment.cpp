@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber experiment STUDY.json|arm [DIR] [--methods M,M] -o OUT [--shard i/n] [--threads N] [--progress json]
+// limber experiment STUDY.json|arm [DIR] [--methods M,M] -o OUT [--shard i/n] [--threads N] [--progress json]: computes
+//   those combinations of spacing, pose and technique of a study that have no result yet, and writes the study's tables
+//   and report. `arm` is the built-in study; DIR is a folder with its volumes, M a technique.
 #include "core/cmd/experiment.h"
 
 #include <cstdio>
@@ -23,7 +25,7 @@ struct Options {
   RunOptions run;
 };
 
-// i/n, counted from 1
+// Reads a shard i/n, where i counts from 1.
 void read_shard(const std::string& text, StudyRun& run) {
   int number = 0, of = 0, end = 0;
   if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 ||

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The subcommand that needs something of the program around it: who draws bodies for its report.
+// The subcommand `experiment`. It is not in command.h because its caller passes the function that draws bodies for the
+// report.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +9,8 @@
 
 namespace limber::cmd {
 
-//   pictures  none in a program without the renderer: the report says so
+// Adds the subcommand `experiment`.
+//   pictures  returns what draws bodies in 3D. Empty in a program without the renderer: the report then says so.
 void add_experiment(CLI::App& app, const StartPictures& pictures = {});
 
 }  // namespace limber::cmd

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber export-gltf VOLUME --rig R --weights W [--tissues T] [--motion F.bvh ...] [--up y|z|auto] [--map M]
-//   [--motion-rest POSE] [--rig-rest POSE] [--root-motion] [--step MM] -o OUT.glb
+//   [--motion-rest POSE] [--rig-rest POSE] [--root-motion] [--step MM] -o OUT.glb: writes the body's surface with its
+//   skeleton, its weights and its motions.
 #include <filesystem>
 #include <memory>
 

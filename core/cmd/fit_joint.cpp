@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber fit-joint VOLUME --rig RIG --bone B [--tissues T] [--bones L,L] [--range 0,90] -o RIG2
+// limber fit-joint VOLUME --rig RIG --bone B [--tissues T] [--bones L,L] [--range 0,90] -o RIG2: moves the axis of a
+//   joint so that its bones do not collide over a range of angles, in degrees.
 #include "core/autorig/joint_axis_fit.h"
 
 #include <cstdio>

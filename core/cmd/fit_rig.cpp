@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber fit-rig VOLUME --template NAME|RIG|auto [--tissues T] [--bones L,L] -o RIG [--report R.json]
+// limber fit-rig VOLUME --template NAME|RIG|auto [--tissues T] [--bones L,L] -o RIG [--report R.json]: fits a rig to a
+//   volume automatically.
 #include "core/autorig/place_in_tissue.h"
 
 #include <cstdio>
@@ -106,7 +107,7 @@ void add_fit_rig(CLI::App& app) {
                    "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")
       ->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->bones, "labels that are bone, as in the file")
+  command->add_option("--bones", options->bones, "labels that are bone, as numbered in the file")
       ->delimiter(',')
       ->type_name("L,L");
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)"))->required();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json]
+// limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json]: prints the position of every joint.
 //
-// Where every joint is. Of a BVH: its own axes and units, global rotations of the joints, and the places of the End
-// Sites. Of a rig (or a BVH that is given a pose): world LPS mm, posed heads and tails, and the rotation of each bone
-// from rest to posed, which is the identity for a bone that nothing moves.
+// For a BVH without a pose it prints, in the file's own axes and units, the joints' global rotations and the positions
+// of the End Sites too. For a rig (or a BVH with a pose) it prints posed heads and tails in world LPS mm, and each
+// bone's rotation from rest to posed, which is the identity for a bone that does not move.
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -77,7 +77,7 @@ void print_table(const Json& joints) {
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-// {"frames": [{"joints": [...]}, ...]}, a line for each frame.
+// Prints {"frames": [{"joints": [...]}, ...]}, one line for each frame.
 void print_frames(int count, const std::function<Json(int)>& joints_at) {
   print("{\"frames\":[");
   for (int frame = 0; frame < count; ++frame)

@@ -9,7 +9,7 @@
 namespace limber::cmd {
 
 namespace {
-// A longer sequence is cut where its files are compared with the inputs: no motion is that long.
+// Limits the number of file names that are compared with the inputs. No motion has that many frames.
 constexpr int kMostFrames = 100000;
 
 struct FrameRange {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The frames of a sequence, FIRST:LAST[:STEP], and the names of their files, which hold {frame}.
+// Reads the option for the frames of a sequence, FIRST:LAST[:STEP], and puts frame numbers in the place of {frame} in
+// file names.
 #pragma once
 
 #include <string>
@@ -9,13 +10,14 @@ namespace limber::cmd {
 
 constexpr const char* kFrame = "{frame}";
 
-// Of a motion with so many frames.   throws Error for what is no request, or goes beyond the motion
+// Returns the frame numbers of a request for a motion with `frame_count` frames. Throws Error for a malformed request,
+// or one beyond the motion's last frame.
 std::vector<int> frames_of(const std::string& request, int frame_count);
 
-// The name with the frame's number, of four digits or more, in place of each {frame}.
+// Replaces each {frame} in the name by the frame's number with at least four digits.
 std::string of_frame(std::string name, int frame);
 
-// The names that `name` stands for: one a frame of the request where it holds {frame}, else itself.
+// Returns the file name for each frame of the request if `name` contains {frame}; otherwise returns `name` alone.
 std::vector<std::string> names_of(const std::string& name, const std::string& request);
 
 }  // namespace limber::cmd

@@ -11,8 +11,8 @@
 namespace limber::cmd {
 
 namespace {
-constexpr double kLongest = 50;     // mm: no joint glides that far
-constexpr double kOfAVoxel = 0.99;  // of a voxel's longest edge, so that rounding does not go beyond
+constexpr double kLongest = 50;     // longest shift that may be requested, mm
+constexpr double kOfAVoxel = 0.99;  // fraction of a voxel's edge that bones may move; below 1 because of rounding
 }  // namespace
 
 void add_glide_option(CLI::App& command, std::string& glide) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a command is told whether joints glide, so that bones do not enter each other: [--glide off|voxel|joint|MM].
-//   joint  each joint by up to 5 percent of its shorter bone
-//   voxel  the same, but no bone further than a voxel's longest edge from where the pose puts it, by all shifts above
-//   it
-//          together
-//   MM     each joint by up to that
-// Poses by the names of joints and by hinges say at which angles joints stand: there it is `joint` where nothing is
-// said. A pose file and a motion say where the bones of this rig stand, and what was looked at before, in the
-// editor's live view or with feet on the floor, shall come out: there it is `voxel`.
+// The option that says how far joints glide, so that bones do not enter each other: [--glide off|voxel|joint|MM].
+//   joint  each joint may shift by 5 percent of its shorter bone
+//   voxel  as joint, but a bone may be moved away from its place in the pose by a voxel's longest edge at most, all
+//          shifts of the joints above it added together
+//   MM     each joint may shift by up to this length
+// The default depends on the pose options. Joint names and hinges only give the angles of joints, so the default is
+// `joint`. A pose file and a motion say where the bones of this rig stand, and the result should match what the user
+// saw before (in the editor's live view, or feet on the floor), so the default is `voxel`.
 #pragma once
 
 #include <optional>
@@ -20,23 +19,26 @@
 
 namespace limber::cmd {
 
-// `glide` must live as long as the command.
+// Adds the option. `glide` must live as long as the command.
 void add_glide_option(CLI::App& command, std::string& glide);
 
-// None where joints stay as the rig has them. Throws Error for what is neither such a word nor a length.
-//   voxel  mm, its longest edge
+// Returns how far joints may glide, or nothing where they do not glide. Throws Error for a value that is neither one of
+// the words nor a length.
+//   voxel  a voxel's longest edge, mm
 std::optional<GlideSettings> glide_settings(const std::string& glide, const PoseOptions& pose, double voxel);
 
-// What is taken: off, voxel, joint, or the length that was given.
+// Returns the setting that is used, which depends on the pose without --glide: off, voxel, joint, or the given length.
 std::string glide_word(const std::string& glide, const PoseOptions& pose);
 
-// Shifts joints of each pose; returns which, by pose. Makes the weights rigid in bone tissue, as resampling does.
+// Shifts the joints of each pose so that bones do not enter each other, and returns the shifted joints of each pose.
+// Makes the weights rigid in bone tissue, as resampling does.
 std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings,
                                                   const Body& body, const TissueVoxels& tissue, SkinWeights& weights,
                                                   Progress& progress);
 
-// How many voxels two bones claim, and which joints are not free. Empty where neither is to be told.
-//   joints  none where joints do not glide
+// Returns a warning that tells how many voxels two bones claim and which joints still overlap. Returns "" without such
+// voxels and joints.
+//   joints  the shifted joints; empty where joints do not glide
 std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joints, std::int64_t claimed_twice);
 
 }  // namespace limber::cmd

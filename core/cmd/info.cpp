@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber info FILE [--json]: what a file is. Each kind is described once, as JSON; without --json the same is shown as
-// text.
+// limber info FILE [--json]: prints a description of a file. Each kind of file is described once, as JSON; without
+// --json the same description is printed as text.
 #include <cmath>
 #include <memory>
 
@@ -23,13 +23,13 @@ using Json = nlohmann::ordered_json;
 
 Json as_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-// Whole numbers without a decimal point.
+// Returns whole numbers as integers, so that they are written without a decimal point.
 Json as_json(double value) {
   if (value == std::floor(value) && std::abs(value) < 9e15) return static_cast<std::int64_t>(value);
   return value;
 }
 
-// What such files are parsed by, and what keeps it from doing harm.
+// Describes how the process that parses volume files is protected against hostile ones.
 Json describe_reader() {
   const Protection reader = reader_protection();
   return {{"own_process", reader.own_process},

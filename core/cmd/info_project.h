@@ -7,8 +7,8 @@
 
 namespace limber::cmd {
 
-// A project's parts, as JSON: {"kind": "project", "program", "file_bytes", "chunks", "volume"?, "tissues"?, "bones"?,
-// ...}; parts that are absent are left out. Warnings go to stderr. Throws Error as read_project does.
+// Describes the parts of a project as JSON: {"kind": "project", "program", "file_bytes", "chunks", "volume"?,
+// "tissues"?, "bones"?, ...}. Absent parts are left out. Warnings go to stderr. Throws Error as read_project does.
 std::string describe_project(const Path& file);
 
 }  // namespace limber::cmd

@@ -102,7 +102,8 @@ Json describe_obj(const Path& file) {
           {"upper", json_of(obj.upper)}};
 }
 
-// What "bones" is in our JSON: a list in a rig, a table of rotations in a pose. Others have such a table too.
+// The kind of a JSON file, told by its key "bones": a list in a rig, an object of rotations in a pose. Files of other
+// programs may have an object "bones" without rotations.
 enum class JsonFile { Rig, Pose, Other };
 
 bool is_rotation(const nlohmann::json& json) {

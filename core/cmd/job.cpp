@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber job JOB.json: what a worker or a cluster node runs. A job is a command written down: its keys are the
-// command's options, so that a job can do what the command line can, and the same way. It resamples, or makes what a
-// resampling needs: "prepare", "weights", "phantom" (whose "subject" stands in the volume's place).
-//   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs", "output":
-//   "posed.nrrd"}
+// limber job JOB.json: runs a command that is described in a file, as workers and cluster nodes do. The keys of the
+// JSON object are the command's options, so a job does exactly what the command line does. Jobs can run "resample" and
+// the commands that prepare it: "prepare", "weights" and "phantom" (with "subject" instead of "volume").
+//   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs",
+//    "output": "posed.nrrd"}
 //   {..., "pose_name": "sit", "joints": ["left elbow flexion=30"], ...}
-// Lists repeat an option (bones, labels: joined by commas); true sets a flag; "_" is as good as "-" in a key. Paths are
-// relative to the job's folder.
+// A list of values repeats its option; bones and labels are one text, joined by commas. The value true sets a flag, and
+// "_" may replace "-" in a key. Paths are relative to the job's folder.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -43,16 +43,16 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
 }
 
-// What a command's first word is called in a job.
+// Returns the key whose value is the command's first argument.
 const char* subject_of(const Json& job) { return job.at("command") == "phantom" ? "subject" : "volume"; }
 
-// The option that a key stands for: keys may be written as in reports, "pose_name" and "joints".
+// Returns the command-line option that a key stands for. Keys may be spelled as in reports: "pose_name", "joints".
 std::string option_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', '-');
   return key == "joints" ? "--joint" : "--" + key;
 }
 
-// The words of the command line that the job stands for.
+// Returns the command line, as words, that the job stands for.
 std::vector<std::string> words_of(const Json& job, const Path& path) {
   std::vector<std::string> words{job.at("command").get<std::string>()};
   for (const auto& [key, value] : job.items()) {
@@ -95,7 +95,7 @@ struct Options {
 
 void run(const Options& options) {
   become_worker(options.memory_limit, options.yields, options.parent);
-  std::optional<Heartbeat> heartbeat;  // where someone listens
+  std::optional<Heartbeat> heartbeat;  // only where a parent process reads it
   if (options.parent > 0) heartbeat.emplace();
   const Path path = options.file;
   Json job = read_job(path);
@@ -108,7 +108,7 @@ void run(const Options& options) {
   kCommands.at(words.front())(app);
   CLI::App* command = app.get_subcommand(words.front());
   command->parse_complete_callback([=] { check_files(*command, where); });
-  std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+  std::reverse(words.begin(), words.end());  // CLI11 takes the words from the end of the list
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {

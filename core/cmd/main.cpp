@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The program without the editor: subcommands only.
+// The program without the editor: it has subcommands only.
 #include "core/cmd/command.h"
 #include "core/cmd/experiment.h"
 

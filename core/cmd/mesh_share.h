@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the mesh of a solve is, so that nobody takes it for a phantom of the body.
+// Says how much of the body the mesh of a solve contains, so that nobody takes the mesh for a phantom of the whole
+// body.
 #pragma once
 
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace limber::cmd {
 
-// A sentence with the share of the body's volume at rest, and the number of its tissues, that the tets hold.
+// Returns a sentence with the percentage of the body's rest volume, and the number of its tissues, that the mesh's tets
+// contain.
 std::string share_of_body(const TissueModel& model, const LabelVolume& body);
 
 }  // namespace limber::cmd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber phantom arm|body [--spacing MM] -o DIR
+// limber phantom arm|body [--spacing MM] -o DIR: writes a procedural sample: a volume, its tissues, a rig and a motion.
 #include <memory>
 #include <optional>
 

@@ -13,7 +13,7 @@
 namespace limber::cmd {
 
 namespace {
-// Joints by their names, then hinges.
+// Applies the requested joint angles to the pose, then the hinge flexions.
 void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& options, std::set<std::string>& warnings) {
   std::vector<std::string> lines;
   pose = with_request(armature, pose, options.body, lines);
@@ -24,7 +24,7 @@ void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& opt
   }
 }
 
-// Of one frame, or of all.
+// Returns the pose of one frame of the motion, or without `frame` the poses of all its frames.
 std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
   const Motion motion = read_motion(options.motion, options.up);
   RetargetMap map =
@@ -79,7 +79,7 @@ CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI:
                    ->type_name("NAME")
                    ->excludes(pose)
                    ->group(pose->get_group());
-  // An empty name would be no pose, in silence.
+  // Without this check, an empty name would silently mean that no pose is requested.
   name->check(
       [](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
   command

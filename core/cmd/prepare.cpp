@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
-//        [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T] [--seams SEAMS.nrrd
-//        --rig RIG]
+//   [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T]
+//   [--seams SEAMS.nrrd --rig RIG]: prepares a label volume for posing.
 #include "core/prepare/prepare.h"
 #include "core/volume_io/grey_image.h"
 
@@ -43,7 +43,7 @@ std::optional<double> number_of(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-// A tissue by the value it has in files, or by its name; nullptr when there is none.
+// Finds a tissue by its value in the volume's file or by its name. Returns nullptr when there is none.
 const Tissue* find_tissue(const TissueTable& tissues, const std::string& text) {
   if (const auto value = number_of(text))
     if (const Tissue* tissue = tissues.find_file_value(*value)) return tissue;
@@ -58,7 +58,7 @@ const Tissue& tissue_of(const TissueTable& tissues, const std::string& text, con
               "name a value or a tissue that 'limber info' lists");
 }
 
-// A=B: every A becomes B.
+// Merges two labels as the option A=B says: every voxel of A becomes B.
 void merge(LabelVolume& volume, TissueTable& tissues, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
@@ -71,7 +71,8 @@ void merge(LabelVolume& volume, TissueTable& tissues, const std::string& text) {
   std::erase_if(tissues.tissues, [&](const Tissue& tissue) { return tissue.label == from; });
 }
 
-// The label that new skin gets. A whole number that no tissue has makes a new tissue.
+// Returns the label for new skin voxels, or nothing for the label of the nearest skin tissue. A whole number that no
+// tissue has adds a new tissue.
 std::optional<Label> skin_label_of(TissueTable& tissues, const std::string& text) {
   if (text.empty()) return std::nullopt;
   if (const Tissue* tissue = find_tissue(tissues, text)) {
@@ -133,14 +134,14 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   return std::move(closed.volume);
 }
 
-// Only what is still there, so that the file names no label it lacks.
+// Removes the tissues of which the volume has no voxel, so that the file names no missing label.
 void keep_present(TissueTable& tissues, const LabelVolume& volume) {
   std::vector<bool> present(65536, false);
   for (Label label : volume.voxels) present[label] = true;
   std::erase_if(tissues.tissues, [&](const Tissue& tissue) { return !present[tissue.label]; });
 }
 
-// Of the volume as it is written, in the rig's world.
+// Finds the seams of the prepared volume and writes them to a file.
 void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const Options& options,
                        Progress& progress) {
   const ArmatureFile rig = read_armature_file(options.rig);

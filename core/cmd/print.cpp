@@ -13,7 +13,7 @@ namespace limber::cmd {
 namespace {
 constexpr const char* kEraseLine = "\r\033[K";
 
-// Bytes of the UTF-8 character that `text` starts with; 0 where it starts with none.
+// Returns the number of bytes of the UTF-8 character that `text` starts with, or 0 where it starts with none.
 std::size_t character_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -26,14 +26,14 @@ std::size_t character_size(std::string_view text) {
   if (size > text.size()) return 0;
   for (std::size_t i = 1; i < size; ++i)
     if (byte(i) >> 6 != 2) return 0;
-  // Longer than need be, half of a pair, beyond the last character.
+  // Refuses overlong encodings, halves of surrogate pairs, and code points above U+10FFFF.
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) || (first == 0xf0 && byte(1) < 0x90) ||
       (first == 0xf4 && byte(1) > 0x8f))
     return 0;
   return size;
 }
 
-// The control character that these bytes are; -1 for another character.
+// Returns the code of a control character, or -1 for any other character.
 int control_of(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1 && (first < 0x20 || first == 0x7f)) return first;
@@ -42,7 +42,7 @@ int control_of(std::string_view character) {
   return -1;
 }
 
-// The text with `instead` of each control character (its code) and each byte that is no UTF-8 (-1).
+// Replaces each control character by instead(its code) and each byte that is not UTF-8 by instead(-1).
 std::string cleaned(std::string_view text, const std::function<std::string(int control)>& instead) {
   std::string clean;
   clean.reserve(text.size());
@@ -108,7 +108,8 @@ void draw_bar(std::string_view text) {
 bool all_is_printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 void keep_standard_streams() {
-  // The lowest free number is taken, so each call fills the first gap. Read-only: writing there fails, and is told.
+  // open() returns the lowest free descriptor, so each call fills the first missing stream. The stream is read-only, so
+  // writing to it fails and the failure is reported.
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
 }

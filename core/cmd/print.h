@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// All that the command line shows. Names and texts come from files that anybody may have made: a control character in
-// them would be an order to the terminal, so none goes out. This is the only place of the program that writes to stdout
-// and stderr.
+// Prints everything that the command line shows. Names and texts come from files by unknown authors, and a control
+// character in them would be a command to the terminal, so control characters are replaced. Only this file writes to
+// the program's stdout and stderr, except a worker's sign of life (core/project/worker.cpp).
 #pragma once
 
 #include <string>
@@ -9,29 +9,30 @@
 
 namespace limber::cmd {
 
-// The text as it may be shown: control characters (C0 but for line feed and tab, DEL, C1) and bytes that are no UTF-8
-// become '?'.
+// Returns the text with control characters (C0 except line feed and tab, DEL, C1) and bytes that are not UTF-8
+// replaced by '?'.
 std::string printable(std::string_view text);
-// The same in one line: line feeds and tabs become blanks.
+// Returns the text as one line: as printable() does, but with blanks for line feeds, carriage returns and tabs.
 std::string one_line(std::string_view text);
 
-// To stdout, made printable.
+// Print to stdout. The text is passed through printable() first.
 void print(const char* format, ...) __attribute__((format(printf, 1, 2)));
 void print_text(std::string_view text);
-// JSON to stdout: what is not printable can only stand in its strings, where it is written as \u00XX, so that no letter
-// is lost.
+// Prints JSON to stdout. Unprintable characters can only occur in its strings, so they are written as \u00XX and no
+// character is lost.
 void print_json(std::string_view json);
 
-// To stderr, in one line, in place of the bar where one stands.
+// Prints one line to stderr, and erases a progress bar on that line first.
 void tell(std::string_view line);
-// To stderr, as it is: for a bar, which is made of the program's own words and orders, and for lines of JSON.
+// Prints to stderr without changes. Use it only for progress bars, which contain only the program's own words and
+// terminal commands.
 void draw_bar(std::string_view text);
 
-// What was printed so far is handed over. False when some of it could not be written, as on a full disk.
+// Flushes stdout. Returns false when some of the output could not be written, for example on a full disk.
 bool all_is_printed();
 
-// Where the program was started without stdin, stdout or stderr, files that it opens would take their places and get
-// its messages: this fills them with what nothing can be written to.
+// Opens a read-only stream for each of stdin, stdout and stderr that is missing when the program starts. Otherwise the
+// next file that is opened would get the missing stream's descriptor and receive the program's messages.
 void keep_standard_streams();
 
 }  // namespace limber::cmd

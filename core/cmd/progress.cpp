@@ -10,9 +10,9 @@
 namespace limber::cmd {
 
 namespace {
-constexpr const char* kErase = "\r\033[K";  // the line of a terminal
+constexpr const char* kErase = "\r\033[K";  // erases the line on a terminal
 
-// A signal handler can reach nothing but a global.
+// These variables are global because a signal handler can reach nothing else.
 volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t leaves_at_once = 0;
 void on_interrupt(int) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber project NAME.limber [inspect] [--json]           what is in it
+// limber project NAME.limber [inspect] [--json]: prints what the project contains.
 // limber project NAME.limber create [VOLUME] [--tissues T] [--rig R] [--weights W] [--pose P | --pose-name NAME]
-// [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]] [--seams S.nrrd] [--bone-map M.json] limber project NAME.limber
-// verify                        checks every byte; exit code 1 when something is wrong limber project NAME.limber
-// recover [FILE] -o OUT.limber  with the edits that a crash left; of a damaged one, what is whole,
-//                                                          and what FILE, an earlier copy or the volume it was made
-//                                                          from, still has
-// limber project NAME.limber export PART -o OUT            volume, tissues, rig, weights, pose, motion, gltf, seams,
-// bone-map, or a result by its name
+//   [--joint "J M=DEG"] [--motion F.bvh [--up y|z|auto]] [--seams S.nrrd] [--bone-map M.json]: writes a new project.
+// limber project NAME.limber verify: checks every byte; the exit code is 1 when something is wrong.
+// limber project NAME.limber recover [FILE] -o OUT.limber: writes a project with the unsaved edits that a crash left.
+//   It keeps the undamaged parts of a damaged project and takes lost parts from FILE: an earlier copy, or the volume
+//   that the project was made from.
+// limber project NAME.limber export PART -o OUT: writes one part. PART is volume, tissues, rig, weights, pose, motion,
+//   gltf, seams, bone-map, or the name of a result.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -38,7 +38,7 @@ namespace {
 struct Options {
   std::string file, action = "inspect", part;
   std::string tissues, rig, weights, pose, motion, seams, bone_map, output, progress, up = "y";
-  PoseRequest body;  // of the pose
+  PoseRequest body;  // --pose-name and --joint
   bool json = false, replace = false;
 };
 
@@ -57,7 +57,7 @@ void require_new(const Path& path, bool replace) {
           "choose another name, or say --replace");
 }
 
-// ---- create
+// ---- the action create
 
 void read_body_parts(const Options& options, Document& document, Progress& progress) {
   VolumeFile file = read_volume(options.part, progress);
@@ -101,7 +101,7 @@ Document read_parts(const Options& options, Progress& progress) {
   if (!options.bone_map.empty()) {
     document.bone_map = shared(read_bone_map(options.bone_map));
     bones_of_labels(*document.tissues, *document.armature,
-                    *document.bone_map);  // throws where it names what is not there
+                    *document.bone_map);  // throws Error for an unknown label or bone
   }
   if (!options.motion.empty()) {
     const auto motion = shared(read_motion(options.motion, options.up));
@@ -117,7 +117,7 @@ void create(const Options& options) {
   create_project({.document = read_parts(options, progress)}, options.file, writer, progress);
 }
 
-// ---- verify and recover
+// ---- the actions verify and recover
 
 void verify(const Options& options) {
   CommandProgress progress(options.progress);
@@ -128,7 +128,7 @@ void verify(const Options& options) {
   print("%s is whole\n", options.file.c_str());
 }
 
-// The chunks of a document, kept in memory.
+// A store that has the chunks of a document in memory.
 class DocumentChunks final : public ChunkSource, public ChunkSink {
  public:
   explicit DocumentChunks(const Document& document) { DocumentWriter().write(document, *this, Packing::Quick); }
@@ -143,7 +143,8 @@ class DocumentChunks final : public ChunkSource, public ChunkSink {
   std::unordered_map<ChunkHash, std::string, ChunkHash::Hasher> chunks_;
 };
 
-// An earlier copy of the project, whole or not, or the volume that it was made from.
+// Adds the file that the user named as a source for lost chunks: another copy of the project, damaged or not, or the
+// volume that the project was made from.
 void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) {
   if (options.part.empty()) return;
   if (is_project(options.part)) {
@@ -155,7 +156,8 @@ void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) 
   chunks.add(std::make_unique<DocumentChunks>(document));
 }
 
-// Where the project cannot be read as it is, what is whole of it is put together again. `chunks` outlives the project.
+// Reads the project. Rebuilds a damaged project from its undamaged chunks, which `chunks` then holds, so that `chunks`
+// must live as long as they are needed.
 Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
   std::string failure;
   try {
@@ -186,7 +188,7 @@ void recover(const Options& options) {
   CommandProgress progress(options.progress);
   Project project;
   std::unique_ptr<CarvedChunks> chunks;
-  auto left = recoverable(options.file);  // a journal itself
+  auto left = recoverable(options.file);  // options.file may itself be a journal
   if (!left) left = recoverable(journal_path(std::filesystem::absolute(options.file)));
   if (left) {
     Recovered recovered = limber::recover(left->journal, progress);
@@ -198,12 +200,12 @@ void recover(const Options& options) {
     warn(project.warnings);
   }
   DocumentWriter writer;
-  // What no part could use stays in the file until it is saved again.
+  // Chunks that no part of the document uses are written too, and stay until the new file is saved again.
   create_project(project, options.output, writer, progress,
                  chunks ? SpareChunks{chunks->latest_first(), chunks.get()} : SpareChunks{});
 }
 
-// ---- export
+// ---- the action export
 
 template <class T>
 const T& there(const std::shared_ptr<const T>& part, const Options& options) {

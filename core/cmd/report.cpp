@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber report BEFORE AFTER [--tissues T] [--field F.nrrd [--rig RIG [--bone-map FILE] POSE-OPTIONS]] [--strict]
-// [--json]
+// [--json]: measures what changed between two volumes.
 #include "core/report/report.h"
 
 #include <memory>
@@ -19,8 +19,8 @@ namespace limber::cmd {
 namespace {
 constexpr double kSamePlaceMm = 1e-3;
 
-// The labels of `file` as `table` numbers them, matched by what they are called in files; values that `table` lacks are
-// added to it.
+// Gives equal labels to equal tissues of two volumes: changes the labels of `file` to those that `table` has for the
+// same values in files, and adds the values that `table` lacks.
 void renumber(VolumeFile& file, TissueTable& table) {
   std::vector<Label> of(65536);
   Label highest = 0;
@@ -61,7 +61,7 @@ VectorVolume read_field(const std::string& path, const LabelVolume& after, Repor
   return field;
 }
 
-// What the field, the rig and the pose add to the comparison of two volumes.
+// Adds to the report what can only be measured with the displacement field, and with the rig and the pose if given.
 void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after,
                         const TissueTable& tissues, Report& report) {
   JudgedPose judged{.rest = before, .posed = after, .tissues = tissues};

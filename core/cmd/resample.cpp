@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS [--method
-// lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints]
-//        [--contact] [--quality draft|normal|fine] [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]]
-//        [--steps NAME] -o OUT [--report R.json] [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]]
-//        [--with GREY=OUT2]
-//        [--landmarks IN.csv=OUT.csv] [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames
-//        FIRST:LAST[:STEP]] [--strict] [--threads N] [--progress json]
+// limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS
+//   [--method lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints] [--contact] [--quality draft|normal|fine]
+//   [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json]
+//   [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--landmarks IN.csv=OUT.csv]
+//   [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--strict]
+//   [--threads N] [--progress json]: poses a label volume, or a sequence of frames.
 #include "core/resample/resample.h"
 
 #include <cstdlib>
@@ -52,13 +51,13 @@ struct Options {
   std::string weights, method = deformation_methods().front().word, output, report, grey, field,
                        field_direction = kToPosed, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm",
                        landmarks, steps, seams, glide;
-  std::string frames;  // of the motion: FIRST:LAST[:STEP]
+  std::string frames;  // frames of the motion, FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
   bool nearest = false, mass_exact = false, fit_joints = false, contact = false, strict = false;
 };
 
-// IN=OUT, of what a pose takes along.
+// A request IN=OUT: a file that is posed like the volume, and the output for it.
 struct Companion {
   std::string from, to;
 };
@@ -76,7 +75,7 @@ Companion landmark_paths(const std::string& request) {
   return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv");
 }
 
-// The same request for one frame of a sequence, each output with the frame's number in its name.
+// Returns the options for one frame of a sequence. The outputs' names contain the frame's number.
 Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
@@ -86,7 +85,7 @@ Options of_frame(const Options& options, int frame) {
   return one;
 }
 
-// NAME is NAME.node, as TetGen names it; another ending of a mesh says its format.
+// Returns the path of the mesh file: NAME.node, as TetGen names it, unless NAME's extension is that of another format.
 Path mesh_path(const Path& name) {
   if (name.extension() == ".ele") return Path(name).replace_extension(".node");
   const Exporter* exporter = exporter_for(name);
@@ -103,7 +102,8 @@ FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
   };
 }
 
-// Tells the files of an output option, whose value gets each of the endings; with none, what a volume of that name is.
+// Returns a function that lists the files of an output option: its value with each of the endings. Without endings,
+// these are the files of a volume.
 FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
   return [options, endings](const std::string& value) {
     OptionFiles files;
@@ -116,7 +116,7 @@ FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std
   };
 }
 
-// Of IN=OUT.
+// Returns a function that lists the files of an option with the value IN=OUT.
 FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
   return [options](const std::string& value) {
     const Companion pair = companion(value, "input", "IN=OUT");
@@ -127,7 +127,7 @@ FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
   };
 }
 
-// Before anything is computed.
+// Checks that every output can be written, before any computation.
 void check_outputs(const Options& options) {
   check_writable(options.output);
   std::vector<std::string> outputs = {options.output, options.field, options.jacobian, options.overlap};
@@ -144,7 +144,7 @@ void check_outputs(const Options& options) {
     if (!other.empty()) check_place(other);
 }
 
-// Kept for the report, and shown at once.
+// Prints the warnings at once and also adds them to the report.
 void note(Report& report, const std::vector<std::string>& warnings) {
   warn(warnings);
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
@@ -177,7 +177,7 @@ void check_sequence(const Options& options) {
                   "put {frame} into its name, as in posed_{frame}.nrrd");
 }
 
-// Options that go with others only.
+// Throws Error for options that need other options or exclude each other.
 void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact",
@@ -195,7 +195,8 @@ void check_method(const Options& options) {
                   "use --method fem, or leave it out");
 }
 
-// How far the solve is, for the user, with what it takes to the end at the pace so far; and for a program that watches.
+// Reports the progress of a solve to the user, with an estimate of the remaining time. With --steps, also writes each
+// step to a file for another program.
 class SolveProgress {
  public:
   SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones,
@@ -205,7 +206,7 @@ class SolveProgress {
         bones_(bones),
         rig_(rig),
         pose_(pose) {}
-  // What is solved from now on.
+  // Sets the pose that the following steps solve.
   void aim_at(const Pose& pose) { pose_ = pose; }
   void begin(const TissueModel& model) const {
     if (!name_.empty()) write_fem_mesh(fem_mesh_of(model), name_);
@@ -216,7 +217,7 @@ class SolveProgress {
     const double left = step.reached > 0 ? watch_.seconds() * (1 / step.reached - 1) : 0;
     progress_.show({step.reached, step.reached * largest_angle_degrees(pose_), step.iteration, step.residual, left});
   }
-  // Where everything has come to rest.
+  // Writes the final step of the solve to the file of --steps.
   void end(const FemShape& shape) const {
     leave({shape.reached, shape.solve.iterations, shape.solve.residual_mm, {}, shape.V});
   }
@@ -247,7 +248,7 @@ Method method_of(const Options& options, SolveProgress& solve) {
   return fem;
 }
 
-// Says what a user must know of a mesh and a solve that did not go as asked.
+// Warns the user where the mesh or the solve is not as requested.
 void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bool contact) {
   if (deform.mesh && !deform.mesh->fallback.empty()) note(report, {deform.mesh->fallback});
   if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
@@ -263,7 +264,7 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
                 (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 
-// The posed mesh with organ numbers as regions: that of the label that fills most of a tet.
+// Returns the posed mesh. The region of a tet is the organ number of the label that fills most of the tet.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   const TissueModel& model = shape.model;
   const TetMesh& mesh = model.fem.mesh;
@@ -308,7 +309,7 @@ void describe(Report& report, const Options& options, const Armature& rig, const
     if (!path.empty()) report.inputs.push_back(describe_input(path));
 }
 
-// The mesh with organ numbers: as NAME.node and NAME.ele with NAME.material, or as the name asks for.
+// Writes the mesh with organ numbers: as NAME.node, NAME.ele and NAME.material, or in the format of NAME's extension.
 void write_mesh(const Options& options, const TissueTable& tissues, const LabelVolume& posed, const FemShape& shape) {
   TetMesh mesh = posed_mesh(shape, tissues);
   if (options.mesh_unit == "cm") mesh.V /= 10;
@@ -336,7 +337,7 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
-// Of the tissues that are large enough to be held to it, what did not get its mass to a tenth of a percent.
+// Warns of tissues with 5000 voxels or more whose mass still differs from its mass at rest by more than 0.1 %.
 void note_masses(Report& report, const MassExactReport& exact, const TissueTable& tissues) {
   for (const auto& [label, tissue] : exact.tissues) {
     if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
@@ -348,7 +349,7 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   }
 }
 
-// Of a pose, beside the posed volume.
+// The landmarks in the rest pose, and the tissue and weights that pose them.
 struct Landmarks {
   std::vector<Landmark> rest;
   const TissueVoxels& tissue;
@@ -367,8 +368,8 @@ std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options&
   return there;
 }
 
-// What the volumes and the map between them tell, judged.
-//   asked  #bones, posed from rest, of the pose and the rig as they were given
+// Measures the posed volume for the report.
+//   asked  #bones; transforms from rest to the requested pose, with the rig as given
 void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed,
              Report& report) {
   report.doubts = body.doubts;
@@ -384,7 +385,7 @@ void measure(const Body& body, const Pose& pose, const std::vector<RigidTransfor
   report.deform = std::move(posed.report);
 }
 
-// Weights from a file may be older than the rig, or painted by another program.
+// Warns of bones that follow a wrong rig bone: a weights file may be older than the rig or from another program.
 void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed,
                           Report& report) {
   const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
@@ -392,7 +393,7 @@ void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& l
                                         motions, body.bone_map)));
 }
 
-// Everything of one pose that is posed now. False where a gate of the body failed.
+// Writes the outputs and the report of one posed volume. Returns false where a strict gate of the report failed.
 bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked,
             const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
@@ -462,7 +463,7 @@ void run(const Options& options) {
 
   const Stopwatch weighting;
   TissueVoxels tissue(body.file.volume);
-  std::optional<BoneParts> known_parts;  // they take their time, and weights with seams do without
+  std::optional<BoneParts> known_parts;  // computed only when needed, since splitting bones is slow
   const auto parts = [&]() -> const BoneParts& {
     if (!known_parts)
       known_parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
@@ -474,7 +475,7 @@ void run(const Options& options) {
   else set_seams(tissue, options.seams, body, parts, progress);
   if (given) note(report, given->warnings);
   const SkinWeights weights = given ? std::move(given->weights) : new_weights(body, tissue, parts(), report, progress);
-  std::vector<std::vector<RigidTransform>> asked;  // fitting changes rig and pose
+  std::vector<std::vector<RigidTransform>> asked;  // requested poses, before fitting changes them and the rig
   for (const Pose& pose : poses) asked.push_back(posed_from_rest(body.rig, pose));
   if (options.fit_joints) {
     FittedPose fitted = fit_joints(body.file.volume, tissue, parts(), body.rig, poses[0], progress);
@@ -484,7 +485,7 @@ void run(const Options& options) {
   }
   report.seconds.weights = weighting.seconds();
   const Stopwatch gliding;
-  std::vector<std::vector<GlidedJoint>> glided;  // by pose; empty where joints do not glide
+  std::vector<std::vector<GlidedJoint>> glided;  // the shifted joints of each pose; empty where joints do not glide
   SkinWeights resampled = weights;
   const glm::dvec3 voxel = body.file.volume.grid.spacing;
   if (const auto settings = glide_settings(options.glide, options.pose, std::max({voxel.x, voxel.y, voxel.z}))) {

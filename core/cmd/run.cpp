@@ -50,7 +50,7 @@ int told(const std::string& line, int exit_code) {
   return exit_code;
 }
 
-// What CLI11 has to say: of help and the version on stdout, of usage on stderr.
+// Prints CLI11's message: help and version go to stdout, usage errors to stderr.
 int told_by_parser(const CLI::App& app, const CLI::ParseError& error) {
   std::ostringstream out, err;
   const int code = app.exit(error, out, err);
@@ -79,7 +79,7 @@ int run_command(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return told("there is not enough memory: this request: use a coarser spacing or a smaller volume", 1);
   } catch (const std::system_error& error) {
-    // A thread that cannot be started.
+    // This error means that the system could not start another thread.
     const bool lacks_room = error.code() == std::errc::resource_unavailable_try_again;
     if (lacks_room)
       return told(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a command is told where tissue touches without being one: [--seams FILE|none].
+// The option that names seams, the voxel faces where tissue touches without being connected: [--seams FILE|none].
 #pragma once
 
 #include <functional>
@@ -13,11 +13,12 @@
 
 namespace limber::cmd {
 
-// `seams` must live as long as the command.
+// Adds the option. `seams` must live as long as the command.
 void add_seam_option(CLI::App& command, std::string& seams);
 
-// Into `tissue`: those of the file, none, or where nothing is said those that are found.
-//   parts  asked only where seams are looked for
+// Sets the seams of `tissue` as the option --seams says: the seams of its file, or none. Without the option they are
+// found automatically.
+//   parts  splits the bones; called only when seams must be found
 void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body,
                const std::function<const BoneParts&()>& parts, Progress& progress);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber skin-points CASE.json --method lbs|dqs [--json]
-// Points of a skin-ref/1 case through the blend kernel, for checking against other programs. A case holds:
+// limber skin-points CASE.json --method lbs|dqs|mix [--json]
+// Poses the points of a skin-ref/1 test case by skinning, to compare the result with other programs. A case contains:
 //   bones[]{rest[16], pose[16]}      row-major 4x4, world from bone, at rest and posed
-//   rest[]                           flat xyz of the points
-//   influence_offsets[] influence_bones[] influence_weights[]    point i has those from offsets[i] up to offsets[i + 1]
+//   rest[]                           x y z of each point
+//   influence_offsets[] influence_bones[] influence_weights[]
+//                                    point i has the influences from offsets[i] up to, without, offsets[i + 1]
 #include <cmath>
 #include <memory>
 
@@ -72,7 +73,7 @@ class CaseReader {
     return values;
   }
 
-  // Row-major in the file.
+  // Reads a 4x4 matrix, which the file stores row by row.
   glm::dmat4 matrix(const nlohmann::json& object, const char* key) const {
     const auto values = numbers(object, key);
     if (values.size() != 16) fail("\"" + std::string(key) + "\" of a bone is not 16 numbers", "give a 4x4 matrix");

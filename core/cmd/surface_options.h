@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How tissues' surfaces are asked for on the command line, and written.
+// The surfaces of tissues on the command line: chooses the tissues and writes the files.
 #pragma once
 
 #include <string>
@@ -16,12 +16,12 @@ namespace limber::cmd {
 void add_surfaces(CLI::App& app);
 
 struct SurfaceChoice {
-  std::vector<std::string> tissues;  // names or labels, as the volume's table has them; none: all
+  std::vector<std::string> tissues;  // names or labels in the volume's tissue table; empty: all tissues
   LabelSurfaceSettings settings;
 };
 
-// Writes them and prints a line a tissue: triangles, vertices, Euler number, volume by mesh and by voxels.
-//   throws Error for a tissue that is not there, or when a file cannot be written (none is left then)
+// Writes the surfaces and prints one line for each tissue: triangles, vertices, Euler number, volume of the mesh and
+// volume of the voxels. Throws Error for an unknown tissue, or when a file cannot be written; then no file is left.
 void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice,
                        const std::string& output, Progress& progress);
 

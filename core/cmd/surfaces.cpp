@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber surfaces VOLUME -o OUT.obj|glb|stl|ply [--tissues T] [--only A,B] [--relax N]
+// limber surfaces VOLUME -o OUT.obj|glb|stl|ply [--tissues T] [--only A,B] [--relax N]: writes closed, smooth surfaces
+// of tissues. Neighbouring tissues share the surface between them.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -51,7 +52,7 @@ void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const T
           surface.vertex.size(), surface.euler_number(), mm3, 100 * mm3 / by_voxels);
   }
 }
-// The file, or what stands there already as a file of a tissue.
+// Returns the output file of that name, and existing files of single tissues that would be overwritten.
 OptionFiles files_of_surfaces(const std::string& name) {
   const Path path = name;
   OptionFiles files{{}, {path}};

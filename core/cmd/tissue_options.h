@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What commands are told of tissues' materials: [--tissues T] [--frequency HZ] [--properties P.csv].
+// The options for the materials of tissues: [--tissues T] [--frequency HZ] [--properties P.csv].
 #pragma once
 
 #include <optional>
@@ -14,17 +14,18 @@
 namespace limber::cmd {
 
 struct MaterialOptions {
-  std::string tissues, properties;  // files
+  std::string tissues, properties;  // file names
   std::optional<double> frequency;  // Hz
 };
 
-// Returns the option --frequency. `options` must live as long as the command.
+// Adds the options and returns --frequency. `options` must live as long as the command.
 CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options);
 
-// What the file says of its labels, completed by the user's table where one is given.
+// Returns the tissue table of the volume's file. If the user names a table, its values take precedence.
 TissueTable tissues_of(const VolumeFile& file, const std::string& table);
 
-// Of every tissue of the table. Throws Error without a frequency, and where one has no properties: `where` is the file.
+// Returns the material of every tissue. Throws Error without a frequency, and for a tissue without properties.
+//   where  the file's name in messages
 std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
                                          const std::string& where);
 

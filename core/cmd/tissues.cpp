@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: permittivity,
-// conductivity and density of each tissue of a volume, or of every row of the table, each with the row that it was
-// matched to, and how.
+// limber tissues [VOLUME] --frequency HZ [--tissues T] [--properties P.csv] [--json] [-o OUT.csv]: lists permittivity,
+// conductivity and density of each tissue of a volume, or without a volume of every row of the property table. Each
+// tissue is listed with the table row that it was matched to, and how it was matched.
 #include <cstdio>
 #include <memory>
 
@@ -68,7 +68,7 @@ void print_table(const TissueMaterials& tissues) {
           one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
 }
 
-// The user's rows and the program's, each as if it were a tissue.
+// Returns a tissue for each row of the user's table and of the program's own table.
 TissueTable rows_as_tissues(const DielectricTable& table) {
   std::vector<TissueNames> all(table.names.begin(), table.names.begin() + static_cast<std::ptrdiff_t>(table.user_rows));
   for (const TissueRow& row : tissue_rows().rows)

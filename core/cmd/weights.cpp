@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none] -o
-// W.nrrd [--bender-dir DIR] [--strict]
+// limber weights VOLUME --rig RIG [--tissues T] [--bones L,L] [--method heat|geodesic|rigid] [--seams FILE|none]
+//   -o W.nrrd [--bender-dir DIR] [--strict]: computes the weights by which tissue follows the bones.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -41,7 +41,7 @@ void print_table(const BoneParts& parts, const Armature& armature) {
       print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
 }
 
-// Which rig bone each label of bone follows, and how that was found.
+// Prints which rig bone each bone label follows, and how that was found.
 void print_identities(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
   print("\n%-44s %-20s %10s   %s\n", "bone tissue", "follows", "voxels", "found by");
   for (const auto& identity : parts.identities) {
@@ -53,8 +53,8 @@ void print_identities(const BoneParts& parts, const TissueTable& tissues, const 
   }
 }
 
-// The gates that weights can be judged by before any pose: whether the inputs belong together, and each named bone
-// follows its own rig bone.
+// Judges the two gates that need no pose: whether the inputs belong together, and whether each named bone follows its
+// own rig bone. Prints both, and returns the sentences of those that fail.
 std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& tissue, const SkinWeights& weights) {
   Report report;
   report.doubts = body.doubts;
@@ -69,7 +69,7 @@ std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& t
   return failed_gates(report);
 }
 
-// What stands in the folder already under names that are written.
+// Returns the existing files in the folder that would be overwritten.
 OptionFiles files_of_bender_folder(const std::string& folder) {
   OptionFiles files;
   std::error_code error;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The sums that blends are built from, inline because they run for every corner of every cell. Spans of (bone, weight)
-// of any length; weights need not sum to one. A point stays at rest where the weights sum to zero.
+// Weighted sums over the bones of a point, from which the blends are built. They are inline because they run for every
+// corner of every cell. Influences are spans of (bone, weight) of any length; weights need not sum to one. A point
+// stays at rest where its weights sum to zero.
 #pragma once
 
 #include <array>
@@ -10,13 +11,14 @@
 
 namespace limber {
 
-// The image of a point under the affine map `m`: three columns, then the translation.
+// Returns the image of a point under the affine map `m`: three columns, then the translation.
 inline glm::dvec3 transform(const std::array<double, 12>& m, const glm::dvec3& p) {
   return {m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9], m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
           m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]};
 }
 
-// The image of a point under a dual quaternion of any length [Kavan 2008, 4.1: normalize, then transform, in one].
+// Returns the image of a point under a dual quaternion of any length [Kavan 2008, 4.1]: normalizes and transforms at
+// once.
 inline glm::dvec3 transform(const std::array<double, 8>& dq, const glm::dvec3& p) {
   const double w = dq[0];
   const glm::dvec3 v(dq[1], dq[2], dq[3]), d(dq[5], dq[6], dq[7]);
@@ -25,7 +27,7 @@ inline glm::dvec3 transform(const std::array<double, 8>& dq, const glm::dvec3& p
   return p + move * (2 / squared_length);
 }
 
-// Adds weight * q with the sign that agrees with the sum so far, because q and -q are the same rotation.
+// Adds weight * q or weight * -q to the sum, whichever points in the sum's direction: q and -q are the same rotation.
 inline void add_aligned(std::array<double, 8>& sum, const std::array<double, 8>& q, double weight) {
   const double dot = sum[0] * q[0] + sum[1] * q[1] + sum[2] * q[2] + sum[3] * q[3];
   const double signed_weight = dot < 0 ? -weight : weight;
@@ -44,7 +46,8 @@ inline glm::dvec3 blend_linear(std::span<const SkinTransform> bones, std::span<c
   return total > 0 ? p + transform(sum, p) / total : p;
 }
 
-// Stretched: whether a bone may stretch; its stretches are blended linearly and applied first.
+// Returns the point blended by dual quaternions.
+//   Stretched  whether bones may stretch: their stretches are then blended linearly and applied first
 template <bool Stretched>
 glm::dvec3 blend_dual(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                       const glm::dvec3& p) {

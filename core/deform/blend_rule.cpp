@@ -3,14 +3,14 @@
 
 namespace limber {
 
-// Each is defined in a source of core/deform/blends.
+// Each rule is defined in a source file of core/deform/blends.
 extern const BlendRule kMixedBlend;
 extern const BlendRule kLinearBlend;
 extern const BlendRule kDualQuaternionBlend;
 
 namespace {
 
-// In the order of enum Blend.
+// The rules, in the order of enum Blend.
 constexpr const BlendRule* kBlends[] = {
     &kMixedBlend,
     &kLinearBlend,

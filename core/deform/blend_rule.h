@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The ways to blend the motions of bones, as one table: resampling, previews, commands, studies and the editor's lists
-// of methods read it. A new blend is one source in core/deform/blends and its line of kBlends in blend_rule.cpp.
+// A table of the methods that blend the motions of bones. Resampling, previews, commands, studies and the editor's
+// lists of methods read it. To add a blend, add one source file in core/deform/blends and one line to kBlends in
+// blend_rule.cpp.
 #pragma once
 
 #include <span>
@@ -18,17 +19,17 @@ struct BlendRule {
   const char* label;        // in lists and columns: "DQ"
   const char* name;         // in a study: "Dual quaternions"
   const char* summary;      // behind the word in --help: "dual quaternions"
-  const char* description;  // for a tooltip, a sentence
+  const char* description;  // one sentence, for a tooltip
 
-  Point point;            // returns the posed point where no bone stretches
-  Point stretched_point;  // returns it where bones may stretch
+  Point point;            // returns the posed point if no bone stretches
+  Point stretched_point;  // returns the posed point if bones may stretch
 
-  bool sums_displacements;     // a SkinTransform of several bones needs the sum of their displacements
-  bool sums_dual_quaternions;  // it needs the sum of their dual quaternions
-  bool settles_flesh;          // flesh gets its volume back after blending (settled_flesh.h)
+  bool sums_displacements;     // blending SkinTransforms needs the sum of the bones' displacements
+  bool sums_dual_quaternions;  // blending SkinTransforms needs the sum of the bones' dual quaternions
+  bool settles_flesh;          // corrects the volume of flesh after blending (settled_flesh.h)
 };
 
-// The table's rows; the first is taken where no method is named. Row i is the rule of Blend i.
+// Returns the rows of the table; the first is the default method. Row i is the rule of Blend i.
 std::span<const BlendRule* const> blend_rules();
 
 const BlendRule& rule_of(Blend blend);

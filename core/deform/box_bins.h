@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which of many boxes reach into a box. Boxes are of whole voxels; they are sorted into cubic bins.
+// Finds which of many boxes intersect a given box. Boxes are ranges of whole voxels; they are sorted into cubic bins.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace limber {
 class BoxBins {
  public:
   BoxBins() = default;
-  //   boxes  #B; empty ones are never found       bin  voxels along each edge of a bin
+  //   boxes  boxes to search; empty ones are never found
+  //   bin    edge of a bin, voxels
   BoxBins(std::vector<VoxelRange> boxes, int bin) : boxes_(std::move(boxes)), bin_(bin) {
     VoxelRange all;
     for (const VoxelRange& box : boxes_)
@@ -29,7 +30,7 @@ class BoxBins {
     for_each_entry([&](std::int64_t bin_at, int box) { entries_[end[bin_at]++] = box; });
   }
 
-  // The boxes that meet `range`, rising, written into `found`.
+  // Writes the indices of the boxes that intersect `range` into `found`, ascending.
   void meeting(const VoxelRange& range, std::vector<int>& found) const {
     found.clear();
     if (begin_.empty() || range.empty()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which motion the tissue of each brick follows. Much of a posed limb follows one bone wholly, or bones that move as
-// one: they are counted as one, the first of them.
+// Finds the motion that the tissue of each brick follows. Much of a posed limb follows one bone with full weight, or
+// several bones with the same motion. Bones with the same motion count as one: the first of them.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ namespace limber {
 struct BrickMotions {
   static constexpr int kSeveral = -1;
 
-  std::vector<int> moves_as;  // by bone: the first bone that moves as it does
-  std::vector<int> around;    // by brick: what all tissue of it and of the bricks around it moves as, or kSeveral
+  std::vector<int> moves_as;  // by bone: the first bone with the same motion
+  std::vector<int> around;    // by brick: bone whose motion all its tissue and all adjacent bricks follow, or kSeveral
 
-  //   posed_from_rest  by bone of `weights`
+  //   posed_from_rest  motions of the bones of `weights`
   BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights,
                const std::vector<RigidTransform>& posed_from_rest);
 };

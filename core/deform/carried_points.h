@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Points that a tet mesh carries, found once at rest and then posed as often as the mesh moves. A point in the mesh
-// goes with its tet; one beside it, no further than some mm, with the nearest place of its border, turned by the
-// rotation of the tet there. A point may be tied to an anchor instead: it then goes as if it were fixed to the tissue
-// around that, however far the point itself lies; so the corners of a lattice cell follow the one of two fingers that
-// they are meant for.
+// Points that a tet mesh carries: located in the mesh once at rest, then posed as often as the mesh moves. A point in
+// the mesh moves with its tet. A point near the mesh moves with the nearest point of the mesh's border, and rotates
+// with the tet there. A point may have an anchor other than its own position: it then moves as if it were fixed to the
+// tissue at the anchor, however far away the point is. So the corners of a lattice cell follow the finger that they
+// belong to, and not the one beside it.
 #pragma once
 
 #include <array>
@@ -17,26 +17,27 @@
 namespace limber {
 
 struct PointToCarry {
-  glm::dvec3 rest;    // voxel coordinates
-  glm::dvec3 anchor;  // likewise; the point itself, where it is its own
+  glm::dvec3 rest;    // position at rest, voxel coordinates
+  glm::dvec3 anchor;  // voxel coordinates; equal to `rest` for a point without its own anchor
 };
 
 class CarriedPoints {
  public:
-  //   furthest_mm  from an anchor to the mesh
+  //   furthest_mm  points whose anchor is further than this from the mesh are not carried
   CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points,
                 double furthest_mm);
 
   const std::shared_ptr<const TetMesh>& mesh() const { return mesh_; }
-  // Where they are, voxel coordinates; none for those that are too far from the mesh.    posed  #V by 3, world, mm
+  // Returns the posed points in voxel coordinates; nothing for points that the mesh does not carry.
+  //   posed  #V by 3 posed nodes, world, mm
   std::vector<std::optional<glm::dvec3>> posed(const Eigen::MatrixX3d& posed) const;
 
  private:
   struct Hold {
-    int tet = -1;  // -1: none
+    int tet = -1;  // -1: the mesh does not carry the point
     std::array<int, 4> nodes{};
     std::array<double, 4> shares{};
-    glm::dvec3 off{0};  // from what the shares say to the point, mm, at rest
+    glm::dvec3 off{0};  // offset of the point from the weighted mean of its nodes, at rest, mm
   };
   Hold hold_in(int tet, const glm::dvec3& world) const;
 

@@ -14,16 +14,16 @@ namespace {
 
 using Voxels = std::array<std::uint64_t, 8>;
 
-constexpr double kHold = 1000;  // of tissue that follows one bone wholly over what is blended
-constexpr int kGrain = 16;      // bricks
+constexpr double kHold = 1000;  // factor on the weights of tissue that follows one bone with full weight
+constexpr int kGrain = 16;      // bricks per task
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101, kLastColumn = kFirstColumn << 7;
 
 bool is_empty(const Voxels& voxels) {
   return std::all_of(voxels.begin(), voxels.end(), [](std::uint64_t slice) { return slice == 0; });
 }
 
-// What hangs together with the first of `voxels`.
-//   cuts  null: none
+// Returns the connected component that contains the first of `voxels`.
+//   cuts  faces between voxels that do not connect them; null: none
 Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   const auto open = [&](int axis, int z) { return cuts ? ~(*cuts)[axis][z] : ~std::uint64_t{0}; };
   Voxels piece{};
@@ -44,8 +44,8 @@ Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   return piece;
 }
 
-// The tissue of one cell of a brick.
-//   low  its lowest voxel, from the brick's
+// Returns the tissue voxels of one cell of a brick.
+//   low  the cell's lowest voxel, relative to the brick's lowest voxel
 Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int step) {
   std::uint64_t rows = 0;
   for (int y = 0; y < step; ++y) rows |= ((std::uint64_t{1} << step) - 1) << (8 * y);
@@ -54,8 +54,8 @@ Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int st
   return voxels;
 }
 
-// Null where none of the cell's voxels has a cut face.
-//   lowest  voxel of the cell
+// Returns which faces of a cell's voxels a seam cuts; null: none.
+//   lowest  the cell's lowest voxel
 std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels, const glm::ivec3& lowest) {
   CellCuts cuts{};
   bool any = false;
@@ -68,7 +68,8 @@ std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels
   return any ? std::make_shared<const CellCuts>(cuts) : nullptr;
 }
 
-// Adds up what the voxels of one brick give to their pieces.
+// Splits the tissue of one brick into pieces (connected components in each cell), and sums up the weights that their
+// voxels give to the corners of their cells.
 class Gather {
  public:
   Gather(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing)
@@ -127,7 +128,8 @@ class Gather {
   }
 
  private:
-  //   t  place in the cell
+  // Adds a voxel's weights to the corners of its cell, by its trilinear shares.
+  //   t  position in the cell, [0, 1]^3
   void add(const Influence& influence, std::int64_t piece, const glm::dvec3& t) {
     const double hold = influence.weight[0] == kFullWeight ? kHold : 1;
     for (int n = 0; n < 4 && influence.weight[n]; ++n) {
@@ -144,7 +146,8 @@ class Gather {
     }
   }
 
-  //   voxel  from the cell's lowest
+  // Adds a voxel to its piece: to the subcells, the distances from corners and the tissue that follows one bone.
+  //   voxel  relative to the cell's lowest voxel
   void add(const Influence& influence, CellPiece& piece, const glm::ivec3& voxel) {
     const glm::ivec3 at = voxel * 4 / step_;
     const std::uint64_t place = std::uint64_t{1} << (at.x + 4 * (at.y + 4 * at.z));
@@ -167,7 +170,7 @@ class Gather {
   const SkinWeights& weights_;
   int step_;
   glm::dvec3 spacing_;
-  std::int64_t count_ = 0;  // pieces of the brick
+  std::int64_t count_ = 0;  // number of pieces in the current brick
   std::array<std::uint16_t, 512> piece_of_;
   std::vector<int> slot_of_, bones_;
   std::vector<float> sums_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue of coarse cells of step^3 voxels, in pieces that hang together: voxels of one cell that touch by faces.
-// Two fingers that pass through one cell are two pieces of it, and so are the two sides of a seam. Each piece says how
-// much of what influence it gives to the corners of its cell: every voxel its trilinear share, and tissue that follows
-// one bone wholly, as bone does, a thousand times as much as what is blended, so that bones stay stiff up to their
-// border.
+// Splits the tissue in coarse cells of step^3 voxels into pieces: the connected components (by faces) of the tissue in
+// one cell. Two fingers that pass through one cell are two pieces, and so are the two sides of a seam. Each piece has
+// the bone weights that it gives to the corners of its cell; every voxel counts by its trilinear shares. Tissue that
+// follows one bone with full weight, as bone does, counts a thousand times as much as blended tissue, so that bones
+// stay stiff up to their border.
 #pragma once
 
 #include <array>
@@ -17,54 +17,58 @@
 
 namespace limber {
 
-// By axis, the voxels of a cell whose upper face there is cut by a seam; bits as CellPiece::voxels.
+// The voxels of a cell whose upper face along each axis (first index) is cut by a seam; bits as in CellPiece::voxels.
 using CellCuts = std::array<std::array<std::uint64_t, 8>, 3>;
 
 struct CellPiece {
-  // What a piece gives to a corner of its cell; bit 0 of the corner is x, bit 1 y, bit 2 z.
+  // The weight of a bone that a piece gives to a corner of its cell. Bits 0, 1 and 2 of the corner's index are x, y and
+  // z.
   struct Share {
     int corner, bone;
     float weight;
   };
 
-  // Tissue that follows one bone wholly, as 4^3 places of the cell, x fastest.
+  // The tissue of the piece that follows one bone with full weight: bits for the 4^3 subcells of the cell, x fastest.
   struct Stiff {
     int bone;
     std::uint64_t places;
   };
 
-  glm::ivec3 cell;                                 // holds the voxels cell step .. cell step + step - 1
-  std::array<std::uint64_t, 8> voxels;             // bit x + 8 y of word z, from the cell's lowest voxel on
-  std::uint64_t places = 0;                        // of the 4^3 of the cell, x fastest, those with tissue of the piece
-  std::array<float, 8> away;                       // mm2 from each corner to the nearest voxel
-  std::vector<Share> shares;                       // by bone, corners rising
-  std::vector<Stiff> stiff;                        // bones rising
-  std::shared_ptr<const CellCuts> cuts = nullptr;  // null where no seam is near
+  glm::ivec3 cell;                      // the cell contains the voxels cell * step .. cell * step + step - 1
+  std::array<std::uint64_t, 8> voxels;  // bit x + 8 y of word z, counted from the cell's lowest voxel
+  std::uint64_t places = 0;             // bits for the 4^3 subcells that contain tissue of the piece, x fastest
+  std::array<float, 8> away;            // squared distance of each corner from the piece's nearest voxel, mm2
+  std::vector<Share> shares;            // grouped by bone, then ascending by corner
+  std::vector<Stiff> stiff;             // ascending by bone
+  std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: none
 };
 
-// The pieces in order of the bricks that hold them; a cell lies in one brick and its pieces behind one another.
-//   step  2, 4 or 8    spacing  of voxels, mm
+// Returns the pieces of all cells in the order of their bricks. Pieces of one cell follow each other, and a cell lies
+// in one brick.
+//   step     edge of a cell in voxels: 2, 4 or 8
+//   spacing  size of a voxel, mm
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing);
-// Of some bricks only.
+// Returns the pieces in the given bricks only.
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing, std::span<const std::int64_t> bricks);
 
-// Whether voxels of both touch by faces that are not cut, `b` lying in the next cell along the axis.
+// Returns whether voxels of pieces a and b touch by faces that no seam cuts. The cell of `b` follows that of `a` along
+// `axis`.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);
 
-// Pieces by cell.
+// Finds the pieces of a cell.
 class PiecesByCell {
  public:
-  //   first, size  box of cells that holds them all
+  //   first, size  lowest cell and size of a box of cells that contains all pieces
   PiecesByCell(const std::vector<CellPiece>& pieces, const glm::ivec3& first, const glm::ivec3& size);
-  // Of any cell.
+  // Returns the pieces of a cell, which may lie outside the box.
   std::span<const CellPiece> of(const glm::ivec3& cell) const;
 
  private:
   const std::vector<CellPiece>* pieces_;
   glm::ivec3 first_, size_;
-  std::vector<std::int32_t> begin_;  // by cell of the box, -1 without any
+  std::vector<std::int32_t> begin_;  // by cell of the box: index of its first piece, -1: none
 };
 
 }  // namespace limber

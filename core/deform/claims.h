@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes what cells say of voxels into an inverse map, by the rules of inverse_map.h. A cell is the rest voxel that the
-// rest point lies in, whatever shape carried it there.
+// Enters claims into an inverse map, by the rules of inverse_map.h. A claim says that the posed image of a cell (a cube
+// or a tet) covers a voxel's centre; its cell is the rest voxel around the claim's rest point.
 #pragma once
 
 #include "core/deform/inverse_map.h"
@@ -9,7 +9,8 @@ namespace limber {
 
 class Claims {
  public:
-  //   priority  of the tissue, per label       depth  nullptr where no pose can make a fold
+  //   priority  priority of each label's tissue
+  //   depth     nullptr: the pose cannot make a fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
       : map_(map),
         volume_(volume),
@@ -27,7 +28,7 @@ class Claims {
     if (wins) write(cell, claim, at);
   }
 
-  // The same where no cell was before.
+  // Enters the claim only if no other cell has the voxel yet.
   void claim_empty(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
     const std::int64_t at = map_.index(claim.voxel);
     if (map_.cell[at] == InverseMap::kNoCell) write(cell, claim, at);
@@ -39,7 +40,9 @@ class Claims {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(1)));
   }
 
-  //   rest_voxel  of the claim that meets the holder of the voxel      loser  the one of both that lost
+  // Marks an overlap at a voxel that another cell has already, unless both cells are neighbours at rest.
+  //   rest_voxel  cell of the new claim
+  //   loser       whichever of the two cells does not get the voxel
   void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser) {
     const std::uint32_t holder = map_.cell[at];
     const glm::ivec3 size = volume_.grid.size;

@@ -16,9 +16,10 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 
-using Eight = FloatLanes<kBrick / 4>;  // eight neighbouring lines, voxel by voxel
+using Eight = FloatLanes<kBrick / 4>;  // one voxel of each of eight neighbouring lines
 
-// The least of f[j] + (i - j)^2 squared_spacing over j, for eight lines at once. Air, of height zero, must bound them.
+// Returns the minimum over j of f[j] + (i - j)^2 squared_spacing, for eight lines at once. `f` points at element i.
+// Air, with the value zero, must bound the lines at both ends.
 Eight lowest_around(const Eight* f, double squared_spacing) {
   Eight lowest = *f;
   for (std::ptrdiff_t steps = 1;; ++steps) {
@@ -65,7 +66,7 @@ void TissueDepth::for_each_column(int axis, const Body& body) {
   });
 }
 
-// Squared distances along each line.
+// Computes the squared distance to the nearest air voxel along x, for each tissue voxel.
 void TissueDepth::pass_along_x(double spacing) {
   const double squared_spacing = spacing * spacing;
   for_each_column(0, [&](const std::vector<int>& column) {
@@ -92,9 +93,9 @@ void TissueDepth::pass_along_x(double spacing) {
 
 void TissueDepth::pass_across(int axis, double spacing) {
   const int along = axis == 1 ? kBrick : kBrick * kBrick,
-            across = axis == 1 ? kBrick * kBrick : kBrick;  // strides in a brick
+            across = axis == 1 ? kBrick * kBrick : kBrick;  // strides within a brick
   for_each_column(axis, [&](const std::vector<int>& column) {
-    std::vector<Eight> lines(column.size() * kBrick + 2);  // air at both ends
+    std::vector<Eight> lines(column.size() * kBrick + 2);  // one element of air at either end
     for (int slice = 0; slice < kBrick; ++slice) {
       Eight* line = &lines[1];
       for (const int brick : column)
@@ -112,13 +113,13 @@ void TissueDepth::pass_across(int axis, double spacing) {
 
 double TissueDepth::operator()(const glm::dvec3& rest) const {
   glm::ivec3 v(rest);
-  v -= glm::ivec3(glm::lessThan(rest, glm::dvec3(v)));  // whole numbers below; std::floor would be a call
+  v -= glm::ivec3(glm::lessThan(rest, glm::dvec3(v)));  // rounds down; std::floor would be a function call
   std::array<float, 8> at{};
   const glm::ivec3 in = v & 7;
   const auto is_inside = [](const glm::ivec3& low, const glm::ivec3& end) {
     return glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) && glm::all(glm::lessThan(low, end));
   };
-  if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {  // the eight voxels lie in one brick
+  if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {  // all eight voxels lie in one brick
     const int brick = tissue_->brick_at(v);
     if (brick < 0) return 0;
     const float* first = &depth_[std::int64_t{brick} * kBrickVoxels + in.x + 8 * in.y + 64 * in.z];

@@ -11,7 +11,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostCells = 250'000;  // a body at 3 mm in cells of 6 mm, one at 2 mm in cells of 8 mm
+// Upper limit on the number of cells (counted as if all were full), from which their size follows. A body of 3 mm
+// voxels gets cells of 6 mm, one of 2 mm voxels cells of 8 mm.
+constexpr std::int64_t kMostCells = 250'000;
 constexpr int kGrain = 1024;
 
 glm::ivec3 corner_of(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
@@ -23,7 +25,7 @@ std::vector<std::int64_t> bending_bricks(const BrickMotions& motions) {
   return bricks;
 }
 
-// The finest that does not make too many cells.
+// Returns the smallest step (cell edge in voxels) that does not give more than kMostCells cells.
 int step_for(const TissueVoxels& tissue, std::span<const std::int64_t> bricks) {
   std::int64_t voxels = 0;
   for (const std::int64_t b : bricks) voxels += tissue.bricks()[b].count();
@@ -32,7 +34,7 @@ int step_for(const TissueVoxels& tissue, std::span<const std::int64_t> bricks) {
   return step;
 }
 
-// Corners of pieces that are one node.
+// Disjoint sets of pieces' corners; the corners in one set become one node (union-find).
 class Joined {
  public:
   explicit Joined(std::size_t count) : first_(count) {
@@ -51,8 +53,7 @@ class Joined {
   std::vector<std::int32_t> first_;
 };
 
-// Numbers the nodes in the order of the cells.
-//   returns  the number of nodes
+// Numbers the nodes in the order of the cells that use them. Returns the number of nodes.
 std::int32_t number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3& grid_size, FleshCells& cells) {
   const PiecesByCell by_cell(pieces, glm::ivec3(0), (grid_size + cells.step - 1) / cells.step);
   Joined joined(8 * pieces.size());
@@ -81,7 +82,7 @@ std::int32_t number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3
   return count;
 }
 
-// What each node follows: all that the cells around it say of it.
+// Computes the blended position of each node, from the weights that all cells around the node give to it.
 void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid,
                  const std::vector<RigidTransform>& posed_from_rest, Blend blend, FleshCells& cells) {
   std::vector<std::int64_t> begin(cells.rest.size() + 1);
@@ -108,7 +109,7 @@ void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid,
   });
 }
 
-// Nodes beside tissue of bricks that move as one stay where that carries them.
+// Returns whether a node touches tissue of a brick that moves as one rigid body. Such nodes are fixed to that tissue.
 bool is_beside_rigid(const TissueVoxels& tissue, const BrickMotions& motions, const glm::ivec3& lowest_voxel) {
   for (int c = 0; c < 8; ++c) {
     const glm::ivec3 v = lowest_voxel - corner_of(c);

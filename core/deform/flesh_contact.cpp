@@ -11,11 +11,13 @@ namespace limber {
 namespace {
 
 constexpr int kGrain = 2048;
-constexpr double kApart = 1.5;  // of both depths together: nearer at rest, flesh is pressed or bent, not gone through
-constexpr double kMostlyBone = 0.2;   // cells of bone around a node
-constexpr double kLeastVolume = 0.1;  // of a cell whose inside is looked at
-constexpr double kLeastSlope = 0.3;   // of the depth: in the middle of a limb no side is nearest
-constexpr double kFurthest = 3;       // cells that one look moves a node by
+// Least distance at rest of two points in contact, in multiples of the sum of their depths below air. Flesh that is
+// nearer at rest is only compressed or bent.
+constexpr double kApart = 1.5;
+constexpr double kMostlyBone = 0.2;   // in cell volumes: a node with at least this much bone around it counts as bone
+constexpr double kLeastVolume = 0.1;  // cells pressed below this share of their volume are ignored
+constexpr double kLeastSlope = 0.3;   // a smaller depth gradient, as in the middle of a limb, gives no direction out
+constexpr double kFurthest = 3;       // longest motion of a node per look(), in cell edges
 constexpr std::int64_t kMostBins = 8'000'000;
 
 glm::dvec3 middle_of(const FleshCells& cells, std::int64_t cell, const std::vector<glm::dvec3>& at) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where a pose folds flesh into other flesh, and the way apart. A node that lies in a cell from elsewhere has gone
-// through a surface, and so has the cell: the two depths below air at rest together are how far, and each side goes
-// back by half of it, along the other's surface normal. Nearer at rest than one and a half times that, flesh is pressed
-// together or turned inside out, not gone through: that is not contact.
+// Finds where a pose folds flesh into other flesh, and how to move the two apart. A node inside a cell from another
+// part of the body has passed through a surface, and so has that cell. The sum of their two depths below air at rest
+// tells how far. The node and the cell each move back by half of it, along the other's surface normal. If the two are
+// nearer to each other at rest than 1.5 times that sum, flesh is only compressed or inverted, which is not contact.
 //
-// Lengths in mm along the volume's own axes, as in flesh_cells.h.
+// Lengths are in mm along the volume's own axes, as in flesh_cells.h.
 #pragma once
 
 #include <optional>
@@ -17,20 +17,22 @@ namespace limber {
 
 class FleshContact {
  public:
-  //   depth  below air at rest    spacing  of voxels
+  //   depth    depth below air at rest
+  //   spacing  size of a voxel, mm
   FleshContact(const FleshCells& cells, const TissueDepth& depth, const glm::dvec3& spacing);
 
-  // Looks where all cells lie now.
-  //   posed  by node
+  // Stores the posed positions and sorts the posed cells into bins, for way_apart().
+  //   posed  posed position of each node
   void look(const std::vector<glm::dvec3>& posed);
-  // Of a node of flesh, since the last look; none where it lies in no other flesh.
+  // Returns the motion that moves a node half of the way out of other flesh; nothing if it was in no other flesh at the
+  // last look().
   std::optional<glm::dvec3> way_apart(std::int32_t node) const;
 
  private:
   struct Cell {
-    glm::dvec3 middle;  // posed
+    glm::dvec3 middle;  // posed position of the cell's centre
     glm::dmat3 rest_from_posed;
-    bool is_flesh;  // neither bone nor turned inside out
+    bool is_flesh;  // the cell is neither mostly bone nor inverted
   };
   glm::ivec3 bin_of(const glm::dvec3& at) const { return glm::ivec3(glm::floor((at - first_) / bin_)); }
   std::size_t place(const glm::ivec3& bin) const {
@@ -39,15 +41,15 @@ class FleshContact {
   void fill_bins(const std::vector<std::pair<glm::ivec3, glm::ivec3>>& boxes);
 
   const FleshCells& cells_;
-  std::vector<float> depth_;            // by node
-  std::vector<glm::vec3> depth_slope_;  // by cell, at rest
-  std::vector<float> middle_depth_;     // by cell
+  std::vector<float> depth_;            // by node: depth below air at rest
+  std::vector<glm::vec3> depth_slope_;  // by cell: gradient of the depth at rest
+  std::vector<float> middle_depth_;     // by cell: mean depth of its nodes
   std::vector<Cell> posed_cells_;
   std::vector<glm::dvec3> posed_;
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};
-  std::vector<std::int64_t> begin_;  // by bin, then one more
+  std::vector<std::int64_t> begin_;  // #bins + 1: where the cells of each bin begin in cells_of_bins_
   std::vector<std::int32_t> cells_of_bins_;
 };
 

@@ -13,13 +13,13 @@ namespace limber {
 
 namespace {
 
-// The steps from the first point of a straight row on, at least 0, after which its points can lie in a box. Empty when
-// first > last.
+// The steps along a straight row of equidistant points, from its first point, at which a point can lie in a box. Empty
+// if first > last.
 struct Steps {
   int first, last;
 };
 Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& point, const glm::dvec3& next) {
-  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // steps; of points that rounding could take for out or in
+  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // in steps; the slack allows for rounding
   double first = 0, last = kMost;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = next[axis] - point[axis];
@@ -33,16 +33,17 @@ Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& po
   return {whole + (whole < first), static_cast<int>(last)};
 }
 
-// A cell of a brick, by its place there.
+// Returns the posed cell of one voxel of a brick.
+//   place  position of the voxel in the brick, 0 .. 7 on each axis
 PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_corner, const glm::ivec3& place) {
   return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0),
                    PosedLattice::place(0, 0, 1), brick_corner + place);
 }
 
-// The cells of a brick that bends, with shared corners or, where a seam is near, each with its own.
+// The posed cells of a brick that bends. Cells share corners; near a seam, each has its own corners.
 class BentBrick {
  public:
-  // Room for the brick's corners is needed where the lattice does not keep them.
+  // Computes the brick's corners into `room` if the lattice does not store them. `room` must outlive this object.
   BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lowest_(lattice.tissue().bricks()[brick].corner) {
     if (lattice.is_split(brick))
@@ -61,28 +62,28 @@ class BentBrick {
   const PosedLattice::Corners* shared_ = nullptr;
 };
 
-// A brick whose cells all move as one. Their bone's motion, read backward, gives the cell and the rest point at once;
-// only next to a cell's border, where the fixed-point corners decide, are cells asked.
+// A brick whose cells all move as one rigid body. The inverse of their bone's motion gives the cell and the rest point
+// at once. Only near a cell's border, where the rounded (fixed-point) corners decide, are cells rasterized one by one.
 class RigidBrick {
  public:
-  // Room for the brick's corners is needed where cells are asked.
+  // Computes the brick's corners into `room` if cells must be rasterized one by one. `room` must outlive this object.
   RigidBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lattice_(lattice),
         brick_(brick),
         room_(room),
         cells_(lattice.tissue().bricks()[brick]),
         rest_from_posed_(lattice.rest_from_posed(lattice.only_bone(brick))) {
-    // Corners are rounded to whole numbers of fixed point; as much again for what else is rounded.
+    // The slack covers the rounding of corners to fixed point (at most half a unit) twice, to allow for other rounding.
     const glm::dmat3& m = rest_from_posed_.linear;
     for (int row = 0; row < 3; ++row)
       slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);
   }
 
-  bool is_precise() const {
-    return slack_ < 0.1;
-  }  // voxels of the output are not a thousand times larger than those at rest
+  // Returns whether the slack is small relative to a cell. It is not if output voxels are a thousand times larger than
+  // those at rest.
+  bool is_precise() const { return slack_ < 0.1; }
 
-  // claim(rest voxel, CellClaim) for every voxel of `range` whose centre lies in one of the cells.
+  // Calls claim(rest voxel, CellClaim) for every voxel of `range` whose centre lies in one of the cells.
   template <class Claim>
   void rasterize(const VoxelRange& range, const Claim& claim) {
     const glm::dvec3 low = glm::dvec3(cells_.corner) - 0.5, step = rest_from_posed_.linear[0],
@@ -94,9 +95,9 @@ class RigidBrick {
         const Steps steps = within(glm::dvec3(-slack_), glm::dvec3(TissueVoxels::kBrick + slack_), row, row + step);
         for (int i = steps.first, last = std::min(steps.last, range.high.x - range.low.x); i <= last; ++i) {
           const glm::ivec3 voxel(range.low.x + i, y, z);
-          const glm::dvec3 place = row + double(i) * step;  // in the brick, cells as units
+          const glm::dvec3 place = row + double(i) * step;  // in cells, relative to the brick's lowest corner
           if (std::min({place.x, place.y, place.z}) < -slack_) continue;
-          // Whole numbers below; std::floor would be a call.
+          // The conversion rounds positive numbers down; std::floor would be a function call.
           const glm::ivec3 least = glm::ivec3(place + (1 - slack_)) - 1, most(place + slack_);
           if (least != most) ask(least, most, voxel, claim);
           else if (has(most)) claim(cells_.corner + most, CellClaim{voxel, low + place, posed_per_rest});
@@ -105,7 +106,7 @@ class RigidBrick {
   }
 
  private:
-  // The cells around a border.
+  // Rasterizes the cells of a range (those next to a border between cells) for one voxel.
   template <class Claim>
   void ask(const glm::ivec3& least, const glm::ivec3& most, const glm::ivec3& voxel, const Claim& claim) {
     if (!corners_) corners_ = &lattice_.corners(brick_, room_);
@@ -127,11 +128,11 @@ class RigidBrick {
   PosedLattice::Corners& room_;
   const TissueVoxels::Brick& cells_;
   const AffineTransform& rest_from_posed_;
-  double slack_ = 0;                                // voxels at rest
-  const PosedLattice::Corners* corners_ = nullptr;  // once they were needed
+  double slack_ = 0;  // width of the zone around a cell's border that rounding can affect, voxels at rest
+  const PosedLattice::Corners* corners_ = nullptr;  // null until they are needed
 };
 
-// The cells of a brick but for those of `without`; false where none is to be left out.
+// Rasterizes the cells of a brick except those in `without`. If `without` is empty, does nothing and returns false.
 bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::array<std::uint64_t, 8>& without,
                     const VoxelRange& range, PosedLattice::Corners& room, Claims& claims) {
   if (std::all_of(without.begin(), without.end(), [](std::uint64_t slice) { return slice == 0; })) return false;
@@ -253,7 +254,7 @@ void RigidBones::find_pieces() {
   }
 }
 
-// Of the corners of the voxels.
+// Returns the posed bounding box of a box of voxels.
 std::pair<glm::dvec3, glm::dvec3> RigidBones::posed_box(int bone, const VoxelRange& voxels) const {
   glm::dvec3 low(INFINITY), high(-INFINITY);
   for (int i = 0; i < 8; ++i) {
@@ -317,11 +318,12 @@ bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampl
   if (!(*is_bone_)[label]) return false;
   if (const int own = owner(voxel); own >= 0) return own == bone;
 
-  // What touches a seam belongs to one side of it alone.
+  // A voxel that touches a seam belongs to one side of the seam only, so neighbouring bone voxels do not count for it.
   if (const Seams* seams = lattice_->tissue().seams();
       seams && lattice_->volume().grid.contains(voxel) && seams->touches(voxel))
     return false;
-  // Bone by its membership, though the nearest voxel is not: the nearest bone voxel around decides.
+  // The interpolated label is bone although the nearest voxel is not. So the bone of the nearest bone voxel around
+  // counts.
   double least = INFINITY;
   int found = -1;
   for (int k = -1; k <= 1; ++k)

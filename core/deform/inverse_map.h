@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The inverse map: for each voxel of a tile of the output, the rest point it is the image of. It exists only in tiles,
-// one per running thread, each filled by the cells that reach it in the order of the cells.
+// The inverse map: for each voxel of a tile of the output, the rest point that the pose moves there. It exists only for
+// tiles, one per running thread. A cell (posed image of a rest voxel or tet) claims the voxels whose centres it covers.
+// Each tile is filled by the cells that reach it, in the order of the cells.
 //
-// Where two cells claim a voxel, in this order:
-//   the cell that is not inverted;
-//   the cell whose tissue has the higher priority (bone first);
-//   the rest point that lies deeper below air, so that the cut in a fold runs down its middle;
-//   the cell with the smaller index.
-// Only cells that are no neighbours at rest (share no corner) count as overlap.
+// If two cells claim a voxel, these rules decide, in this order:
+//    the cell that is not inverted wins;
+//    the cell whose tissue has the higher priority wins (bone first);
+//    the rest point that lies deeper below air wins, so that the cut in a fold runs down its middle;
+//    the cell with the smaller index wins.
+// Two cells overlap only if they are not neighbours at rest (share no corner).
 //
-// Bones are painted rigidly, over whatever the cells say: cells at a bone's border share corners with soft tissue and
-// would bend it. A voxel is painted where a rig bone's own motion, read backward, leads to bone tissue of that rig
-// bone.
+// Bones are then painted rigidly over the cells, because cells at a bone's border share corners with soft tissue and
+// would bend the bone. A voxel is painted if the inverse of a rig bone's motion leads to bone tissue of that rig bone.
 #pragma once
 
 #include <array>
@@ -31,17 +31,17 @@ struct InverseMap {
   static constexpr std::uint16_t kNoBone = 0xffff;
   enum Flag : std::uint8_t { kInverted = 1, kOverlap = 2, kBoneOverlap = 4 };
 
-  VoxelRange range;                 // of the posed lattice
-  std::vector<glm::vec3> rest;      // rest point
-  std::vector<std::uint32_t> cell;  // place in the rest grid of the voxel whose cell covers it, kNoCell outside all
-  std::vector<std::uint16_t> bone;  // the rig bone that paints it, kNoBone where none does
+  VoxelRange range;                 // the tile's voxels in the output lattice
+  std::vector<glm::vec3> rest;      // per voxel: its rest point
+  std::vector<std::uint32_t> cell;  // per voxel: index of the rest voxel whose cell covers it, or kNoCell
+  std::vector<std::uint16_t> bone;  // per voxel: the rig bone whose tissue is painted there, or kNoBone
   std::vector<std::uint8_t> flags;
-  bool has_volume_ratio = true;       // whether it is wanted
-  std::vector<float> posed_per_rest;  // volume ratio of the map
-  std::vector<Label> lost;            // of each claim that a cell lost to one that is no neighbour
-  RowSet row_used;                    // whether any voxel of the row is covered; the other rows are clear
+  bool has_volume_ratio = true;       // whether posed_per_rest is computed
+  std::vector<float> posed_per_rest;  // per voxel: local ratio of posed to rest volume
+  std::vector<Label> lost;            // label of each claim that lost against a cell that is not its neighbour at rest
+  RowSet row_used;                    // whether any voxel of the row is covered; all other rows are empty
 
-  // An empty map of that range.
+  // Clears the map and sets its range of voxels.
   void reset(const VoxelRange& new_range);
   void use_row(const glm::ivec3& voxel) {
     row_used[voxel.y - range.low.y + std::int64_t{range.high.y - range.low.y + 1} * (voxel.z - range.low.z)] = 1;
@@ -54,46 +54,47 @@ struct InverseMap {
   }
 };
 
-// Some of the tissue: by brick, as the brick's own mask.
+// A subset of the tissue, as one bit mask per brick, in the layout of TissueVoxels::Brick::mask.
 using TissueMask = std::vector<std::array<std::uint64_t, 8>>;
 
-// Writes the claims of the cells of `bricks` (rising) into the map.
-//   priority  of the tissue, per label       depth  nullptr where no pose can make a fold
-//   without   cells that something else carries, or nullptr
+// Enters the output voxels that the posed cells of `bricks` (ascending) cover into the map.
+//   priority  priority of each label's tissue
+//   depth     nullptr: the pose cannot make a fold
+//   without   cells to leave out because something else carries them; nullptr: none
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
                      const std::vector<int>& priority, const TissueDepth* depth, const TissueMask* without = nullptr);
 
-// Bone tissue that moves rigidly.
+// The bone tissue, which is posed rigidly.
 class RigidBones {
  public:
-  // Where a rig bone's bone tissue lies in one brick, grown by one voxel: as far as its membership reaches.
+  // The extent of one rig bone's tissue in one brick.
   struct Piece {
     int bone;
     std::int64_t brick;
-    VoxelRange rest;
-    VoxelRange posed;          // voxels of the posed lattice that its image can reach
-    VoxelRange posed_centres;  // voxels whose centres lie in the box of the image of the bone voxels themselves
+    VoxelRange rest;           // bounding box of its voxels plus one voxel, as far as interpolated labels reach
+    VoxelRange posed;          // voxels of the output lattice that the posed box `rest` can reach
+    VoxelRange posed_centres;  // voxels whose centres lie in the posed bounding box of the bone voxels themselves
   };
 
-  // Every bone tissue voxel follows the first bone of its influence alone.
-  //   is_bone  per label; all zero when the volume has no bone tissue
+  // Every voxel of bone tissue follows only the first bone of its influence.
+  //   is_bone  by label; all zero if the volume has no bone tissue
   RigidBones(const PosedLattice& lattice, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  // The rest point that the bone's motion carries to a posed voxel.
+  // Returns the rest point that the motion of a bone moves to a posed voxel.
   glm::dvec3 rest_point(int bone, const glm::dvec3& posed) const;
-  // Distance in mm between a posed voxel and where the bone's motion carries a rest point.
+  // Returns the distance in mm between a posed voxel and the position to which the bone's motion moves a rest point.
   double residual(int bone, const glm::dvec3& rest, const glm::dvec3& posed) const;
-  // The rig bone of a voxel of bone tissue, -1 elsewhere.
+  // Returns the rig bone of a voxel of bone tissue; -1: not bone tissue.
   int owner(const glm::ivec3& voxel) const;
-  // 1 + the rig bone of every voxel of bone tissue at rest, 0 elsewhere.
+  // Returns a volume with 1 + the rig bone for every voxel of bone tissue at rest, 0 elsewhere.
   LabelVolume numbered() const;
-  RowSet rest_rows() const;  // of the rest volume that may hold bone tissue
-  // Whether bone tissue of this rig bone is what the rest volume has there.
+  RowSet rest_rows() const;  // rows of the rest volume that may contain bone tissue
+  // Returns whether there is bone tissue of this rig bone at a rest point.
   bool has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const;
 
-  // Writes the bones of `pieces` into the map.
+  // Paints the bone tissue of `pieces` into the map.
   void paint(InverseMap& map, const std::vector<std::int64_t>& pieces, const LabelSampler& sampler, bool nearest,
              const TissueDepth* depth) const;
 
@@ -104,8 +105,8 @@ class RigidBones {
   const PosedLattice* lattice_;
   const SkinWeights* weights_;
   const LabelSet* is_bone_;
-  std::vector<AffineTransform> rest_shift_;   // rest point - posed point in rest voxel coordinates, of the posed point
-  std::vector<AffineTransform> posed_shift_;  // posed point - rest point, of the rest point
+  std::vector<AffineTransform> rest_shift_;   // by bone: maps a posed point to rest - posed, rest voxel coordinates
+  std::vector<AffineTransform> posed_shift_;  // by bone: maps a rest point to posed - rest, rest voxel coordinates
   std::vector<Piece> pieces_;
 };
 

@@ -16,23 +16,24 @@ namespace limber {
 
 namespace {
 
-constexpr double kFurthest = 32000;                          // output voxels from the base; fixed point holds 32 768
-constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // all corners of a limb, not those of a body
+constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
+constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // upper limit on stored corners; a body's exceed it
 constexpr int kSeveral = BrickMotions::kSeveral;
-constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
+constexpr int kHalo = TissueVoxels::kBrick + 2;  // edge of a brick with a border one voxel wide
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
 
-// Of a byte; std::popcount is a call where the processor's own instruction may not be assumed.
+// The number of set bits of each byte. std::popcount is a function call where the processor's own instruction may not
+// be used.
 constexpr std::array<std::uint8_t, 256> kBitCount = [] {
   std::array<std::uint8_t, 256> count{};
   for (int i = 1; i < 256; ++i) count[i] = static_cast<std::uint8_t>(count[i / 2] + (i & 1));
   return count;
 }();
 
-// Per bone, the weights of a brick's voxels and of those around it, summed over the eight voxels around each corner.
+// Sums the weights of each bone over the eight voxels around each corner of a brick.
 class CornerWeights {
  public:
-  //   moves_as  per bone: the one it is counted as
+  //   moves_as  per bone: the first bone with the same motion, which counts instead (BrickMotions)
   CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                 std::int64_t brick)
       : moves_as_(moves_as),
@@ -53,7 +54,7 @@ class CornerWeights {
     std::sort(order_.begin(), order_.end(), [&](int a, int b) { return bones_[a] < bones_[b]; });
   }
 
-  // Influences of corner (i, j, k) in rising bone order; none where no tissue is around it.
+  // Returns the influences of corner (i, j, k), ascending by bone; empty if there is no tissue around the corner.
   std::span<const BoneWeight> at(int i, int j, int k) {
     const int here = i + kHalo * (j + kHalo * k);
     BoneWeight* end = influences_.data();
@@ -63,7 +64,8 @@ class CornerWeights {
   }
 
  private:
-  // Voxels 0..7 of the brick itself, the last layer of a brick below, the first of one above.
+  // First and last voxel, in a brick at the offset `step`, that touch the central brick: all (0 .. 7) in the central
+  // brick, the last layer of a brick below, the first layer of a brick above.
   static glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
   static glm::ivec3 last_of(const glm::ivec3& step) {
     return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7;
@@ -72,7 +74,7 @@ class CornerWeights {
   void gather(const TissueVoxels::Brick& brick, const SkinWeights::Chunk& chunk, const glm::ivec3& step) {
     const glm::ivec3 first = first_of(step), last = last_of(step);
     const unsigned columns = (0xffu >> (7 - last.x)) & (0xffu << first.x);
-    int place = 0;  // in the chunk, of the row's first voxel
+    int place = 0;  // index in the chunk of the first voxel of the current row
     for (int z = 0; z <= last.z; ++z) {
       if (z < first.z) {
         place += std::popcount(brick.mask[z]);
@@ -102,7 +104,8 @@ class CornerWeights {
     }
   }
 
-  // Box sums axis by axis, in place. The last column, row and slice come out meaningless and are never read.
+  // Computes sums over 2 x 2 x 2 voxels in place, axis by axis. The last column, row and slice become meaningless and
+  // are never read.
   void sum_over_corners() {
     for (size_t slot = 0; slot < bones_.size(); ++slot) {
       std::uint32_t* sum = &sums_[slot * kHaloCount];
@@ -122,18 +125,18 @@ bool is_full(const TissueVoxels::Brick& brick) {
                      [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
 }
 
-// body(i, j, k) for the eight outermost corners of a brick.
+// Calls body(i, j, k) for the brick's own eight corners.
 template <class Body>
 void for_each_outermost(const Body& body) {
   for (int c = 0; c < 8; ++c)
     body((c & 1) * TissueVoxels::kBrick, (c >> 1 & 1) * TissueVoxels::kBrick, (c >> 2) * TissueVoxels::kBrick);
 }
 
-// body(i, j, k) for every corner of the brick's tissue voxels, in order of place.
+// Calls body(i, j, k) for every corner of the brick's tissue voxels, x fastest.
 template <class Body>
 void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
   constexpr int kSide = PosedLattice::kSide;
-  std::array<unsigned, kSide * kSide> row{};  // a bit per corner
+  std::array<unsigned, kSide * kSide> row{};  // per row of corners: a bit per corner
   for (int z = 0; z < TissueVoxels::kBrick; ++z)
     for (int y = 0; y < TissueVoxels::kBrick; ++y) {
       const unsigned voxels = brick.mask[z] >> (8 * y) & 0xff, corners = voxels | voxels << 1;
@@ -242,7 +245,7 @@ const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& 
   return room;
 }
 
-// The rest points of posed points under a bone's motion.
+// Returns the affine map from posed points to rest points, for tissue that follows one bone.
 AffineTransform PosedLattice::backward(const RigidTransform& posed_from_rest) const {
   const RigidTransform back = inverse(posed_from_rest);
   const glm::dmat3 turn = voxel_from_world_.linear * glm::mat3_cast(back.rotation) * world_from_voxel_.linear;
@@ -252,7 +255,7 @@ AffineTransform PosedLattice::backward(const RigidTransform& posed_from_rest) co
   return {turn * steps, turn * first + shift};
 }
 
-// Where the first tissue voxel's bone carries it.
+// Sets the base of the output lattice to the posed position of the first tissue voxel.
 void PosedLattice::choose_base() {
   glm::ivec3 voxel(0);
   bool found = false;
@@ -271,7 +274,8 @@ void PosedLattice::choose_base() {
   output_.base = glm::ivec3(glm::floor(at + 0.5));
 }
 
-//   shift  beyond blending, in voxels
+// Returns the posed position of a corner.
+//   shift  correction that is added to the blended position, voxels
 FixedPoint PosedLattice::posed(const glm::ivec3& corner, std::span<const BoneWeight> influences,
                                const glm::dvec3& shift) const {
   const glm::dvec3 rest = glm::dvec3(corner) - 0.5;
@@ -295,11 +299,13 @@ void PosedLattice::throw_torn(int bone) const {
               "check the pose and the rig, or use a coarser spacing");
 }
 
-//   moved  posed - rest, in voxel coordinates    bone  for the message
+// Rounds a posed point to fixed point. Throws Error if it is too far away.
+//   moved  posed - rest, in voxel coordinates
+//   bone   named in the error's message
 FixedPoint PosedLattice::fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const {
   const glm::dvec3 at = output_.from_rest(rest + moved);
   if (!(std::abs(at.x) < kFurthest && std::abs(at.y) < kFurthest && std::abs(at.z) < kFurthest)) throw_torn(bone);
-  // One instruction each; std::floor would be a call.
+  // std::lrint is one instruction; std::floor would be a function call.
   return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
 }
 
@@ -308,7 +314,8 @@ FixedPoint PosedLattice::posed_by(int bone, const glm::ivec3& corner) const {
   return fixed(rest, shift_[bone] * rest, bone);
 }
 
-// Of a brick that moves as one, `corners` may hold only those that tell where it goes.
+// Computes the posed corners of a brick and their bounds. If the brick is full and moves as one rigid body, computes
+// only its eight outermost corners.
 PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& corners) const {
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
   const auto every = [&](const auto& body) { for_each_corner(cells, body); };
@@ -329,8 +336,9 @@ PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& cor
       corners);
 }
 
-//   visit           calls its argument with the corners to be posed
-//   posed(i, j, k)  is the place of a corner
+// Computes posed corners, and their bounding box.
+//   visit           calls its argument for each corner to pose
+//   posed(i, j, k)  returns the posed position of a corner
 template <class Visit, class Posed>
 PosedLattice::BrickBounds PosedLattice::compute_by(std::int64_t brick, const Visit& visit, const Posed& posed,
                                                    Corners& corners) const {

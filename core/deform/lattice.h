@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A volume's tissue as a lattice of cells, posed. Every tissue voxel is a cell, its eight corners are vertices; a
-// vertex follows the mean of the influences of the tissue voxels around it (up to eight), so that cells that share a
-// vertex at rest share it posed, and the posed cells leave no gap.
+// Poses a volume's tissue as a lattice of cells. Every tissue voxel is a cell, and its eight corners are vertices. A
+// vertex follows the mean of the influences of the tissue voxels around it (up to eight). So cells that share a vertex
+// at rest share it in the pose, and the posed cells leave no gap.
 //
 // Coordinates. A *rest point* is in voxel coordinates of the volume (voxel centres are whole numbers). A *posed point*
 // is in voxels of the output lattice, relative to a whole-number base near the tissue, stored in fixed point: whole
@@ -9,14 +9,14 @@
 // whole numbers, is exact too. The output lattice is the volume's own, or one with another spacing that shares its
 // outermost corner.
 //
-// Corners are computed brick by brick, and kept only while all of them are small: a whole body's would be 150 MB. The
-// same corner comes out the same, bit for bit, from every brick that has it: weights are added as whole numbers, bones
-// in rising order.
+// Corners are computed brick by brick, and stored only if all of them take little memory: those of a whole body would
+// take 150 MB. All bricks that share a corner compute it equally, bit for bit: weights are added as whole numbers, with
+// bones in ascending order.
 //
-// Much of a posed limb follows one bone wholly, or bones that move as one: a hand whose fingers keep still goes where
-// the forearm goes. Bones that move as one are counted as one, the first of them. Corners that follow one alone take
-// its motion in voxel coordinates without blending, and where it does not move at all they stay what they are: whole
-// halves, bit for bit.
+// Much of a posed limb follows one bone with full weight, or bones with the same motion: a hand whose fingers keep
+// still moves with the forearm. Bones with the same motion count as one, the first of them. Corners that follow one
+// bone take its motion in voxel coordinates without blending. If the bone does not move, they keep their rest position,
+// bit for bit.
 #pragma once
 
 #include <array>
@@ -34,10 +34,10 @@ namespace limber {
 
 class SettledFlesh;
 
-constexpr int kFixedOne = 65536;  // one output voxel
-using FixedPoint = glm::ivec3;    // in 1/65536 output voxel
+constexpr int kFixedOne = 65536;  // units of fixed point per output voxel
+using FixedPoint = glm::ivec3;    // in units of 1/65536 output voxel
 
-// Whole voxels low .. high, both in; empty when high < low on an axis.
+// The box of voxels from `low` to `high`, both included; empty if high < low on any axis.
 struct VoxelRange {
   glm::ivec3 low{0}, high{-1};
 
@@ -50,9 +50,9 @@ inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) {
   return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
 }
 
-// Between rest lattice and output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
+// The transform from rest voxel coordinates to the output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
 struct OutputLattice {
-  glm::dvec3 ratio{1};  // input spacing / output spacing, 1 exactly where they are equal
+  glm::dvec3 ratio{1};  // rest spacing / output spacing; exactly 1 where they are equal
   glm::ivec3 base{0};
 
   glm::dvec3 from_rest(const glm::dvec3& rest) const { return (rest + 0.5) * ratio - 0.5 - glm::dvec3(base); }
@@ -62,13 +62,14 @@ struct OutputLattice {
 class PosedLattice {
  public:
   static constexpr int kSide = TissueVoxels::kBrick + 1;
-  // Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner + (i, j, k). Unset where no tissue is
-  // near.
+  // The posed corners of a brick's voxels. Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner +
+  // (i, j, k). Corners that belong to no tissue voxel of the brick are not set.
   using Corners = std::array<FixedPoint, kSide * kSide * kSide>;
   static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
 
-  // Where a seam is near, every voxel has corners of its own: those of voxel (i, j, k) of the brick, in the order of
-  // bits x, y, z, begin at 8 * (i + 8 * (j + 8 * k)). Unset where no tissue is.
+  // The posed corners of a brick near a seam, where every voxel has its own. The eight corners of voxel (i, j, k) of
+  // the brick begin at 8 * (i + 8 * (j + 8 * k)); bits 0, 1, 2 of a corner's index are x, y, z. Corners of air voxels
+  // are not set.
   using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
 
   struct FixedBox {
@@ -76,9 +77,9 @@ class PosedLattice {
   };
 
   // Keeps references: volume, tissue, weights and settled must outlive the lattice.
-  //   posed_from_rest  #bones of `weights`
-  //   settled          how flesh moves beyond blending; nullptr: not at all
-  // throws Error when tissue is carried further than 32 000 output voxels or to a place that is not finite
+  //   posed_from_rest  motions of the bones of `weights`
+  //   settled          corrections of flesh that are added to blending; nullptr: none
+  //   throws Error if the pose moves tissue further than 32 000 output voxels or to a position that is not finite
   PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
                Progress& progress = no_progress(), const SettledFlesh* settled = nullptr);
@@ -86,17 +87,17 @@ class PosedLattice {
   const OutputLattice& output() const { return output_; }
   const LabelVolume& volume() const { return *volume_; }
   const TissueVoxels& tissue() const { return *tissue_; }
-  const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // of the brick's posed corners
-  // Whether every cell of the brick lies where it lay at rest, and output voxels are the volume's own.
+  const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // bounding box of its posed corners
+  // Returns whether every cell of the brick stays at its rest position, and output voxels are as large as the volume's.
   bool is_still(std::int64_t brick) const { return still_[brick]; }
-  // The bone that the brick and all tissue around it follow wholly, so that its cells move as one; -1 where they are
-  // several.
+  // Returns the bone that the brick and all tissue around it follow with full weight, so that its cells move as one
+  // rigid body; -1: several bones.
   int only_bone(std::int64_t brick) const { return rigid_[brick]; }
-  // Rest points by posed points of what follows that bone wholly.
+  // Returns the affine map from posed points to rest points, for tissue that follows the bone with full weight.
   const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
-  // The brick's corners; computed into `room` where they are not kept.
+  // Returns the brick's posed corners. Computes them into `room` if they are not stored.
   const Corners& corners(std::int64_t brick, Corners& room) const;
-  // Whether a seam is near and the brick bends, so that its voxels' own corners count.
+  // Returns whether the brick bends and a seam is near, so that each of its voxels has its own corners.
   bool is_split(std::int64_t brick) const { return split_[brick]; }
   void split_corners(std::int64_t brick, SplitBrick& corners) const;
 
@@ -121,17 +122,17 @@ class PosedLattice {
   const SkinWeights* weights_;
   AffineTransform world_from_voxel_, voxel_from_world_;
   std::vector<SkinTransform> bones_;
-  std::vector<AffineTransform> shift_;  // per bone: posed - rest, both in voxel coordinates, of the rest point
+  std::vector<AffineTransform> shift_;  // per bone: maps a rest point to posed - rest, all in voxel coordinates
   Blend blend_;
   const SettledFlesh* settled_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
-  std::vector<std::uint8_t> still_, split_;       // by brick
-  std::vector<AffineTransform> rest_from_posed_;  // per bone
-  std::vector<int> moves_as_;                     // per bone: the first that moves as it does
-  std::vector<int> rigid_;           // by brick: the bone that all tissue of it and around it moves as, or several
-  std::unique_ptr<Corners[]> kept_;  // of the bricks that bend, or none
-  std::vector<std::int32_t> kept_at_;
+  std::vector<std::uint8_t> still_, split_;       // by brick: values of is_still(), is_split()
+  std::vector<AffineTransform> rest_from_posed_;  // per bone: values of rest_from_posed()
+  std::vector<int> moves_as_;                     // per bone: the first bone with the same motion
+  std::vector<int> rigid_;                        // by brick: values of only_bone()
+  std::unique_ptr<Corners[]> kept_;               // stored corners of the bricks that bend; null: not stored
+  std::vector<std::int32_t> kept_at_;             // by brick that bends: index of its corners in kept_
 };
 
 }  // namespace limber

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kBin = 8;  // voxels
+constexpr int kBin = 8;  // edge of a search bin, voxels
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
 
@@ -49,7 +49,7 @@ std::optional<MeshBorder::Place> MeshBorder::nearest(const glm::dvec3& rest, dou
   int face = -1;
   glm::dvec3 shares(0);
   const int furthest = 2 * std::max({grid_.size.x, grid_.size.y, grid_.size.z}) + 64;
-  double searched = 0;  // mm
+  double searched = 0;  // radius searched so far, mm
   for (int reach = 2; (face < 0 || least > searched * searched) && searched < furthest_mm && reach <= 2 * furthest;
        reach *= 2) {
     searched = reach * least_spacing;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The border of a tet mesh at rest: what lies outside the mesh goes with the place of the border that is nearest.
+// Finds the nearest point on the border of a tet mesh at rest. Points outside the mesh move with their nearest point
+// there.
 #pragma once
 
 #include <array>
@@ -16,16 +17,17 @@ namespace limber {
 class MeshBorder {
  public:
   struct Place {
-    int tet;                     // that has the face
-    std::array<int, 3> corners;  // nodes
-    glm::dvec3 shares;           // of them; they sum to one
+    int tet;                     // the tet to which the face belongs
+    std::array<int, 3> corners;  // nodes of the face
+    glm::dvec3 shares;           // barycentric coordinates of the point in the face
     double distance_mm;
   };
 
-  // Keeps a reference: the mesh must outlive it.
+  // Keeps a reference to the mesh, which must outlive this object.
   MeshBorder(const TetMesh& mesh, const Grid& grid);
 
-  // The place nearest to a rest point, in voxel coordinates; none where none is within `furthest_mm`.
+  // Returns the border's point nearest to a rest point; nothing if there is none within `furthest_mm`.
+  //   rest  voxel coordinates
   std::optional<Place> nearest(const glm::dvec3& rest,
                                double furthest_mm = std::numeric_limits<double>::infinity()) const;
 
@@ -41,7 +43,8 @@ class MeshBorder {
   BoxBins bins_;
 };
 
-// The rotation of a tet's motion; exactly none where it does not move.    moved  #V posed - rest, mm
+// Returns the rotation in a tet's motion; exactly the identity if the tet is only translated.
+//   moved  #V motions of the nodes (posed - rest), mm
 Eigen::Matrix3d rotation_of(const TetMesh& mesh, const Eigen::MatrixX3d& moved, int tet);
 
 }  // namespace limber

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Points and triangles.
+// Finds the point of a triangle that is nearest to a given point.
 #pragma once
 
 #include <glm/glm.hpp>
 
 namespace limber {
 
-// The point of a triangle nearest to p, by its corners' shares [Ericson 2004, Real-time collision detection, 5.1.5].
+// Returns the barycentric coordinates of the point of triangle a, b, c that is nearest to p [Ericson 2004, Real-time
+// collision detection, 5.1.5].
 inline glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                       const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;

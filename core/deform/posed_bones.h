@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where rigid bones lie in a pose, and the way out of them: flesh that blending carries into a bone is pushed out
-// again.
-//
-// Lengths in mm along the volume's own axes, as in flesh_cells.h.
+// Locates rigid bones in a pose and finds the shortest motion out of them, so that flesh that blending moves into a
+// bone can be pushed out again. Lengths are in mm along the volume's own axes, as in flesh_cells.h.
 #pragma once
 
 #include <optional>
@@ -16,18 +14,19 @@ namespace limber {
 
 class PosedBones {
  public:
-  //   posed_from_rest  by bone of `weights`; bone tissue follows the first bone of its influence     is_bone  by label
+  //   is_bone          by label: whether it is bone
+  //   posed_from_rest  motions of the bones of `weights`; bone tissue follows the first bone of its influence
   PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
 
-  // From a posed point inside a bone to that bone's surface, the shortest way as its depth field shows it; none outside
-  // all bones.
+  // Returns the motion that moves a posed point inside a bone to that bone's surface, along the gradient of the depth
+  // below that surface; nothing if the point is outside all bones.
   std::optional<glm::dvec3> way_out(const glm::dvec3& posed) const;
 
  private:
   struct Box {
     int bone;
-    glm::ivec3 low, high;  // bins
+    glm::ivec3 low, high;  // first and last bin
   };
   glm::ivec3 bin_of(const glm::dvec3& posed) const { return glm::ivec3(glm::floor((posed - first_) / bin_)); }
   bool holds(int bone, const glm::dvec3& rest) const;
@@ -37,14 +36,14 @@ class PosedBones {
   const SkinWeights* weights_;
   glm::dvec3 spacing_;
   TissueVoxels bone_tissue_;
-  std::optional<TissueDepth> depth_;              // below the surface of bone
+  std::optional<TissueDepth> depth_;              // depth below the surface of bone tissue, at rest
   std::vector<AffineTransform> rest_from_posed_;  // by bone
-  std::vector<glm::dmat3> turn_;                  // by bone: posed directions of rest directions
+  std::vector<glm::dmat3> turn_;                  // by bone: maps directions at rest to posed directions
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};
-  std::vector<std::int32_t> begin_;  // by bin, then one more
-  std::vector<std::int16_t> bones_;  // of the bins, rising in each
+  std::vector<std::int32_t> begin_;  // #bins + 1: where the bones of each bin begin in bones_
+  std::vector<std::int16_t> bones_;  // bones of each bin, ascending
 };
 
 }  // namespace limber

@@ -13,13 +13,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kFurthest = 32000;  // output voxels from the base; fixed point holds 32 768
-constexpr int kPosedBin = 16;        // voxels: a quarter of a tile of the output
+constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
+constexpr int kPosedBin = 16;        // edge of a search bin, voxels: a quarter of an output tile's
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
 
-// body(brick) for the brick there and those around it that have tissue.
+// Calls body(brick) for the brick at `corner` and for each of the 26 bricks around it that has tissue.
 template <class Body>
 void for_each_neighbour_brick(const TissueVoxels& tissue, const glm::ivec3& corner, const Body& body) {
   for (int i = 0; i < 27; ++i) {
@@ -29,7 +29,7 @@ void for_each_neighbour_brick(const TissueVoxels& tissue, const glm::ivec3& corn
   }
 }
 
-// Rest voxel coordinates by posed ones, of a tet.
+// The affine map from posed points in a tet to rest points, both in voxel coordinates.
 struct TetMap {
   glm::dvec3 from_posed, from_rest;
   glm::dmat3 rest_from_posed;
@@ -51,7 +51,7 @@ struct TetMap {
   }
 };
 
-// Of a point, in a tet's corners.
+// Returns the barycentric coordinates of a point in a tet.
 glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& point) {
   const glm::dmat3 edges(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
   const glm::dvec3 s = glm::inverse(edges) * (point - corners[0]);
@@ -64,21 +64,22 @@ std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) {
 
 }  // namespace
 
-// How what lies outside the mesh moves with its border.
+// Poses points outside the mesh, which move with its border.
 class PosedTets::Border {
  public:
-  //   rest_bins  of the tets at rest
+  //   rest_bins  bounding boxes of the tets at rest
   Border(const PosedTets& tets, const BoxBins& rest_bins)
       : tets_(tets),
         rest_bins_(rest_bins),
         border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
-  // Where a rest point outside the mesh goes: as far from the border as it was, but where another part of the mesh
-  // comes near no further than half of the way to that, whose other half is for what sticks out there.
+  // Returns the posed position of a rest point outside the mesh. It stays as far from the mesh's border as at rest. If
+  // another part of the mesh is near, the point takes at most half of the air between both parts; the other half is for
+  // tissue outside that part's border.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
-    const auto place = border_.nearest(rest);  // a mesh has a border
-    glm::dvec3 from(0), moved(0);              // of the nearest point
+    const auto place = border_.nearest(rest);  // there always is one, since a mesh has a border
+    glm::dvec3 from(0), moved(0);              // rest position of the border's nearest point, and its motion; mm
     for (int i = 0; i < 3; ++i) {
       from += place->shares[i] * in_mm(tets_.mesh_->V, place->corners[i]);
       moved += place->shares[i] * in_mm(tets_.moved_, place->corners[i]);
@@ -92,7 +93,7 @@ class PosedTets::Border {
     };
 
     const glm::dvec3 whole = at(1);
-    static_cast<void>(tets_.fixed(whole));  // it is not too far
+    static_cast<void>(tets_.fixed(whole));  // throws if the point is too far away
     const double way = free_way(tets_.bins_, at(0), whole, place->corners, [&](int t) {
       const auto corners = tets_.posed_corners(t);
       std::array<glm::dvec3, 4> places;
@@ -100,20 +101,23 @@ class PosedTets::Border {
       return places;
     });
     if (way == kBoth) return tets_.fixed(whole);
-    // What lay as near at rest is no nearer now.
+    // If the other part of the mesh was that near at rest already, the point keeps its distance from the border.
     const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners,
                                      [&](int t) { return tets_.rest_corners(t); });
     return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
 
  private:
-  static constexpr double kBoth =
-      2;  // ways from the border to a point: as much is asked about, for the two sides of the air
-  static constexpr double kRounding = 1.0 / 64;  // of that way
-  static constexpr double kApart = 0.98;  // of half of the air, so that the two sides do not meet in a voxel's centre
+  // Range of the search for another part of the mesh, in distances from the border to the point. Twice that distance is
+  // enough, since the tissue outside either border shares the air between them.
+  static constexpr double kBoth = 2;
+  static constexpr double kRounding = 1.0 / 64;  // tolerance of the results of free_way()
+  // Share of its half of the air that a point may take. It is below 1, so that the tissue of both sides never meets in
+  // a voxel centre.
+  static constexpr double kApart = 0.98;
 
-  // How far from `from` to `to` and on another part of the mesh begins, at most kBoth times that way. A tet so flat
-  // that no voxel's centre lies in its box is not seen; its neighbours are.
+  // Returns where another part of the mesh begins on the line from `from` through `to`: 0 is at `from`, 1 at `to`; at
+  // most kBoth. Does not find a tet so flat that no voxel centre lies in its box, but finds that tet's neighbours.
   template <class CornersOf>
   double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own,
                   const CornersOf& corners_of) const {
@@ -126,11 +130,11 @@ class PosedTets::Border {
       if (std::any_of(own.begin(), own.end(), [&](int node) { return (nodes.array() == node).any(); })) continue;
       const auto corners = corners_of(t);
       const glm::dvec4 first = shares_in(corners, from), change = shares_in(corners, to) - first;
-      double in = 0, out = way;  // where all four shares are positive
+      double in = 0, out = way;  // range along the line in which all four barycentric coordinates are positive
       for (int i = 0; i < 4; ++i) {
         if (change[i] > 0) in = std::max(in, -first[i] / change[i]);
         else if (change[i] < 0) out = std::min(out, -first[i] / change[i]);
-        else if (!(first[i] > 0)) out = 0;  // nor in a tet that rounding has made flat
+        else if (!(first[i] > 0)) out = 0;  // the line never enters the tet, or rounding has made the tet flat
       }
       if (in < out) way = in;
     }
@@ -142,9 +146,9 @@ class PosedTets::Border {
   MeshBorder border_;
 };
 
-// What one brick's tissue comes to.
+// The result of posing one brick's tissue.
 struct PosedTets::BrickOutcome {
-  FixedPoint low{INT32_MAX}, high{INT32_MIN};  // of its posed corners
+  FixedPoint low{INT32_MAX}, high{INT32_MIN};  // bounding box of the brick's posed corners
   std::vector<Rider> riders;
 };
 
@@ -202,7 +206,7 @@ void PosedTets::find_instead_of() {
   parallel_for(std::ssize(in_mesh_), 64, [&](std::int64_t begin, std::int64_t end) {
     for (auto brick = begin; brick < end; ++brick) {
       const glm::ivec3 first = tissue.bricks()[brick].corner;
-      bool borders = false;  // on tissue outside the mesh's charge
+      bool borders = false;  // whether the brick is next to tissue that the mesh does not carry
       for_each_neighbour_brick(tissue, first,
                                [&](int near) { borders |= in_mesh_[near] != tissue.bricks()[near].mask; });
       if (!borders) continue;
@@ -224,7 +228,7 @@ void PosedTets::place_nodes() {
   for (int i = 0; i < mesh_->V.rows(); ++i) {
     const glm::dvec3 at = voxel * in_mm(mesh_->V, i);
     rest_.push_back(glm::round(at * double(kFixedOne)) / double(kFixedOne));
-    // Not moved is not rounded twice.
+    // Uses the rounded rest position, so that a node that does not move is not rounded twice.
     posed_.push_back(fixed(lattice_->output().from_rest(rest_[i] + voxel.linear * in_mm(moved_, i))));
   }
 }
@@ -246,7 +250,7 @@ std::array<glm::dvec3, 4> PosedTets::rest_corners(int tet) const {
   return {rest_[corners[0]], rest_[corners[1]], rest_[corners[2]], rest_[corners[3]]};
 }
 
-// Where a rest point goes with a tet.
+// Returns the posed position of a rest point in a tet, which moves with that tet.
 FixedPoint PosedTets::carried(int tet, const glm::dvec3& rest) const {
   const glm::dvec4 shares = shares_in(rest_corners(tet), rest);
   glm::dvec3 moved(0);
@@ -274,7 +278,8 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
     });
   }
 
-  // The tets that hold the corners and the centres of the brick's voxels at rest.
+  // The tet that contains each corner of the brick's voxels at rest, and a bit for each voxel whose centre lies in a
+  // tet.
   std::array<int, kSide * kSide * kSide> tet_of;
   tet_of.fill(-1);
   std::array<std::uint64_t, 8> centre_held{};
@@ -328,7 +333,7 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
     std::optional<TetMap> tet;
     rasterize_tet(posed, map.range, [&](const glm::ivec3& voxel, int) {
       if (!tet) tet.emplace(posed, rest_corners(t));
-      const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));  // as the map will hold it
+      const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));  // in single precision, as the inverse map stores it
       const glm::ivec3 rest_voxel(glm::floor(rest + 0.5));
       if (!is_in_mesh(rest_voxel)) return;
       claims.claim(index_of(volume.grid, rest_voxel), rest_voxel, {voxel, rest, tet->posed_per_rest});

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tissue that a tet mesh carries, posed. Where PosedLattice makes a cell of every tissue voxel, here the mesh's tets
-// are the cells: each posed voxel centre in a tet is the image of the rest point that the tet's affine map gives, and
-// belongs to the tissue voxel that this point lies in; where it lies in air, so does its image. Tets are rasterized by
-// the same exact half-open rule (rasterize.h), after rounding to the same fixed point, so the rest pose is exact.
+// Poses tissue that a tet mesh carries. In PosedLattice every tissue voxel is a cell; here the mesh's tets are the
+// cells. Each posed voxel centre in a tet is the image of a rest point, which the tet's affine map gives. The posed
+// voxel gets the tissue of the voxel around that rest point; if that voxel is air, the tet does not claim it. Tets are
+// rasterized by the same exact half-open rule (rasterize.h), after rounding to the same fixed point, so the rest pose
+// is exact.
 //
-// A mesh follows the tissue's border only nearly. Tissue voxels in the mesh's charge that stick out of it, by their
-// centre or by a corner, ride on it as cubes of their own: a corner inside goes with its tet, a corner outside with the
-// nearest point of the mesh's border, turned by the rotation of the tet there, and nearer to it than at rest where
-// another part of the mesh has come near: what sticks out of skin that is pressed against skin is pressed flat. Riders
-// write only where no tet did.
+// A mesh follows the tissue's border only approximately. Tissue voxels of the mesh whose centre or a corner lies
+// outside it are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
+// outside moves with the nearest point of the mesh's border and rotates with the tet there. If another part of the mesh
+// has come near, it moves closer to the border than at rest: tissue outside the border is pressed flat where skin
+// presses on skin. Riders fill only voxels that no tet covers.
 //
-// A mesh need not hold the whole body. Tissue outside its charge is the lattice's, as ever. So is one layer of voxels
-// on the mesh's side of where the two meet: they move alike there, and no rounding opens a gap.
+// A mesh need not contain the whole body. The lattice carries all other tissue, and also one layer of the mesh's voxels
+// next to it: both move alike there, and no rounding opens a gap.
 #pragma once
 
 #include <array>
@@ -27,32 +28,33 @@ namespace limber {
 
 class PosedTets {
  public:
-  // Keeps references: mesh and lattice must outlive it.
-  //   posed     #V by 3, world, mm
-  //   lattice   tells volume, tissue and output; its own cells are not asked
-  //   in_mesh   tissue voxels that are the mesh's charge
-  // throws Error when the mesh is carried further than 32 000 output voxels or to a place that is not finite
+  // Keeps references: mesh and lattice must outlive this object.
+  //   posed     #V by 3 posed nodes, world, mm
+  //   lattice   gives the volume, its tissue and the output lattice
+  //   in_mesh   tissue voxels that the mesh carries
+  //   throws Error if the pose moves the mesh further than 32 000 output voxels or to a position that is not finite
   PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice, TissueMask in_mesh,
             Progress& progress = no_progress());
 
-  // The cells that the lattice leaves out.
+  // Returns the cells that the lattice must not pose because the mesh carries them.
   const TissueMask& instead_of() const { return instead_of_; }
   std::int64_t rider_count() const { return std::ssize(riders_); }
-  // Whether any of the brick's tissue is the mesh's charge.
+  // Returns whether the mesh carries any of the brick's tissue.
   bool shares(std::int64_t brick) const { return in_mesh_[brick] != std::array<std::uint64_t, 8>{}; }
-  // Voxels of the output whose centres lie in the box of the posed tissue of the bricks that it shares.
+  // Returns the output voxels whose centres lie in the bounding box of the posed tissue of all bricks with mesh tissue.
   const VoxelRange& posed_tissue() const { return posed_tissue_; }
 
-  // Writes the claims of the tets into the map.
+  // Enters the output voxels that the posed tets cover into the map.
   void rasterize(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const;
-  // Writes the riders where the map is still empty: after everything else.
+  // Enters the riders (tissue voxels that stick out of the mesh, posed as separate cubes) into the map where it is
+  // still empty. Call it after everything else is entered.
   void rasterize_riders(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const;
   bool reaches(const VoxelRange& range) const;
 
  private:
   struct Rider {
     glm::ivec3 voxel;
-    std::array<FixedPoint, 8> corners;  // bit 0 of the index is x, bit 1 y, bit 2 z
+    std::array<FixedPoint, 8> corners;  // posed corners; bits 0, 1, 2 of the index are x, y, z
   };
   struct BrickOutcome;
   class Border;
@@ -69,10 +71,10 @@ class PosedTets {
   const TetMesh* mesh_;
   const PosedLattice* lattice_;
   TissueMask in_mesh_, instead_of_;
-  std::vector<glm::dvec3> rest_;   // #V voxel coordinates at rest, whole numbers of 1/65536
-  std::vector<FixedPoint> posed_;  // #V
-  Eigen::MatrixX3d moved_;         // #V posed - rest, world, mm
-  BoxBins bins_, rider_bins_;      // of the output
+  std::vector<glm::dvec3> rest_;   // #V node positions at rest, voxel coordinates, whole numbers of 1/65536
+  std::vector<FixedPoint> posed_;  // #V posed node positions
+  Eigen::MatrixX3d moved_;         // #V motions of the nodes (posed - rest), world, mm
+  BoxBins bins_, rider_bins_;      // bounding boxes of tets, of riders; output voxels
   std::vector<Rider> riders_;
   VoxelRange posed_tissue_;
 };

@@ -17,20 +17,23 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFineVoxels =
-    1'500'000;               // a limb at 2 mm has 650 000 tissue voxels, a body at 2 mm ten millions
-constexpr int kGrain = 256;  // cells
-constexpr double kLeastWeight = 1.0 / 1024;
-constexpr double kStiff = 0.999;  // of a corner's weight that one bone must have for the cell to be stiff by itself
+// Upper limit on the number of tissue voxels for cells of 4^3 voxels; above it, cells have 8^3 voxels. At 2 mm a limb
+// has 0.65 million tissue voxels, a body 10 million.
+constexpr std::int64_t kMostFineVoxels = 1'500'000;
+constexpr int kGrain = 256;                  // cells per task
+constexpr double kLeastWeight = 1.0 / 1024;  // smaller shares of a vertex's weight are dropped
+constexpr double kStiff = 0.999;  // a cell whose corners all have this weight on one bone needs no stiff part
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
-constexpr double kApart = 0.1;    // share of a corner's weight that two sides must differ by to move apart
-constexpr double kStrays = 0.25;  // ... and that a cell's vertex must differ by from what its own tissue says
+constexpr double kApart = 0.1;  // share of the weight in which corners of two separate sides must differ
+// Share of the weight in which a cell's vertex must differ from the cell's own tissue to count as following other
+// tissue.
+constexpr double kStrays = 0.25;
 
 using Influences = std::vector<BoneWeight>;
 
 glm::ivec3 corner_of(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
 
-// body(neighbour, offset) for the 26 places around `at` inside [low, high].
+// Calls body(neighbour, offset) for those of the 26 positions around `at` that lie in [low, high].
 template <class Body>
 void around(const glm::ivec3& at, const glm::ivec3& low, const glm::ivec3& high, const Body& body) {
   for (int k = -1; k <= 1; ++k)
@@ -43,7 +46,7 @@ void around(const glm::ivec3& at, const glm::ivec3& low, const glm::ivec3& high,
       }
 }
 
-// Adds up what is of one bone, and leaves out what is next to nothing; bones rising, sums to one.
+// Sums the weights of each bone, drops tiny sums, sorts by bone, and scales the total to one.
 void normalize(Influences& influences) {
   std::stable_sort(influences.begin(), influences.end(),
                    [](const BoneWeight& a, const BoneWeight& b) { return a.bone < b.bone; });
@@ -61,7 +64,7 @@ void normalize(Influences& influences) {
   influences = std::move(sums);
 }
 
-// The share of two corners' weights that goes to different bones.
+// Returns the share of the weight, [0, 1], in which two corners follow different bones.
 double apart(const Influences& a, const Influences& b) {
   double common = 0;
   for (const BoneWeight& x : a)
@@ -70,7 +73,7 @@ double apart(const Influences& a, const Influences& b) {
   return 1 - common;
 }
 
-// Cells with tissue, and the ring around them.
+// Marks the cells with tissue, and the cells next to them.
 std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const TissueVoxels& tissue) {
   const glm::ivec3 size = lattice.size;
   const auto index = [&](const glm::ivec3& c) {
@@ -78,7 +81,7 @@ std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const Tiss
   };
   std::vector<std::uint8_t> used(size_t(size.x) * size.y * size.z);
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) { used[index(v / lattice.step - lattice.first)] = 1; });
-  // Box by box, an axis at a time.
+  // Grows the marked cells by one cell, one axis at a time.
   for (const std::ptrdiff_t stride : {std::ptrdiff_t{1}, std::ptrdiff_t{size.x}, std::ptrdiff_t{size.x} * size.y}) {
     std::vector<std::uint8_t> grown = used;
     for (std::ptrdiff_t i = 0; i < std::ssize(used); ++i)
@@ -89,13 +92,14 @@ std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const Tiss
   return used;
 }
 
-// What lies in a cell and the 26 around it, in sides that do not hang together there.
+// The pieces of tissue in a cell and in the 26 cells around it, grouped into sides. Pieces of different sides are not
+// connected within these cells, and follow different bones.
 class Sides {
  public:
   Sides(const PreviewLattice& lattice, const PiecesByCell& pieces, const glm::ivec3& cell)
       : lattice_(lattice),
         cell_(cell) {
-    std::array<int, 28> begin{};  // by cell around
+    std::array<int, 28> begin{};  // index of the first piece of each of the 27 cells
     for (int n = 0; n < 27; ++n) {
       begin[n] = static_cast<int>(pieces_.size());
       for (const CellPiece& piece : pieces.of(cell + offset_of(n))) pieces_.push_back(&piece);
@@ -124,14 +128,15 @@ class Sides {
       }
   }
 
-  // Each by its first piece; two or more where the tissue moves apart.
+  // Returns the first piece of each side. There are two or more sides if the tissue there moves apart.
   std::vector<int> sides() const {
     std::vector<int> found;
     for (size_t i = 0; i < side_.size(); ++i)
       if (side_[i] == static_cast<int>(i)) found.push_back(static_cast<int>(i));
     return found;
   }
-  // Of the cell's corners, by the tissue of one side alone.
+  // Returns the bone weights at the cell's corners, taken only from the tissue on one side of the seam through the
+  // cell.
   std::array<Influences, 8> influences(int side) const {
     std::array<Influences, 8> corners;
     for (size_t i = 0; i < pieces_.size(); ++i) {
@@ -156,7 +161,7 @@ class Sides {
     }
     return all;
   }
-  // Of the cell, those with tissue of a side.
+  // Returns bits for the cell's subcells that contain tissue of a side.
   std::uint64_t places(int side) const {
     std::uint64_t places = 0;
     for (size_t i = 0; i < pieces_.size(); ++i)
@@ -164,7 +169,7 @@ class Sides {
     return places;
   }
 
-  // By place of the cell, to the tissue of other sides.
+  // Returns the member CellPart::apart for a side: the distance of each subcell from the tissue of other sides.
   std::array<std::int8_t, 64> to_others(int side) const {
     std::vector<glm::vec3> others;
     for (size_t i = 0; i < pieces_.size(); ++i) {
@@ -197,10 +202,10 @@ class Sides {
   const PreviewLattice& lattice_;
   glm::ivec3 cell_;
   std::vector<const CellPiece*> pieces_;
-  std::vector<int> side_;  // of each piece: the first of those it hangs together with
+  std::vector<int> side_;  // per piece: the first piece of its side
 };
 
-// Whether the vertices of the cell and those around it follow what may move apart.
+// Returns whether the vertices of the cell and of those around it follow bones that may move apart.
 bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& influences, const glm::ivec3& cell) {
   const Influences& first = influences[lattice.place(cell)];
   const glm::ivec3 low = glm::max(cell - 1, lattice.first), high = glm::min(cell + 2, lattice.first + lattice.size);
@@ -216,17 +221,17 @@ bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& infl
   return false;
 }
 
-// The parts of a cell: its sides, then what is stiff, bones rising.
+// Returns the parts of a cell that are posed by their own corners: its sides, then its stiff parts, ascending by bone.
 std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces,
                                const std::vector<Influences>& influences, std::int32_t index) {
   const glm::ivec3 cell = lattice.cells[index];
   std::vector<CellPart> parts;
-  std::vector<std::uint64_t> tissue;  // places of each side's
+  std::vector<std::uint64_t> tissue;  // per side: bits for the subcells that contain its tissue
   if (may_part(lattice, influences, cell)) {
     const Sides sides(lattice, pieces, cell);
     const std::vector<int> found = sides.sides();
     bool differs = found.size() > 1;
-    if (found.size() == 1) {  // the cell's vertices may follow tissue on the other side of a gap all the same
+    if (found.size() == 1) {  // even then the cell's vertices may follow tissue on the other side of a gap
       const std::array<Influences, 8> alone = sides.influences(found[0]);
       for (int c = 0; c < 8; ++c)
         differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;
@@ -282,7 +287,7 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
   lattice.first = glm::ivec3(-1);
   lattice.size = (grid.size + step - 1) / step + 2;
 
-  // Cells and vertices.
+  // Lists the cells and their vertices.
   const std::vector<std::uint8_t> used = cells_in_use(lattice, tissue);
   std::vector<std::uint8_t> is_vertex(lattice.places());
   size_t at = 0;
@@ -295,7 +300,7 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
           for (int i = 0; i < 8; ++i) is_vertex[lattice.place(cell + corner_of(i))] = 1;
         }
 
-  // What the tissue of each cell gives to its corners.
+  // Collects the bone weights that each cell gives to its corners, and the distances of the corners from tissue.
   const std::vector<CellPiece> pieces = cell_pieces(tissue, weights, step, grid.spacing);
   std::vector<Influences> influences(lattice.places());
   lattice.depth.assign(lattice.places(), kUnknown);
@@ -308,7 +313,8 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
     }
   }
 
-  // Of the vertices with tissue around, then of those that have such neighbours, until all follow something.
+  // Normalizes the influences of vertices that have tissue around them. Then vertices without tissue follow their
+  // neighbours, ring by ring, until all follow some bone.
   at = 0;
   std::vector<glm::ivec3> open;
   const glm::ivec3 last = lattice.first + lattice.size;

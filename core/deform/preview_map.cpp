@@ -19,15 +19,15 @@ namespace limber {
 
 namespace {
 
-constexpr int kTile = 8;             // nodes an edge of what is rasterized again as a whole
-constexpr int kMargin = 3;           // cells around the grid that a rest point may lie in
-constexpr double kFurthest = 32000;  // cells; fixed point holds 32 768
+constexpr int kTile = 8;             // nodes along the edge of a tile, the unit in which nodes are recomputed
+constexpr int kMargin = 3;           // width in cells of the border around the grid in which rest points may lie
+constexpr double kFurthest = 32000;  // largest coordinate of a posed vertex, cells; fixed point allows 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
-constexpr double kHeld = 2;         // cells beside a tet mesh that it carries
-constexpr double kNear = 1.0 / 32;  // cells: nodes that chords place this well are left there
-constexpr double kFar = 1.0 / 8;    // cells: nodes that chords miss by more are placed in two steps
-constexpr float kAcross = 2.5;  // steps at rest that nodes of one sheet are apart at most, for each step between them
-constexpr std::int8_t kMostApart = CellPart::kStepApart;  // what is further does not tell how far
+constexpr double kHeld = 2;         // largest distance from a tet mesh at which it carries vertices, cells
+constexpr double kNear = 1.0 / 32;  // a smaller error of the trilinear map is not corrected, cells
+constexpr double kFar = 1.0 / 8;    // a larger error is corrected by two Newton steps, cells
+constexpr float kAcross = 2.5;      // largest distance at rest of two nodes of one sheet, steps per step between them
+constexpr std::int8_t kMostApart = CellPart::kStepApart;  // larger distances are stored as this value
 constexpr std::array<glm::ivec3, 8> kCorners = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
@@ -36,8 +36,8 @@ glm::ivec3 tile_of(const glm::ivec3& node) {
   return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)};
 }
 
-// What fractions are of. A step is a whole number of them and low lies whole steps from the nodes: at rest every node
-// is exact.
+// The range of rest coordinates that nodes store as fractions (16-bit integers). A step is a whole number of fractions,
+// and `low` lies whole steps from the nodes, so that every node is exact at rest.
 struct Span {
   glm::dvec3 low, extent;
 };
@@ -48,7 +48,7 @@ Span span_of(const PreviewLattice& lattice) {
           PreviewMap::kFullFraction * step / glm::floor(PreviewMap::kFullFraction * step / least)};
 }
 
-// A node as whole numbers in one register.
+// Returns a node's rest point (fractions) as integers in one register.
 Lanes lanes_of(const glm::u16vec4& node) { return Lanes{node.x, node.y, node.z, 0}; }
 Lanes most(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 Lanes least(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
@@ -87,7 +87,7 @@ double PreviewMap::apart_between(const glm::dvec3& place) const {
   return sum;
 }
 
-// Of the covered nodes around.
+// Interpolates the rest points of those nodes around a position that have one (covered nodes).
 std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   const glm::dvec3 corner = glm::floor(place), t = place - corner;
   glm::dvec3 sum(0);
@@ -100,11 +100,11 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
     sum += share * rest_of_node(node);
     total += share;
   }
-  if (total < 0.5) return std::nullopt;  // what little is covered tells nothing
+  if (total < 0.5) return std::nullopt;  // too few covered nodes
   return sum / total;
 }
 
-// Fills the stale rows of PreviewMap::nodes and its cubes from what cells have claimed.
+// Computes the stale rows of PreviewMap::nodes and of its cubes from the cells' claims.
 class LivePreview::Finish {
  public:
   Finish(Made& made, const LivePreview& preview)
@@ -124,6 +124,7 @@ class LivePreview::Finish {
     }
   }
 
+  // Copies the claimed rest points of one layer of nodes, and extrapolates to nodes just outside.
   void layer(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -140,7 +141,7 @@ class LivePreview::Finish {
     }
   }
 
-  // Needs all layers.
+  // Finds the edges of a layer whose two nodes lie on different sheets of the body. All layers must be filled.
   void edges(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -154,7 +155,7 @@ class LivePreview::Finish {
     }
   }
 
-  // Needs all edges.
+  // Finds the states of a layer's cubes of eight nodes. edges() must have run for all layers.
   void cubes(int z) {
     if (z + 1 >= map_.size.z) return;
     for (int y = 0; y + 1 < map_.size.y; ++y) {
@@ -167,8 +168,8 @@ class LivePreview::Finish {
  private:
   const std::array<int, 2>& stale(int y, int z) const { return stale_[y + std::int64_t{map_.size.y} * z]; }
 
-  // The mean of what the claimed nodes next to it lead to, each with the one behind it, as far as they agree; nothing
-  // where there are none. (The tiles leave two nodes at every border that no cell claims.)
+  // Extrapolates the rest point of a node from claimed neighbours and the nodes behind these: the mean of all results
+  // that agree with the first. (At every border of the tiles are two nodes that no cell claims.)
   void carry_on(std::int64_t at) {
     Lanes sum{}, first{};
     int count = 0, border = CellPart::kFarApart;
@@ -196,7 +197,7 @@ class LivePreview::Finish {
     return glm::dot(steps, steps);
   }
 
-  // Whether a node and the next one along an axis lie on different sheets.
+  // Returns whether a node and the next node along an axis lie on different sheets of the body.
   bool edge_jumps(std::int64_t at, int axis) const {
     const std::int64_t next = at + strides_[axis];
     if (!map_.nodes[next].w) return false;
@@ -214,7 +215,7 @@ class LivePreview::Finish {
     }
     bool bordered = false, jumps = false;
     for (int i = 0; i < 8; ++i) {
-      bordered = bordered || map_.apart[at + offsets_[i]] < 0;  // 0 where not covered
+      bordered = bordered || map_.apart[at + offsets_[i]] < 0;  // the value is 0 where not covered
       jumps = jumps || (jumps_[at + offsets_[i]] & ~i & 7);
     }
     if (low.w) map_.reach[at] = {glm::u16vec3(low), glm::u16vec3(high)};
@@ -222,11 +223,11 @@ class LivePreview::Finish {
     map_.cubes[at] = jumps ? PreviewMap::kBroken : bordered ? PreviewMap::kBordered : PreviewMap::kWhole;
   }
 
-  // Lowest and highest of a cube's nodes, covered or not, two at a time.
+  // Returns the least and greatest components of a cube's nodes, covered or not. Compares two nodes at a time.
   std::array<glm::u16vec4, 2> bounds(const glm::u16vec4* nodes) const {
     using Shorts = short __attribute__((vector_size(16)));
-    constexpr short kSign =
-        std::numeric_limits<short>::min();  // turns the order of unsigned numbers into that of signed ones
+    // Flipping the sign bit turns the order of unsigned integers into that of signed integers.
+    constexpr short kSign = std::numeric_limits<short>::min();
     constexpr Shorts kSigns{kSign, kSign, kSign, kSign, kSign, kSign, kSign, kSign};
     Shorts low, high;
     for (const int i : {0, 2, 4, 6}) {
@@ -244,7 +245,8 @@ class LivePreview::Finish {
     return {glm::min(lows[0], lows[1]), glm::max(highs[0], highs[1])};
   }
 
-  // Nodes of two sheets may lie across a cube that some nodes are missing from. Also bounds those that are there.
+  // Returns whether any two nodes of a cube lie on different sheets. The edges alone cannot tell if nodes are not
+  // covered. Also sets the bounding box of the covered nodes' rest points.
   bool jumps_across(std::int64_t at) {
     std::array<Lanes, 8> c{};
     int count = 0;
@@ -274,12 +276,12 @@ class LivePreview::Finish {
   const LivePreview& preview_;
   const std::vector<glm::u16vec4>& claimed_;
   std::array<std::int64_t, 3> strides_;
-  std::array<std::int64_t, 8> offsets_;  // of a cube's corners
+  std::array<std::int64_t, 8> offsets_;  // index offsets of a cube's eight nodes
   Lanes jump_{}, steepest_{};
-  glm::vec3 steps_{0};  // of a fraction
+  glm::vec3 steps_{0};  // by axis: length of one fraction unit, in steps
 };
 
-// What is rasterized again: whole tiles of nodes.
+// The tiles of nodes, and which of them must be recomputed (dirty).
 struct LivePreview::Tiles {
   glm::ivec3 first, size;
   std::vector<std::uint8_t> dirty;
@@ -292,7 +294,7 @@ struct LivePreview::Tiles {
     return first + glm::ivec3(i % size.x, i / size.x % size.y, i / size.x / size.y);
   }
 
-  // body(index) for the tiles that a range reaches.
+  // Calls body(index) for each tile that contains nodes of the range.
   template <class Body>
   void reached(const VoxelRange& range, const Body& body) const {
     if (range.empty()) return;
@@ -303,7 +305,7 @@ struct LivePreview::Tiles {
   }
 };
 
-// The claims on the nodes of one tile.
+// The nodes of one tile, each with the cell that claims (covers) it and the rest point there.
 class LivePreview::Tile {
  public:
   Tile(const LivePreview& preview, const glm::ivec3& tile) : preview_(preview), low_(tile * kTile) { cell_.fill(-1); }
@@ -322,7 +324,7 @@ class LivePreview::Tile {
     inverted_[at] = inverted;
   }
 
-  // Row y of slice z of what was claimed.
+  // Writes the claims on row y of layer z to the arrays of all nodes.
   void write(int y, int z, glm::u16vec4* row, std::int32_t* cells, std::int8_t* apart, const Span& span) const {
     const double step = preview_.lattice_.step;
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / span.extent;
@@ -364,7 +366,7 @@ class LivePreview::Tile {
   const LivePreview& preview_;
   glm::ivec3 low_;
   std::array<std::int32_t, kNodes> cell_;
-  std::array<glm::dvec3, kNodes> rest_;  // cell coordinates
+  std::array<glm::dvec3, kNodes> rest_;  // claimed rest points, cell coordinates
   std::array<bool, kNodes> inverted_;
 };
 
@@ -383,7 +385,7 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
 
-  std::vector<int> only(lattice_.places(), -1);  // bone that a vertex follows alone
+  std::vector<int> only(lattice_.places(), -1);  // the bone that a vertex follows, -1: several
   for (size_t i = 0; i < lattice_.vertices.size(); ++i)
     if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1)
       only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
@@ -426,7 +428,7 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
   return map_;
 }
 
-// Finds what of the mesh carries what of the lattice.
+// Finds the vertices and the parts' corners that move with a tet mesh.
 void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   carried_.reset();
   if (!mesh) return;
@@ -436,7 +438,7 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   for (const glm::ivec3& vertex : lattice_.vertices)
     points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
   for (const CellPart& part : lattice_.parts) {
-    // The place of a side that is furthest from all other sides is surely its own.
+    // The anchor is the part's subcell that is furthest from other sides of the gap: it surely belongs to this side.
     int deepest = 0;
     for (int place = 0; place < 64; ++place)
       if (part.holds(place) && (!part.holds(deepest) || part.apart[place] > part.apart[deepest])) deepest = place;
@@ -450,7 +452,7 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   carried_.emplace(mesh, lattice_.grid, points, furthest);
 }
 
-// False when nothing moved.
+// Poses the vertices and the parts' corners that move. Returns false if nothing moved.
 bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh) {
   const bool all = !map_ || blend != blend_ || mesh.rest != mesh_.rest;
   if (all) size_ = glm::ivec3(0);
@@ -459,7 +461,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
     bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation ||
                      posed_from_rest[b].translation != posed_from_rest_[b].translation;
   if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_) return false;
-  map_ = nullptr;  // until this update has ended: what throws half way leaves nothing to build upon
+  map_ = nullptr;  // null until this update ends: after an exception the next one starts anew
 
   if (mesh.rest != mesh_.rest) hold_by(mesh.rest);
   mesh_ = mesh;
@@ -472,7 +474,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
-  // What bones do alone, in cells: by how much the corner with the index moves.
+  // By bone: maps a vertex index to the motion of that vertex under this bone alone, in cells.
   std::vector<AffineTransform> moves;
   for (const RigidTransform& bone : posed_from_rest) {
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
@@ -486,7 +488,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
                     "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
-  //   motion  where what the bones do together is kept for cells that bend; null: nowhere
+  // Returns the posed position of a vertex. If `motion` is not null, also stores the blended motion of the vertex's
+  // bones there, which cells that do not move rigidly need.
   const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
     glm::dvec3 at = glm::dvec3(vertex) - 0.5;
     if (influences.size() == 1) {
@@ -550,7 +553,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   return true;
 }
 
-// The rest point whose image the node is, near `rest`, which is what the chords between the cell's corners say.
+// Returns the rest point that the blended motion moves to a node, in a cell that bends.
+//   rest  the rest point by the trilinear map of the cell's corners, where the search starts
 glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
   if (mesh_.rest) return rest;
   const glm::ivec3 middle = this->middle(cell);
@@ -566,7 +570,7 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);
   const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };
   if (is_within(kNear)) return rest;
-  // What the chords say of the slope is right to a fraction of what is missing.
+  // The slope of the trilinear map is close enough for Newton steps.
   const glm::dmat3 slope = this->slope(cell);
   if (!(glm::determinant(slope) > 0.05)) return rest;
   const glm::dmat3 back = glm::inverse(slope);
@@ -582,14 +586,14 @@ const FixedPoint& LivePreview::corner(std::int64_t cell, int i) const {
   return part(cell) ? posed_parts_[part_of(cell)][i] : posed_[lattice_.place(middle(cell) + kCorners[i])];
 }
 
-// Of motion_, -1 in a cell that does not bend.
+// Returns the index of a cell corner's motion in motion_; -1: the cell does not bend.
 std::int32_t LivePreview::motion(std::int64_t cell, int corner) const {
   if (!part(cell)) return motion_of_[lattice_.place(middle(cell) + kCorners[corner])];
   const std::int32_t first = first_motion_[part_of(cell)];
   return first < 0 ? first : first + corner;
 }
 
-// Of its posed place along rest, both in cells, on the whole.
+// Returns the mean derivative of a cell's posed position by its rest position, both in cells.
 glm::dmat3 LivePreview::slope(std::int64_t cell) const {
   glm::dmat3 slope(0);
   for (int i = 0; i < 8; ++i)
@@ -598,10 +602,10 @@ glm::dmat3 LivePreview::slope(std::int64_t cell) const {
   return slope;
 }
 
-// Whether a node and the next one along an axis are both far from where the other's cell leads to.
-//   apart  from the node's rest point to the next one's, voxels
+// Returns whether two neighbouring nodes are each far from where the other node's cell would place them.
+//   apart  vector from the node's rest point to that of the next node, voxels
 bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
-  // Away from gaps only folds part, and a joint may twist much in little room.
+  // Doubled away from gaps: only folds separate sheets there, and a joint may twist strongly in little space.
   const bool at_gap = claimed_apart_[node] < CellPart::kFarApart || claimed_apart_[next] < CellPart::kFarApart;
   const double stray = (at_gap ? 1 : 2) * PreviewMap::kStray * lattice_.step;
   for (const std::int64_t each : {node, next}) {
@@ -628,8 +632,7 @@ PosedCell LivePreview::posed_cell(std::int64_t cell) const {
   return PosedCell(&posed_[lattice_.place(middle(cell))], int(lattice_.row()), int(lattice_.slice()), middle(cell));
 }
 
-// The nodes in the box of each moved cell, and the tiles that hold them all with a margin for nodes that are carried
-// on.
+// Finds the range of nodes in the bounding box of each moved cell.
 void LivePreview::bound_cells() {
   parallel_for(cell_count(), 512, [&](std::int64_t begin, std::int64_t end) {
     for (auto i = begin; i < end; ++i) {
@@ -673,7 +676,7 @@ void LivePreview::rasterize() {
     }
   }
 
-  // The cells of every dirty tile, by rising index.
+  // Lists the cells that reach each dirty tile, ascending.
   std::vector<std::int64_t> begin(count + 1);
   for (const VoxelRange& range : range_) tiles.reached(range, [&](std::int64_t t) { begin[t + 1] += tiles.dirty[t]; });
   std::vector<std::int32_t> work;
@@ -710,8 +713,9 @@ void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* 
     }
 }
 
-// What is finished from the nodes of a tile: nodes carried on from them, edges to those, and cubes.
-//   low  its lowest node
+// Marks all values that depend on the nodes of a tile as stale: nodes extrapolated from them, edges to those, and
+// cubes.
+//   low  the tile's lowest node
 void LivePreview::mark_stale(const glm::ivec3& low) {
   const glm::ivec3 from = glm::max(low - 3, glm::ivec3(0)), to = glm::min(low + kTile + 2, size_);
   for (Made& made : made_)
@@ -723,11 +727,11 @@ void LivePreview::mark_stale(const glm::ivec3& low) {
       }
 }
 
-// A map of the present size that nobody else holds.
+// Returns a map of the current size that no one else uses.
 LivePreview::Made& LivePreview::spare() {
   Made& made = made_[made_[0].map.use_count() > made_[1].map.use_count()];
   const bool is_free = made.map && made.map.use_count() == 1;
-  std::atomic_thread_fence(std::memory_order_acquire);  // after whatever the last other holder has read
+  std::atomic_thread_fence(std::memory_order_acquire);  // orders this after the last reads of other owners
   if (is_free && made.map->first == first_ && made.map->size == size_) return made;
   const Span span = span_of(lattice_);
   if (!is_free) made.map = std::make_shared<PreviewMap>();

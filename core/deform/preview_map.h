@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The live preview: where each place of the posed body comes from, coarse enough to be made anew for every picture
-// while a bone is dragged. A PreviewMap holds rest points at nodes that lie `step` voxels apart over the posed body;
-// between nodes it is read linearly. The cells of preview_lattice.h, posed, say which rest point a node is the image
-// of, by the rules of inverse_map.h where two cells claim one node. Cells that bend are curved, and their corners'
-// chords would take off what bulges: inside them the motions of the corners are blended as those of bones are, and a
-// node's rest point is where that leads to the node, a step or two from what the chords say.
+// The live preview: an inverse map of the posed body, coarse enough to be recomputed for every frame while a bone is
+// dragged. A PreviewMap stores the rest points of nodes that lie `step` voxels apart over the posed body, and
+// interpolates linearly between them. The posed cells of preview_lattice.h give each node its rest point; if two cells
+// claim a node, the rules of inverse_map.h decide. A cell that bends is curved, so the straight (trilinear) map of its
+// corners would flatten bulges. Inside it, the corners' motions are therefore blended like those of bones, and Newton
+// steps from the straight map's rest point find the one that this blended motion moves to the node.
 //
-// Nodes just outside all cells carry their neighbours' map on, straight; so the eight nodes around any place of the
-// body are there. Where those eight jump, in a fold, two sheets of the body meet between them: a place there reads the
-// nearest node and what lies as far on that node's other side, mirrored through it, and so stays on one sheet. What is
-// carried on may lead into tissue of another side (preview_lattice.h), which has gone elsewhere; so each node knows how
-// far that is, and beyond the border, where that distance falls below zero, nothing is read.
+// Nodes just outside all cells extrapolate their neighbours linearly, so that all eight nodes around any point of the
+// body have rest points. If these eight jump, in a fold, two sheets of the body meet between them. A point there is
+// extrapolated from its nearest node and the point mirrored through that node, and so stays on one sheet. Extrapolation
+// may lead into tissue of another side (preview_lattice.h), which is posed elsewhere. So each node stores its distance
+// from such tissue; where the distance falls below zero, beyond the sheet's border, the map is empty.
 //
-// Where tissue is carried by a tet mesh, as while finite elements settle, vertices near the mesh go where that takes
-// them (carried_points.h) instead of with their bones; cells are then read straight, by their chords.
+// Where a tet mesh carries tissue, as while finite elements settle, vertices near the mesh move with it
+// (carried_points.h) instead of with their bones. Cells are then read by the straight map of their corners.
 //
-// Only the surroundings of cells that moved are rasterized and finished again, in the memory of the map before last
-// where nobody holds that any longer. What comes out never depends on what was posed before.
+// Only the surroundings of cells that moved are recomputed, in the memory of the map before last if no one else uses
+// it. The result never depends on earlier poses.
 #pragma once
 
 #include <array>
@@ -35,24 +35,27 @@ namespace limber {
 
 struct PreviewMap {
   static constexpr int kFullFraction = 65535;
-  // Of a cube: nothing known there; its nodes lie on one sheet; so they do, but some beyond its border; they jump.
+  // The states of a cube of eight nodes. kNothing: no node is covered. kWhole: all lie on one sheet of the body.
+  // kBordered: all lie on one sheet, but some beyond its border. kBroken: they lie on different sheets.
   static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBordered = 64, kBroken = 128;
 
-  // Boxes of rest points, in the nodes' own fractions.
+  // A bounding box of rest points, in fractions as in `nodes`.
   struct RestBox {
     glm::u16vec3 low, high;
   };
 
   int step = 4;
-  Grid grid;                     // of the volume; posed points are in its voxels too
-  glm::ivec3 first{0}, size{0};  // node n lies at the voxel coordinates (first + n + 1/2) step - 1/2
-  std::vector<glm::u16vec4>
-      nodes;  // rest point as fractions of [low, low + extent]; the last is kFullFraction where covered, or 0
-  std::vector<std::int8_t> apart;   // by node: at rest, to what is beyond the border of its sheet, CellPart::kStepApart
-                                    // a step; 0 where not covered
-  std::vector<std::uint8_t> cubes;  // between node n and n + 1; as many as nodes
-  std::vector<RestBox> reach;       // of each cube's covered nodes; meaningless in cubes without any
-  glm::dvec3 low{0}, extent{1};     // voxel coordinates
+  Grid grid;                     // the volume's grid, in whose voxel coordinates posed points are too
+  glm::ivec3 first{0}, size{0};  // node n lies at voxel coordinates (first + n + 1/2) * step - 1/2
+  // Rest points as fractions of [low, low + extent]. The last component is kFullFraction for nodes with a rest point
+  // (covered nodes), else 0.
+  std::vector<glm::u16vec4> nodes;
+  // By node: the distance at rest from tissue beyond the border of the node's sheet, in steps / CellPart::kStepApart.
+  // Negative beyond the border; 0 where not covered.
+  std::vector<std::int8_t> apart;
+  std::vector<std::uint8_t> cubes;  // state of the cube from node n to n + 1, at index n
+  std::vector<RestBox> reach;       // bounding box of each cube's covered nodes; undefined if it has none
+  glm::dvec3 low{0}, extent{1};     // range of rest points, voxel coordinates
 
   std::int64_t index(const glm::ivec3& n) const {
     return n.x + std::int64_t{size.x} * (n.y + std::int64_t{size.y} * n.z);
@@ -69,16 +72,16 @@ struct PreviewMap {
   }
   glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of_node_at(index(n)); }
   glm::dvec3 rest_of_node_at(std::int64_t at) const { return rest_of(glm::u16vec3(nodes[at])); }
-  // Two nodes next to each other lie on different sheets where they are further apart than this at rest, voxels...
-  // (A joint twisted by a right angle moves as much as 3 steps without a fold.)
+  // Largest distance at rest between neighbouring nodes of one sheet, voxels. (A joint twisted by a right angle moves
+  // them as much as 3 steps apart without a fold.)
   double jump() const { return 5.0 * step; }
-  // ... or where each is further from where the other's cell leads to than this, steps (twice as far where no gap is
-  // near).
+  // Largest distance, in steps, of a node from where the cell of a neighbouring node of the same sheet would place it.
+  // It is doubled where no gap is near.
   static constexpr double kStray = 1.5;
-  // What is carried on beyond the nodes of a sheet is no steeper, voxels for a step.
+  // Steepest slope that is extrapolated beyond the nodes of a sheet, voxels per step.
   double steepest() const { return 1.5 * step; }
 
-  // The rest point of a posed point, both in voxel coordinates; none outside the body's surroundings.
+  // Returns the rest point of a posed point, both in voxel coordinates; nothing if the point is not near the body.
   std::optional<glm::dvec3> rest_at(const glm::dvec3& posed) const;
 
  private:
@@ -86,44 +89,44 @@ struct PreviewMap {
   double apart_between(const glm::dvec3& place) const;
 };
 
-// A tet mesh and where its nodes are. Equal pointers are equal contents.
+// A tet mesh and its posed nodes. Equal pointers mean equal contents.
 struct MeshPose {
   std::shared_ptr<const TetMesh> rest;
-  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V by 3, world, mm
+  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V by 3 posed nodes, world, mm
 
   bool operator==(const MeshPose&) const = default;
 };
 
 class LivePreview {
  public:
-  // `weights` are only read here.
-  //   step  as preview_step() tells, or 2, 4, 8
+  // Reads `weights` in the constructor only, so that they need not outlive the preview.
+  //   step  edge of a cell in voxels: preview_step(), or 2, 4 or 8
   LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
               const SkinWeights& weights, int step);
 
-  // The map of a pose. Another pointer than before only where it differs.
-  //   posed_from_rest  #bones of the weights
-  //   mesh             what carries the tissue near it; empty: nothing does
-  // throws Error where the pose carries tissue too far
+  // Returns the map of a pose. It is the same pointer as before if the pose is the same.
+  //   posed_from_rest  motions of the bones of the weights
+  //   mesh             a mesh that carries the tissue near it; empty: none
+  //   throws Error if the pose moves tissue too far
   std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
                                            const MeshPose& mesh = {});
 
   const PreviewLattice& lattice() const { return lattice_; }
-  std::int64_t cells_rasterized() const { return cells_rasterized_; }  // by the last update
+  std::int64_t cells_rasterized() const { return cells_rasterized_; }  // number of cells in the last update
 
  private:
   struct Tiles;
   class Tile;
   class Finish;
 
-  // A map, and what has to be done again before it tells the present pose.
+  // A map, and the rows of nodes that must be recomputed before it matches the current pose.
   struct Made {
     std::shared_ptr<PreviewMap> map;
-    std::vector<std::uint8_t> jumps;        // by node: bit per axis along which the next one lies on another sheet
-    std::vector<std::array<int, 2>> stale;  // by row of nodes (y, then z): first and end
+    std::vector<std::uint8_t> jumps;        // by node: a bit per axis along which the next node lies on another sheet
+    std::vector<std::array<int, 2>> stale;  // by row of nodes (y, then z): first and end of the stale nodes
   };
 
-  // The cells of the lattice and, after them, their parts.
+  // In these functions `cell` is an index into the lattice's cells, followed by its parts.
   std::int64_t cell_count() const { return std::ssize(range_); }
   std::int64_t part_of(std::int64_t cell) const { return cell - std::ssize(lattice_.cells); }
   const CellPart* part(std::int64_t cell) const { return part_of(cell) < 0 ? nullptr : &lattice_.parts[part_of(cell)]; }
@@ -148,33 +151,34 @@ class LivePreview {
 
   std::shared_ptr<const LabelVolume> volume_;
   PreviewLattice lattice_;
-  std::vector<int> priority_;                // by label; air lowest
-  std::vector<std::int32_t> motion_of_;      // by place: of motion_, at the corners of cells that can bend; else -1
-  std::vector<std::int32_t> first_motion_;   // by part: of its corners; -1 for those that cannot bend
-  std::vector<BoneWeight> part_influences_;  // of corner c of part p: from part_offsets_[8 p + c] up to the next one
+  std::vector<int> priority_;                // by label: priority of its tissue; air has the lowest
+  std::vector<std::int32_t> motion_of_;      // by lattice place: index into motion_; -1: no posed cell there bends
+  std::vector<std::int32_t> first_motion_;   // by part: index into motion_ of its corner 0; -1: it cannot bend
+  std::vector<BoneWeight> part_influences_;  // influences of corner c of part p begin at part_offsets_[8 * p + c]
   std::vector<std::int32_t> part_offsets_;
 
   AffineTransform world_from_cell_;
-  glm::dmat3 cell_from_world_{1};  // of directions
+  glm::dmat3 cell_from_world_{1};  // for directions only
 
-  // The last pose.
+  // The state of the last pose that was computed.
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   MeshPose mesh_;
-  std::optional<CarriedPoints> carried_;  // by mesh_: the vertices, then eight for each part
-  std::vector<FixedPoint> posed_;         // by place of the lattice
-  std::vector<SkinTransform> motion_;     // blended from those of bones
+  std::optional<CarriedPoints> carried_;  // points that mesh_ may carry: all vertices, then eight corners per part
+  std::vector<FixedPoint> posed_;         // by lattice place: posed position of the vertex
+  std::vector<SkinTransform> motion_;     // blended motions at corners of cells that can bend
   std::vector<std::array<FixedPoint, 8>> posed_parts_;
-  std::vector<std::uint8_t> moved_, part_moved_;  // by place, by part: by the update under way
+  std::vector<std::uint8_t> moved_, part_moved_;  // by lattice place, by part: whether this update moves it
   std::vector<std::uint8_t> bone_moved_;
-  std::vector<VoxelRange> range_,
-      before_;                     // by cell: absolute nodes that its image can hold, of this update and of the last
-  glm::ivec3 first_{0}, size_{0};  // nodes, whole tiles
-  std::vector<glm::u16vec4> claimed_;  // by node: what a cell says
+  // By cell: the range of nodes (counted from the voxel grid, not from first_) that its posed image can contain, in
+  // this update and in the last one.
+  std::vector<VoxelRange> range_, before_;
+  glm::ivec3 first_{0}, size_{0};      // range of nodes, in whole tiles
+  std::vector<glm::u16vec4> claimed_;  // by node: the rest point that a cell claims, as in PreviewMap::nodes
   std::vector<std::int8_t> claimed_apart_;
-  std::vector<std::int32_t> claiming_;  // by node: that cell, -1 for none
+  std::vector<std::int32_t> claiming_;  // by node: the cell that claims it, -1: none
   std::array<Made, 2> made_;
-  std::shared_ptr<const PreviewMap> map_;  // the last one made
+  std::shared_ptr<const PreviewMap> map_;  // result of the last update
   std::int64_t cells_rasterized_ = 0;
 };
 

@@ -7,14 +7,14 @@ namespace limber {
 
 namespace {
 
-// Corners of the five tets, positively oriented: the middle one first, then those at corners kCutOff. The first row is
-// for cubes whose lowest corner's coordinates add up to an even number.
+// The corners of a cube's five tets, positively oriented: first the central tet, then each tet cut off at the corner
+// that is listed first. The first row is for cubes whose lowest corner's coordinates add up to an even number.
 constexpr int kTetCorners[2][5][4] = {
     {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 3, 6, 0}, {4, 5, 0, 6}, {7, 6, 3, 5}},
     {{7, 4, 2, 1}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}},
 };
 
-constexpr double kRounding = 1e-9;  // of places in a cube computed in double
+constexpr double kRounding = 1e-9;  // rounding error of positions in a cube, in half edges of the cube
 
 int parity(const glm::ivec3& v) { return (v.x + v.y + v.z) & 1; }
 
@@ -27,11 +27,12 @@ double largest_row_sum(const glm::dmat3& m) {
   return largest;
 }
 
-// Corners further apart than this (1024 voxels) are left to the tets: the sum of eight must fit.
+// Extent in fixed point (1024 voxels) above which cubes are rasterized tet by tet, since the sum of eight corners must
+// fit an int.
 constexpr int kLargestExtent = 1 << 26;
 
-// The trilinear map of a cube by its eight coefficients, times 8, of the corners: index bits say which of x, y, z are
-// multiplied (a Hadamard transform).
+// Returns the eight coefficients, times 8, of a cube's trilinear map from its corners (a Hadamard transform). The bits
+// of a coefficient's index tell which of x, y, z it multiplies.
 std::array<Lanes, 8> trilinear_coefficients(std::array<Lanes, 8> c) {
   for (int bit : {1, 2, 4})
     for (int i = 0; i < 8; ++i)
@@ -78,7 +79,7 @@ PosedCell::Inverse PosedCell::affine_inverse() const {
     from_first[i + 1] = odd - first;
   }
   const auto c = trilinear_coefficients(from_first);
-  const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half edges
+  const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half of the cube's mean edges
   const glm::dmat3 faces(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
   const double determinant = glm::dot(x, faces[0]);
   if (!(determinant > 1e-6)) return inverse;
@@ -108,7 +109,7 @@ int PosedCell::first_tet_with(const glm::ivec3& voxel) const {
 }
 
 int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
-  const glm::ivec3 size = box_.high - box_.low;  // up to two voxels less than the cube's extent
+  const glm::ivec3 size = box_.high - box_.low;  // up to two voxels smaller than the cube's extent
   const bool is_small = std::max({size.x, size.y, size.z}) + 2 <= kSmallExtent && box_.contains(voxel);
   return is_small ? first_tet_with<std::int64_t>(voxel) : first_tet_with<__int128>(voxel);
 }

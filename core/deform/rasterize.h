@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which voxel centres lie in a posed cell, and which rest point each of them is the image of.
+// Finds which voxel centres lie in a posed cell, and which rest point the pose moves to each of them.
 //
-// A cube is split into five tets: one on the four corners whose coordinates add up to an even number, four cut off at
-// the odd corners. Neighbouring cubes are mirror images, so their diagonals meet. (The split into six tets around a
-// main diagonal puts every voxel centre of the rest pose on an edge of all six; here it lies in the middle of one.)
+// A cube is split into five tets: one on the four corners whose coordinates add up to an even number, and four cut off
+// at the odd corners. Neighbouring cubes are mirror images, so their diagonals meet. (A split into six tets around a
+// main diagonal would put every voxel centre of the rest pose on an edge of all six; here it lies in the middle of
+// one.)
 //
-// Every voxel centre covered by a mesh of such cells is claimed by exactly one tet, always: vertices are whole numbers
-// of 1/65536 voxel, so the side of a face a centre lies on is computed exactly, and a centre *on* a face counts as
-// moved by (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity], which is
-// the half-open rule of triangle rasterizers carried to tets. This holds where no tet is inverted and none overlap
-// otherwise.
+// Exactly one tet claims every voxel centre that a mesh of such cells covers. Vertices are whole numbers of 1/65536
+// voxel, so the side of a face on which a centre lies is computed exactly. A centre *on* a face counts as moved by
+// (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity]. This is the
+// half-open rule of triangle rasterizers, extended to tets. It holds where no tet is inverted and no tets overlap.
 //
-// Exact tests are the last resort. A cube's map is nearly affine: its inverse gives each centre's place in the cube
-// with an error bounded by the cube's departure from affine, and only centres within that bound of a face are tested
-// exactly. Where the departure is next to nothing that place is the rest point too, and the tets are not asked.
+// Exact tests are the last resort. A cube's map is nearly affine: the inverse of its affine part gives each centre's
+// position in the cube, with an error that the cube's deviation from affine bounds. Only centres within that bound of a
+// face are tested exactly. If the deviation is tiny, that position also gives the rest point, and no tet is needed.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 
 namespace limber {
 
-// The voxel centres in the box of some posed points.
+// Returns the range of voxels whose centres lie in the bounding box of posed points.
 template <std::size_t N>
 VoxelRange voxels_in_box(const std::array<FixedPoint, N>& points) {
   FixedPoint low = points[0], high = points[0];
@@ -34,14 +34,14 @@ VoxelRange voxels_in_box(const std::array<FixedPoint, N>& points) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  // Shifts of negative numbers round down.
+  // Right shifts of negative numbers round down.
   return {(low + (kFixedOne - 1)) >> 16, high >> 16};
 }
 
-constexpr int kSmallExtent = 16;  // voxels
+constexpr int kSmallExtent = 16;  // largest extent of a tet whose products fit std::int64_t, voxels
 
-// The side of a tet's four faces a voxel centre lies on, exactly. `Whole` holds the products: std::int64_t for tets
-// within kSmallExtent, __int128 for all.
+// Computes exactly on which side of each of a tet's four faces a voxel centre lies. `Whole` is the integer type of the
+// products: std::int64_t for tets within kSmallExtent, __int128 for larger ones.
 template <class Whole>
 class TetFaces {
  public:
@@ -70,7 +70,8 @@ class TetFaces {
 
   int orientation() const { return determinant_ > 0 ? 1 : determinant_ < 0 ? -1 : 0; }
 
-  // Positive exactly where the (infinitely little moved) centre lies on the tet's side of face f.
+  // Returns a positive number if the voxel centre lies on the tet's side of face f, and only then. A centre on the face
+  // counts as moved by (d, d^2, d^3), as above.
   Whole side(int f, const glm::ivec3& voxel) const {
     const auto& n = normal_[f];
     return n[0] * (Whole(voxel.x) * kFixedOne - from_[f].x) + n[1] * (Whole(voxel.y) * kFixedOne - from_[f].y) +
@@ -83,16 +84,17 @@ class TetFaces {
   }
 
  private:
-  std::array<std::array<Whole, 3>, 4> normal_;  // face f lies opposite vertex f
-  std::array<FixedPoint, 4> from_;              // a vertex of face f
+  std::array<std::array<Whole, 3>, 4> normal_;  // normal of face f, which lies opposite vertex f
+  std::array<FixedPoint, 4> from_;              // one vertex of face f
   std::array<int, 4> on_face_;
   Whole determinant_;
 };
 
-// Of a row of voxels first .. last those with side > 0 everywhere: an interval, found by whole division.
+// Clips a row of voxels `first` .. `last` to those whose side() is above 0. These form an interval, whose ends follow
+// by integer division.
 template <class Whole>
 void clip_row(Whole side_at_first, Whole step, Whole& first, Whole& last) {
-  auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };  // b > 0
+  auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };  // requires b > 0
   if (step == 0) {
     if (side_at_first <= 0) last = first - 1;
   } else if (step > 0) {
@@ -107,7 +109,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
   const TetFaces<Whole> faces(posed);
   const int orientation = faces.orientation();
   if (orientation == 0) return;
-  const bool is_short = range.high.x - range.low.x < 4;  // asking each voxel takes less than dividing
+  const bool is_short = range.high.x - range.low.x < 4;  // testing each voxel is then faster than dividing
   for (int z = range.low.z; z <= range.high.z; ++z)
     for (int y = range.low.y; y <= range.high.y; ++y) {
       if (is_short) {
@@ -122,13 +124,13 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
-      if (first > last) continue;  // where a face is nearly parallel to the row `first` may be far beyond an int
+      if (first > last) continue;  // before the conversion to int: along a parallel face `first` may be too large
       for (int x = int(first); x <= int(last); ++x) visit(glm::ivec3(x, y, z), orientation);
     }
 }
 
-// visit(voxel, orientation) for every voxel of `clip` whose centre lies in the tet; orientation is 1, or -1 when the
-// tet is inverted. A tet without volume has no voxels.
+// Calls visit(voxel, orientation) for every voxel of `clip` whose centre lies in the tet. The orientation is 1, or -1
+// if the tet is inverted. A tet without volume contains no voxels.
 template <class Visit>
 void rasterize_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& clip, const Visit& visit) {
   const VoxelRange range = intersect(voxels_in_box(posed), clip);
@@ -144,38 +146,37 @@ void rasterize_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& cli
   else visit_tet<__int128>(posed, range, visit);
 }
 
-// What a cell says of a voxel centre.
+// The claim of a cell on a voxel whose centre its posed image covers.
 struct CellClaim {
-  glm::ivec3 voxel;       // of the output
-  glm::dvec3 rest;        // rest point
-  double posed_per_rest;  // volume ratio of the map there, in voxels; negative where it inverts
+  glm::ivec3 voxel;       // output voxel
+  glm::dvec3 rest;        // rest point that the pose moves to the voxel's centre
+  double posed_per_rest;  // local ratio of posed to rest volume, in voxels; negative in inverted cells
 };
 
-// The affine map of a tet, read backward at one posed voxel centre.
-//   rest  vertices, positively oriented
+// Returns the claim on a posed voxel centre, by the inverse of a tet's affine map.
+//   rest  vertices at rest, positively oriented
 CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest,
                        const glm::ivec3& voxel);
 
-// Four whole numbers in one register, the last unused.
+// Four integers in one SIMD register; the last is unused.
 using Lanes = int __attribute__((vector_size(16)));
 
-// Two points that lie one behind the other in memory, in two loads.
+// Loads two adjacent points by two unaligned loads of 16 bytes.
 inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
   constexpr Lanes kThree{-1, -1, -1, 0};
   std::array<Lanes, 2> two;
-  std::memcpy(&two[0], points, sizeof(Lanes));                                                     // x y z x
-  std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // z x y z
+  std::memcpy(&two[0], points, sizeof(Lanes));                                                     // loads x y z x
+  std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // loads z x y z
   two[1] = __builtin_shufflevector(two[1], two[1], 1, 2, 3, 0);
   return {two[0] & kThree, two[1] & kThree};
 }
 
-// A tissue voxel's posed cube.
+// The posed cube of a tissue voxel.
 class PosedCell {
  public:
-  // lowest      its corner of least x, y and z at rest, in a lattice whose corners lie 1, `row` and `slice` apart; it
-  // must
-  //             outlive the cell
-  // rest_voxel  its centre is the middle of the cube at rest
+  //   lowest      the corner with least x, y and z at rest, in an array in which the next corner along x, y and z is 1,
+  //               `row` and `slice` elements further on; the array must outlive the cell
+  //   rest_voxel  the voxel whose centre is the centre of the cube at rest
   PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
       : lowest_(lowest),
         row_(row),
@@ -187,14 +188,14 @@ class PosedCell {
         low = c < low ? c : low;
         high = c > high ? c : high;
       }
-    low = (low + (kFixedOne - 1)) >> 16;  // shifts of negative numbers round down
+    low = (low + (kFixedOne - 1)) >> 16;  // right shifts of negative numbers round down
     high >>= 16;
     box_ = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
 
-  const VoxelRange& box() const { return box_; }  // the voxel centres in the box of its corners
+  const VoxelRange& box() const { return box_; }  // voxels with centres in its bounding box
 
-  // claim(CellClaim) for every voxel of `clip` whose centre lies in the cube.
+  // Calls claim(CellClaim) for every voxel of `clip` whose centre lies in the cube.
   template <class Claim>
   void rasterize(const VoxelRange& clip, const Claim& claim) const {
     const VoxelRange range = intersect(box_, clip);
@@ -226,27 +227,29 @@ class PosedCell {
 
  private:
   static constexpr int kTets = 5;
-  // With a slack below a fifth no tet of the cube can be inverted (its edge matrix stays diagonally dominant).
+  // Upper limit on the slack; cubes with a larger slack are rasterized tet by tet. With a slack below 0.2 no tet of the
+  // cube can be inverted (its edge matrix stays diagonally dominant).
   static constexpr double kLargestSlack = 0.1;
-  static constexpr double kAffineSlack = 0.01;  // rest points are then right to within 0.005 voxel
+  // Upper limit on the slack of cubes that count as affine: their rest points are correct to within 0.005 voxel.
+  static constexpr double kAffineSlack = 0.01;
 
-  // The affine part of the cube's map, read backward.
+  // The inverse of the affine part of the map from a cube's rest position to its posed position.
   struct Inverse {
-    glm::dmat3 place_from_posed{1};  // place in the cube, [-1, 1]^3
-    glm::dvec3 middle{0};
+    glm::dmat3 place_from_posed{1};  // gives positions in the cube, [-1, 1]^3
+    glm::dvec3 middle{0};            // posed centre of the cube
     double posed_per_rest = 0;
-    double slack = 1;  // places are right to within this on each axis
+    double slack = 1;  // largest error of a position in the cube along each axis
   };
 
   Inverse affine_inverse() const;
-  int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // of a voxel inside the cube
+  int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // requires a voxel in the cube
   int find_tet_exactly(const glm::ivec3& voxel) const;                                 // -1: outside
   template <class Whole>
   int first_tet_with(const glm::ivec3& voxel) const;
   std::array<FixedPoint, 4> posed_tet(int t) const;
   CellClaim claim_in(int t, const glm::ivec3& voxel) const;
 
-  // Bit 0 of the index is x, bit 1 y, bit 2 z.
+  // Returns a posed corner; bits 0, 1, 2 of its index are x, y, z.
   const FixedPoint& corner(int i) const { return lowest_[(i & 1) + (i >> 1 & 1) * row_ + (i >> 2) * slice_]; }
 
   const FixedPoint* lowest_;

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr float kNothing = 1e-3f;  // voxels: what rounding alone would shift
+constexpr float kNothing = 1e-3f;  // in voxels: smaller shifts are rounding errors, and set to zero
 
 }  // namespace
 
@@ -38,8 +38,8 @@ SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue
   progress.update("flesh", 1);
 }
 
-// Trilinear in the cell; `corner` is its own. In the order of their places, so that cells that share a side name the
-// same.
+// Returns the trilinear shares that a cell's nodes have in a voxel corner. They are in the order of the nodes' indices
+// in the cell, so that cells that share a face list the same nodes.
 SettledFlesh::Shares SettledFlesh::shares_in(std::int32_t cell, const glm::ivec3& corner) const {
   const glm::ivec3 at = corner - cells_.lowest[cell];
   const float step = 1 / static_cast<float>(cells_.step);
@@ -54,7 +54,8 @@ SettledFlesh::Shares SettledFlesh::shares_in(std::int32_t cell, const glm::ivec3
   return shares;
 }
 
-// -1 in air, and where tissue moves as one.
+// Returns the cell that contains a voxel. -1: air, or tissue of a brick that moves as one rigid body; sets is_rigid in
+// the latter case.
 std::int32_t SettledFlesh::cell_at(const glm::ivec3& voxel, bool& is_rigid) const {
   if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size())))
     return -1;
@@ -81,7 +82,8 @@ glm::vec3 SettledFlesh::corner_shift(const glm::ivec3& lowest, unsigned around) 
   return count ? mean_shift({cells.data(), static_cast<std::size_t>(count)}, lowest + 1) : glm::vec3(0);
 }
 
-// Of all `cells` at their common corner. Most share the nodes there, and say the same.
+// Returns the mean shift of all `cells` at a voxel corner that they share. Most cells share their nodes there, and so
+// have the same shift.
 glm::vec3 SettledFlesh::mean_shift(std::span<const std::int32_t> cells, const glm::ivec3& corner) const {
   const Shares first = shares_in(cells[0], corner);
   const auto shift_of = [&](const Shares& shares) {
@@ -104,7 +106,7 @@ glm::vec3 SettledFlesh::mean_shift(std::span<const std::int32_t> cells, const gl
 
 bool SettledFlesh::corner_shifts(std::int64_t brick, CornerShifts& shifts) const {
   if (cells_.bending[brick] < 0) return false;
-  constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
+  constexpr int kHalo = TissueVoxels::kBrick + 2;  // edge of a brick with a border one voxel wide
   constexpr std::int32_t kRigid = -2;
   std::array<std::int32_t, kHalo * kHalo * kHalo> cells;
   const glm::ivec3 lowest = tissue_->bricks()[brick].corner - 1;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Blending does not know of volume: a raised arm's shoulder swells, the hollow of a bent knee is pressed flat. Here
-// flesh settles: the least and smoothest shifts are found by which coarse cells of tissue (flesh_cells.h) get their
-// volume back. With c the shift of a node and F the deformation gradient in a cell's middle, this is made least:
+// Corrects blended tissue so that it keeps its volume. Blending does not preserve volume: the shoulder of a raised arm
+// swells, the hollow of a bent knee is pressed flat. So the smallest and smoothest shifts are found that restore the
+// volume of coarse cells of tissue (flesh_cells.h). Let c be the shift of a node and F the deformation gradient in the
+// centre of a cell. The shifts minimise
 //
-//   sum over cells  fill * ( h^2 |grad c|^2  +  kVolume |F - P|^2 )
-//     +   sum over nodes  ( |c / (kReach h)|^2  +  kBone * bone * |c|^2 )
+//    sum over cells  fill * ( h^2 |grad c|^2  +  kVolume |F - P|^2 )
+//      +   sum over nodes  ( |c / (kReach h)|^2  +  kBone * bone * |c|^2 )
 //
-// and nodes inside a bone that they do not belong to are pulled to its surface (posed_bones.h), nodes inside other
-// flesh half of the way out of it (flesh_contact.h). P is the matrix near F by whose determinant the cell would have
-// its volume, h the edge of a cell, and bone how much bone lies around a node: bones stay where the pose has them. What
-// weights say of how tissue follows bones stays the start, so that painted weights count. P is found anew after each
-// step of conjugate gradients on the rest, whose matrix is the same for all of them [Bouaziz, Martin, Liu, Kavan &
-// Pauly 2014, Projective dynamics]. The same bytes come out for any number of threads.
+// P is the matrix near F whose determinant gives the cell its volume, h the edge of a cell, and bone the volume of bone
+// around a node, so that bones stay where the pose moves them. In addition, springs move nodes of soft tissue inside a
+// bone to its surface (posed_bones.h), and nodes inside other flesh half of the way out of it (flesh_contact.h). Shifts
+// start from the blended pose, so that painted weights still count. P is recomputed before each solve for the shifts by
+// conjugate gradients, whose matrix stays the same except for these springs [Bouaziz, Martin, Liu, Kavan & Pauly 2014,
+// Projective dynamics]. The result does not depend on the number of threads, byte for byte.
 #pragma once
 
 #include <algorithm>
@@ -33,25 +34,26 @@ class SettledFlesh {
     double largest_shift_mm = 0;
   };
 
-  //   posed_from_rest  by bone of `weights`      is_bone  by label
+  //   is_bone          by label: whether it is bone
+  //   posed_from_rest  motions of the bones of `weights`
   SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                const LabelSet& is_bone, const std::vector<RigidTransform>& posed_from_rest, Blend blend,
                Progress& progress);
 
   const Report& report() const { return report_; }
 
-  // Shifts of the 9^3 corners of a brick's voxels, in the order of PosedLattice::Corners, in voxels along the volume's
-  // axes. Where the cells around a corner differ, their mean.
+  // The shifts of the 9^3 corners of a brick's voxels, in the order of PosedLattice::Corners, in voxels along the
+  // volume's axes. Where the cells around a corner have different shifts, this is their mean.
   using CornerShifts = std::array<glm::vec3, 729>;
-  //   returns  whether the brick bends; `shifts` is left alone where not
+  // Computes the corner shifts of a brick. Returns whether the brick bends; if not, `shifts` is not written.
   bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const;
-  // Of one corner of a voxel, where a seam is near.
-  //   around  a bit for each of the eight voxels around the corner that count, the lowest first; at least one
-  //   lowest  the lowest of the eight
+  // Returns the shift of one corner of a voxel near a seam.
+  //   lowest  the lowest of the eight voxels around the corner
+  //   around  a bit for each of these eight voxels that counts, starting with the lowest; at least one is set
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const;
 
  private:
-  // The nodes of a cell whose shares of a corner are not zero.
+  // The nodes of a cell whose trilinear share in a voxel corner is above zero, with these shares.
   struct Shares {
     int count = 0;
     std::array<std::int32_t, 8> node;
@@ -66,7 +68,7 @@ class SettledFlesh {
 
   const TissueVoxels* tissue_;
   FleshCells cells_;
-  std::vector<glm::vec3> shift_;  // by node, voxels
+  std::vector<glm::vec3> shift_;  // shift of each node, voxels
   Report report_;
 };
 

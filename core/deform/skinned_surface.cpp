@@ -13,13 +13,13 @@ namespace limber {
 
 namespace {
 
-constexpr float kSurface = 98 / 255.0f;  // the share at which rays stop
-constexpr int kLayersInside = 6;         // half voxels in which the shown tissue is looked for
+constexpr float kSurface = 98 / 255.0f;  // the share of tissue at which the renderer's rays stop
+constexpr int kLayersInside = 6;         // number of half-voxel steps inwards in which visible tissue is searched
 constexpr std::int64_t kGrain = 4096;
-constexpr double kMostCells = 16e6;  // that shares are first counted in, each 8 bytes for a while
+constexpr double kMostCells = 16e6;  // upper limit on the number of the finest cells; each takes 8 bytes for a while
 
-// As rays see the set, moved so that it ends at one half.
-//   voxels  an edge of a cell
+// Blurs the shares of tissue as the renderer does, and shifts them so that the surface lies at one half.
+//   voxels  number of voxels along an edge of a cell
 void soften(Occupancy& body, float voxels) {
   const glm::ivec3 size = body.grid.size;
   const std::int64_t steps[] = {1, size.x, std::int64_t{size.x} * size.y};
@@ -39,7 +39,7 @@ void soften(Occupancy& body, float voxels) {
   for (float& share : body.share) share += (0.5f - kSurface) / voxels;
 }
 
-// The first shown label from a little outside inward; the nearest tissue's where there is none.
+// Returns the first visible label on the line from slightly outside the surface inwards; `otherwise` if there is none.
 Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel,
                    const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
   const glm::dvec3 inward = -(to_voxel.linear * normal),
@@ -55,17 +55,16 @@ Label label_inside(const LabelVolume& volume, const LabelSet& shown, const Affin
 SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                                const LabelSet& labels, std::int64_t vertices) {
   LabelSet shown = labels;
-  shown[0] = 0;  // air never counts
-  // Whole voxels first, where there is room for them: coarser cells are taken together from these.
+  shown[0] = 0;  // air never counts as visible
+  // The finest cells are single voxels, if there are not too many of them; coarser cells are then made from these.
   const auto finest_of = [](const Grid& grid) { return std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}); };
   const double edge = std::ceil(std::cbrt(double(volume.grid.voxel_count()) / kMostCells));
   Occupancy fine = occupancy_of(volume, shown, edge * finest_of(volume.grid));
   soften(fine, static_cast<float>(std::cbrt(double(volume.grid.voxel_count()) / double(fine.grid.voxel_count()))));
   TriangleMesh mesh = surface_of(fine);
   for (double coarser = 1; std::ssize(mesh.V) > vertices;) {
-    coarser = std::max(
-        coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) /
-                                                    double(vertices))));  // a surface has as many as its area in cells
+    // The number of vertices is about the surface's area in cell faces, so it falls with the square of the cells' edge.
+    coarser = std::max(coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) / double(vertices))));
     mesh = surface_of(coarsened(fine, coarser * finest_of(fine.grid)));
   }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of what is shown of a body, as triangles that know what they follow, for outlines of other poses. The
-// surface lies where the renderer's rays meet the body (the set of labels, blurred twice by [1 2 1] / 4 along each
-// axis, at the share that keeps a silhouette its size), as surface nets (core/mesh/surface.h); a pose carries its
-// vertices by the blend kernel. The same for any number of threads.
+// Builds the surface of the visible part of a body as triangles with bone weights, for outlines of other poses. Surface
+// nets (core/mesh/surface.h) put the surface where the renderer's rays meet the body: the set of visible labels is
+// blurred twice by [1 2 1] / 4 along each axis, and the surface lies at the share of tissue that keeps the size of a
+// silhouette. A pose moves its vertices by the blend kernel (skinning.h). The result does not depend on the number of
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +17,28 @@
 namespace limber {
 
 struct SkinnedSurface {
-  std::vector<glm::dvec3> V;    // #V places at rest, world, mm
-  std::vector<glm::u32vec3> F;  // #F corners, counter-clockwise seen from outside
-  std::vector<Label> label;     // #V, of the shown tissue just inside
-  std::vector<std::int64_t>
-      offsets;  // #V + 1: vertex i follows influences[offsets[i]] up to influences[offsets[i + 1]]
-  std::vector<BoneWeight> influences;  // of the weights' bones
+  std::vector<glm::dvec3> V;           // #V positions at rest, world, mm
+  std::vector<glm::u32vec3> F;         // #F triangles, counter-clockwise seen from outside
+  std::vector<Label> label;            // #V: label of the visible tissue just inside
+  std::vector<std::int64_t> offsets;   // #V + 1: where the influences of each vertex begin
+  std::vector<BoneWeight> influences;  // bones are indexed as in the weights
 };
 
-// The surface in a pose.
+// The surface in one pose.
 struct PosedSurface {
   std::shared_ptr<const SkinnedSurface> at_rest;
-  std::vector<glm::vec3> V, N;  // #V places, world, mm; unit, out of the body
+  std::vector<glm::vec3> V, N;  // #V posed positions, world, mm; unit normals, pointing out of the body
 };
 
-//   shown     the labels that are seen; without any tissue among them the surface is empty
-//   vertices  at most about so many: cells are made coarser until they are no more
-// Throws Error when the volume has no tissue; std::logic_error when the weights are another volume's.
+// Builds the surface at rest.
+//   shown     the visible labels; the surface is empty if they contain no tissue
+//   vertices  upper limit on the number of vertices; cells are made coarser until it is met
+//   throws Error if the volume has no tissue; std::logic_error if the weights belong to another volume
 SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                                const LabelSet& shown, std::int64_t vertices);
 
-//   posed_from_rest  #bones of the weights
+// Poses the surface.
+//   posed_from_rest  motions of the bones of the weights
 PosedSurface posed_surface(const std::shared_ptr<const SkinnedSurface>& at_rest,
                            const std::vector<RigidTransform>& posed_from_rest, Blend blend);
 

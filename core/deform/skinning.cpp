@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-// A stretch smaller than this is rounding of the matrix's source.
+// A stretch whose difference from 1 is smaller than this counts as a rounding error of the matrix.
 constexpr double kSmallestStretch = 1e-4;
 
 std::array<double, 12> columns(const glm::dmat3& linear, const glm::dvec3& offset) {
@@ -21,7 +21,8 @@ std::array<double, 12> columns(const glm::dmat3& linear, const glm::dvec3& offse
           linear[2].x, linear[2].y, linear[2].z, offset.x,    offset.y,    offset.z};
 }
 
-// [Kavan 2008, 3.2]: rotation q, then translation t  =  q + epsilon (0, t) q / 2
+// Returns the dual quaternion of the rotation q followed by the translation t: q + epsilon (0, t) q / 2 [Kavan 2008,
+// 3.2].
 std::array<double, 8> dual_quaternion(const glm::dquat& q, const glm::dvec3& t) {
   return {q.w,
           q.x,
@@ -33,7 +34,8 @@ std::array<double, 8> dual_quaternion(const glm::dquat& q, const glm::dvec3& t) 
           0.5 * (t.z * q.w + t.x * q.y - t.y * q.x)};
 }
 
-// The rotation nearest to m that keeps the direction of its y axis; the x axis stays in its plane with y.
+// Returns a rotation matrix whose y axis has the direction of m's y axis, and whose x axis lies in the plane of m's x
+// and y axes.
 glm::dmat3 rotation_along_y(const glm::dmat3& m) {
   const glm::dvec3 y = glm::normalize(m[1]);
   const glm::dvec3 z = glm::normalize(glm::cross(m[0], y));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the corners of a brick's voxels follow where a seam is near. The voxels around a corner that do not hang
-// together there, through faces that are not cut, share no vertex: each side has its own, and so have voxels that touch
-// along an edge only, as skin does in the crease beside a seam. So every voxel is asked for its own eight corners.
+// Computes the influences of the corners of a brick's voxels near a seam. Voxels around a corner share a vertex only if
+// they are connected there through faces that no seam cuts. Each side of the seam has its own vertex. So have voxels
+// that touch along an edge only, as skin does in the crease beside a seam. So every voxel has its own eight corners.
 #pragma once
 
 #include <array>
@@ -16,20 +16,22 @@ namespace limber {
 
 class SplitCorners {
  public:
-  // References are kept; `tissue` has seams.
-  //   moves_as  per bone: the one it is counted as
+  // Keeps references to its arguments, which must outlive this object. `tissue` must have seams.
+  //   moves_as  per bone: the first bone with the same motion, which counts instead (BrickMotions)
   SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                std::int64_t brick);
 
-  // The influences of a voxel's corner in rising bone order, summed over the voxels that hang together with it there.
-  //   voxel   of the brick, 0 .. 7 on each axis; it must be tissue
-  //   corner  bit 0 is x, bit 1 y, bit 2 z
+  // Returns the influences of a voxel's corner, ascending by bone: the sum over those voxels around the corner that are
+  // connected with the voxel there.
+  //   voxel   position in the brick, 0 .. 7 on each axis; it must be tissue
+  //   corner  bits 0, 1, 2 are x, y, z
   std::span<const BoneWeight> at(const glm::ivec3& voxel, int corner);
-  // A bit for each of the eight voxels around the corner, the lowest first, that hangs together with the voxel there.
+  // Returns which of the eight voxels around the corner are connected with the voxel there: one bit each, starting with
+  // the lowest voxel.
   unsigned joined_voxels(const glm::ivec3& voxel, int corner) const;
 
  private:
-  static constexpr int kHalo = TissueVoxels::kBrick + 2;  // a brick and one voxel around it
+  static constexpr int kHalo = TissueVoxels::kBrick + 2;  // edge of a brick with a border one voxel wide
   static int place(const glm::ivec3& v) { return v.x + 1 + kHalo * (v.y + 1 + kHalo * (v.z + 1)); }
   void add(const Influence& influence);
 

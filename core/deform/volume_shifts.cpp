@@ -12,28 +12,29 @@ namespace limber {
 
 namespace {
 
-constexpr double kVolume = 100;      // of a cell's volume over the smoothness of shifts
-constexpr double kReach = 10;        // cells: beyond it a shift fades by itself
-constexpr double kLeast = 0.2;       // of a cell's middle, which may be bent more than the cell as a whole
-constexpr double kBone = 1e4;        // of bone that stays where the pose has it over smoothness
-constexpr double kPush = 500;        // of a bone or other flesh on a node inside it whose cells are full
-constexpr double kMostlySoft = 0.2;  // cells of bone around a node that is not bone itself
-constexpr int kLook = 2;             // steps from one look for flesh in flesh to the next
-// Cells of a body of 4 mm that sits are off their volume by 2.6, .9 and .8 % in the mean after 5, 10 and 15.
+constexpr double kVolume = 100;  // weight of the cells' volumes, relative to the smoothness of the shifts
+constexpr double kReach = 10;    // distance over which a shift fades out, in cell edges
+constexpr double kLeast = 0.2;   // least det F demanded of a cell (deformation gradient F); the largest is 1 / kLeast
+constexpr double kBone = 1e4;    // weight that keeps bone in place, relative to the smoothness of the shifts
+constexpr double kPush = 500;  // stiffness of the spring on a node inside a bone or other flesh, if its cells are full
+constexpr double kMostlySoft = 0.2;  // in cell volumes: a node with less bone around it counts as soft
+constexpr int kLook = 2;             // number of steps from one search for flesh inside flesh to the next
+// Number of steps. For a sitting body with voxels of 4 mm, the mean volume error of its cells is 2.6, 0.9 and 0.8 %
+// after 5, 10 and 15 steps.
 constexpr int kSteps = 14;
-constexpr int kSolves = 10;  // steps of conjugate gradients in each
+constexpr int kSolves = 10;  // iterations of conjugate gradients per step
 constexpr int kGrain = 2048;
 
 using Nodes = std::array<std::int32_t, 8>;
 
-// Derivatives of the trilinear shape functions in a cell's middle, 1 / mm.
+// Returns the gradients of the trilinear shape functions in the centre of a cell, 1 / mm.
 std::array<glm::dvec3, 8> middle_gradients(const glm::dvec3& edge) {
   std::array<glm::dvec3, 8> gradients;
   for (int i = 0; i < 8; ++i) gradients[i] = glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) / (4.0 * edge);
   return gradients;
 }
 
-// Of |grad c|^2 over a full cell, divided by its volume; 1 / mm2.
+// Returns the matrix of |grad c|^2, integrated over a full cell and divided by the cell's volume; 1 / mm2.
 std::array<std::array<double, 8>, 8> smoothness(const glm::dvec3& edge) {
   std::array<std::array<double, 8>, 8> K{};
   for (int a = 0; a < 8; ++a)
@@ -49,7 +50,8 @@ std::array<std::array<double, 8>, 8> smoothness(const glm::dvec3& edge) {
   return K;
 }
 
-// The volume of a trilinear cell, from its sides: each the mean of the two ways to part it into triangles.
+// Returns the volume of a trilinear cell, from its six faces. Each face counts as the mean of its two splits into
+// triangles.
 double volume_of(const std::array<glm::dvec3, 8>& corner) {
   constexpr int kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   const auto cone = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -68,10 +70,10 @@ glm::dmat3 cofactor(const glm::dmat3& F) {
   return glm::dmat3(glm::cross(F[1], F[2]), glm::cross(F[2], F[0]), glm::cross(F[0], F[1]));
 }
 
-// Which cells have a node, and as which of their eight.
+// The cells around each node, and the node's index among the eight nodes of each of these cells.
 struct CellsOfNode {
   std::vector<std::int64_t> begin;
-  std::vector<std::int32_t> place;  // 8 * cell + corner
+  std::vector<std::int32_t> place;  // 8 * cell + index of the node in the cell
 
   explicit CellsOfNode(const FleshCells& cells) : begin(cells.rest.size() + 1), place(8 * cells.nodes.size()) {
     for (const Nodes& nodes : cells.nodes)
@@ -113,7 +115,7 @@ class Minimizer {
 
   const std::vector<glm::vec3>& shift() const { return shift_; }
 
-  // Mean |V / V0 - 1|.
+  // Returns the mean volume error |V / V0 - 1| over the tissue of all cells.
   double error() const {
     double fill = 0;
     for (const float each : cells_.fill) fill += each;
@@ -162,7 +164,8 @@ class Minimizer {
     return glm::dmat3(start_[cell]) + gradient(cell, [&](std::int32_t n) { return glm::dvec3(shift_[n]); });
   }
 
-  // Of the whole cell, where the determinant is that of its middle.
+  // Returns the ratio of the whole cell's posed volume to its rest volume. (The determinant of the deformation gradient
+  // is the ratio at the cell's centre only.)
   double volume_ratio(std::int64_t cell) const {
     std::array<glm::dvec3, 8> corner;
     for (int i = 0; i < 8; ++i)
@@ -176,7 +179,7 @@ class Minimizer {
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b) K[a][b] = h2_ * (smooth[a][b] + kVolume * glm::dot(gradients_[a], gradients_[b]));
     const double reach = 1 / (kReach * kReach);
-    // Rows of up to 27 nodes, or more where a node joins cells that lie in one place.
+    // A row has up to 27 nodes, or more if cells at one position that are not connected share a node.
     std::vector<std::vector<std::pair<std::int32_t, float>>> blocks((count_ + kGrain - 1) / kGrain);
     row_.assign(count_ + 1, 0);
     diagonal_.assign(count_, 1);
@@ -210,7 +213,7 @@ class Minimizer {
       for (const auto& [column, entry] : block) column_.push_back(column), entry_.push_back(entry);
   }
 
-  // Of the matrix and x.
+  // Returns the product of row n of the matrix with the vector x.
   template <class Vector>
   Vector times(std::int64_t n, const std::vector<Vector>& x) const {
     Vector sum = diagonal_[n] * x[n];
@@ -218,7 +221,7 @@ class Minimizer {
     return sum;
   }
 
-  // Nodes inside a bone are pulled to its surface.
+  // Attaches springs to nodes inside a bone, which pull them to the bone's surface.
   void leave_bones() {
     if (!bones_) return;
     parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
@@ -235,15 +238,15 @@ class Minimizer {
     });
   }
 
-  // Of a push, by how much tissue hangs on the node: a crumb of flesh is as heavy to its cell as a full cell to its
-  // own.
+  // Returns the stiffness of the spring on a node, in proportion to the tissue around the node. A crumb of flesh would
+  // otherwise be pulled as strongly as full cells.
   float strength(std::int64_t node) const {
     double fill = 0;
     for (auto i = of_node_.begin[node]; i < of_node_.begin[node + 1]; ++i) fill += cells_.fill[of_node_.place[i] >> 3];
     return static_cast<float>(kPush * std::min(1.0, fill / 8));
   }
 
-  // Nodes inside other flesh are pulled half of the way out of it.
+  // Attaches springs to nodes inside other flesh, which pull them half of the way out of it.
   void part_flesh() {
     if (!contact_) return;
     if (taken_ % kLook == 0) {
@@ -266,8 +269,8 @@ class Minimizer {
       }
   }
 
-  // Each step begins further along the way of the one before [Beck & Teboulle 2009, A fast iterative
-  // shrinkage-thresholding algorithm for linear inverse problems].
+  // Extrapolates the shifts along the last step, to start the next step there (momentum) [Beck & Teboulle 2009, A fast
+  // iterative shrinkage-thresholding algorithm for linear inverse problems].
   void run_on() {
     ++taken_;
     const float momentum = float(taken_ - 1) / float(taken_ + 2);
@@ -280,7 +283,7 @@ class Minimizer {
     });
   }
 
-  // Conjugate gradients from the last shifts on.
+  // Solves for the shifts by conjugate gradients, starting from the current shifts.
   void solve() {
     double rho = sum([&](std::int64_t n) {
       residual_[n] = right_[n] - times(n, shift_);
@@ -310,7 +313,7 @@ class Minimizer {
 
   static double dot(const glm::vec3& a, const glm::vec3& b) { return glm::dot(glm::dvec3(a), glm::dvec3(b)); }
 
-  // Over all nodes, in the same order for any number of threads.
+  // Sums term(node) over all nodes, in the same order for any number of threads.
   template <class Term>
   double sum(const Term& term) const {
     return parallel_sum(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
@@ -325,19 +328,19 @@ class Minimizer {
   FleshContact* contact_;
   const CellsOfNode of_node_;
   const std::array<glm::dvec3, 8> gradients_;
-  const double h2_;  // mm2: the square of a cell's edge, by its volume
+  const double h2_;  // squared edge of a cube with the volume of a cell, mm2
   const std::int64_t count_;
   int taken_ = 0;
   std::vector<glm::mat3> start_, pull_;                             // by cell
   std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // by node
-  std::vector<FourFloats> direction_;                               // by node; it is read most
+  std::vector<FourFloats> direction_;  // by node; four floats, since this array is read most often
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;
-  std::vector<float> push_;              // by node: how strongly it is pulled out of a bone
-  std::vector<std::uint8_t> is_inside_;  // by node: of other flesh
-  std::vector<glm::vec3> apart_;         // ... and the shift that would carry it half of the way out
-  std::vector<glm::vec3> outward_;       // ... and the shift that would carry it to the surface
+  std::vector<float> push_;  // by node: stiffness of the spring that pulls it out of a bone or other flesh, 0: none
+  std::vector<std::uint8_t> is_inside_;  // by node: whether it is inside other flesh
+  std::vector<glm::vec3> apart_;         // by node inside other flesh: the shift that moves it half of the way out
+  std::vector<glm::vec3> outward_;       // by node with a spring: the shift to which the spring pulls it
 };
 
 }  // namespace

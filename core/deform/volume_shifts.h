@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shifts of nodes that give cells of flesh their volume back: the minimization of settled_flesh.h.
+// Computes the shifts of nodes that restore the volume of flesh cells: the minimisation of settled_flesh.h.
 #pragma once
 
 #include <vector>
@@ -12,15 +12,17 @@
 namespace limber {
 
 struct VolumeShifts {
-  std::vector<glm::vec3> shift;              // by node, mm along the volume's axes; zero where it is fixed
+  std::vector<glm::vec3> shift;              // shift of each node, mm along the volume's axes; zero for fixed nodes
   double error_before = 0, error_after = 0;  // mean |V - V0| / V0 over the tissue of all cells
 };
 
-//   bones    that flesh must not enter; nullptr: none      contact  of flesh with flesh; nullptr: none
+// Computes the shifts of all nodes.
+//   bones    bones that flesh must not enter; nullptr: none
+//   contact  contact of flesh with flesh; nullptr: none
 VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress);
 
-// The matrix of that determinant near F: steps along the gradient of the determinant. F may be inverted, `volume` is
-// positive.
+// Returns a matrix near F with the determinant `volume`, found by steps along the gradient of the determinant. F may be
+// inverted; `volume` must be positive.
 glm::dmat3 with_volume(const glm::dmat3& F, double volume);
 
 }  // namespace limber

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// Each made by a source of its own.
+// Each function returns its target's row of the table and is defined in the target's own source file.
 Exporter surface_exporter();
 Exporter openems_exporter();
 Exporter disc_material_exporter();

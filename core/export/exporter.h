@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies as other programs take them, as one table: `limber convert`, the editor's export and its file dialogs read it.
-// A new target is one source that makes its row, and that row's line in exporter.cpp.
+// The table of export targets: file formats of other programs in which a body can be written. `limber convert`, the
+// editor's export and its file dialogs use the table. A new target needs one source file, which defines its row, and a
+// line in exporter.cpp.
 #pragma once
 
 #include <span>
@@ -18,11 +19,11 @@ namespace limber {
 struct ExportInput {
   const LabelVolume& volume;
   const TissueTable& tissues;
-  std::vector<TissueMaterial> materials;  // of every tissue, where the exporter needs a frequency
+  std::vector<TissueMaterial> materials;  // one per tissue; filled only when Exporter::needs_frequency
   double frequency = 0;                   // Hz
-  const TetMesh* mesh = nullptr;          // regions are organ numbers (tet_phantom.h); null where there is none
+  const TetMesh* mesh = nullptr;          // tet mesh whose regions are organ numbers (tet_phantom.h); null: none
   Progress& progress;
-  std::vector<std::string>& warnings;  // what the user should know of what was written
+  std::vector<std::string>& warnings;  // the exporter appends messages to the user about what it wrote
 };
 
 struct Exporter {
@@ -30,21 +31,23 @@ struct Exporter {
   std::vector<std::string> endings;  // ".xml"
   bool needs_frequency = false;
   bool takes_voxels = true;
-  bool takes_mesh = false;  // in place of the voxels, where there is a mesh
+  bool takes_mesh = false;  // writes ExportInput::mesh instead of the voxels when there is one
 
-  // What is written beside `path`. Null: nothing.
+  // Returns the files that are written in addition to `path`; null: none.
   std::vector<Path> (*beside)(const Path& path) = nullptr;
-  // Throws Error when a file cannot be written, or cannot hold the body.
+  // Writes the body. Throws Error when a file cannot be written or the format cannot represent the body.
   void (*write)(const ExportInput& input, const Path& path) = nullptr;
 };
 
 std::span<const Exporter> exporters();
-// By the name, null for none. Throws Error where a name does not say enough.
+// Returns the exporter that has the file name's ending; null when none has it. Throws Error for .h5 and .hdf5 names
+// that do not tell which program the file is for.
 const Exporter* exporter_for(const Path& path);
-// The file and all that comes with it; after a failure none of it is left.
+// Returns `path` and all files that are written beside it. When write_export() fails, those of them that did not exist
+// before are removed.
 std::vector<Path> files_exported_as(const Exporter& exporter, const Path& path);
 void write_export(const Exporter& exporter, const ExportInput& input, const Path& path);
-// ".xml (openEMS boxes), ...": of all that take voxels.
+// Returns the endings of all exporters that write voxels, as text: ".xml (openEMS boxes), ...".
 std::string exporter_endings();
 
 }  // namespace limber

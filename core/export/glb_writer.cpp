@@ -16,8 +16,9 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "numbers are written in native byte order");
 
-constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;  // component types [glTF 2.0, 3.6.2.2]
-constexpr int kVertices = 34962, kIndices = 34963;                        // targets of buffer views
+// Numbers of component types [glTF 2.0, 3.6.2.2].
+constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
+constexpr int kVertices = 34962, kIndices = 34963;  // values of a buffer view's `target`
 
 std::size_t whole_words(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 }  // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The container of glTF 2.0 in one file (.glb): a description in JSON, and numbers that it points to by accessors.
+// Writes glTF 2.0 as one file (.glb): a JSON description and binary data. The description refers to arrays in the data
+// by accessors.
 //
-// glTF is right-handed, in metres, with Y up and the front towards +Z: the world's (x, y, z) in LPS mm becomes (x, z,
-// -y) / 1000.
+// glTF's coordinates are right-handed, in metres, with Y up, and a model faces +Z. So the world point (x, y, z) in LPS,
+// mm, becomes (x, z, -y) / 1000.
 #pragma once
 
 #include <array>
@@ -24,26 +25,25 @@ class GlbData {
   enum class Use { Any, Vertices, Indices };
   struct Accessor {
     std::size_t offset, bytes, count;
-    int component;  // [glTF 2.0, 3.6.2.2]
+    int component;  // number of the component type [glTF 2.0, 3.6.2.2]
     std::string type;
     Use use;
-    bool normalized = false;         // integers stand for 0 .. 1
-    std::vector<float> least, most;  // where the format wants them
+    bool normalized = false;         // the integers stand for numbers from 0 to 1
+    std::vector<float> least, most;  // bounds of the values, where glTF requires them; empty: not stated
   };
 
-  // Each returns the accessor's index.
+  // Appends an array to the binary data and returns the index of its accessor.
   int add(const std::vector<float>& values, Use use = Use::Any);
   int add(const std::vector<glm::vec3>& values, Use use = Use::Any);
   int add(const std::vector<glm::vec4>& values, Use use = Use::Any);
   int add(const std::vector<glm::mat4>& values, Use use = Use::Any);
   int add(const std::vector<std::array<std::uint16_t, 4>>& values, Use use = Use::Any);
   int add(const std::vector<std::uint32_t>& values, Use use = Use::Any);
-  int add_places(const std::vector<glm::vec3>& places);  // of vertices: with their bounds
+  int add_places(const std::vector<glm::vec3>& places);  // appends vertex positions and states their bounds
   Accessor& accessor(int index) { return accessors_[static_cast<std::size_t>(index)]; }
 
-  // The bytes of the file.
-  //   json    an object: all of the description but what this class knows
-  //   throws Error for more than 4 GB
+  // Returns the bytes of the .glb file. Throws Error for more than 4 GB.
+  //   json  the description as a JSON object without buffers, buffer views and accessors, which this function adds
   std::string file(std::string_view json) const;
 
  private:
@@ -53,7 +53,7 @@ class GlbData {
   std::vector<Accessor> accessors_;
 };
 
-// sRGB to what glTF's factors are.
+// Converts an sRGB colour to a linear one, as glTF's colour factors are.
 glm::dvec3 linear_colour(const glm::vec3& colour);
 
 }  // namespace limber

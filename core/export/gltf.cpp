@@ -18,9 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLongestSide = 400;  // steps
+// Number of surface cells along the volume's longest side, unless GltfSettings::step is given.
+constexpr double kLongestSide = 400;
 
-// The description and the data that it points to.
+// The JSON description of a .glb file and the binary data that it refers to.
 struct Glb {
   Json json;
   GlbData data;
@@ -38,9 +39,9 @@ void check(const GltfBody& body, const TissueVoxels& tissue) {
     throw Error("the weights belong to another volume", "glTF export", "compute them again for this one");
 }
 
-// ---- the mesh
+// ---- the surface mesh
 
-// The colour of the tissue that lies under most of the surface.
+// Returns the colour of the tissue that lies under more vertices of the surface than any other.
 Json colour_under(const std::vector<SkinAt>& skin, const TissueTable& tissues) {
   std::vector<std::int64_t> count(1 << 16, 0);
   for (const SkinAt& at : skin) ++count[at.label];
@@ -96,7 +97,8 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
          {{"baseColorFactor", colour_under(skin, body.tissues)}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
 }
 
-// ---- the skeleton: node b is bone b; behind them the armature, which carries the roots, and the surface
+// ---- the skeleton: node b is bone b. After the bones come two nodes: the armature, which is the parent of the root
+// bones, and the surface.
 
 void add_skeleton(Glb& glb, const Armature& armature) {
   const std::size_t count = armature.bones.size();
@@ -122,7 +124,7 @@ void add_skeleton(Glb& glb, const Armature& armature) {
   glb.json["scene"] = 0;
 }
 
-// ---- the clips
+// ---- the animations, one per clip
 
 class Animation {
  public:
@@ -147,7 +149,8 @@ class Animation {
   int times_;
 };
 
-// Bones that rest all the time have no curve; where nothing moves, the last one has.
+// Returns the glTF animation of a clip. A bone that never leaves its rest pose gets no curve. When no bone moves, the
+// last bone gets one, so that the animation is not empty.
 Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature,
                   Progress& progress, double done) {
   const ClipOnRig on_rig(clip, armature);
@@ -164,7 +167,8 @@ Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::
     const Pose pose = on_rig.at(clip->range_start + frame);
     times.push_back(static_cast<float>(frame / clip->rate));
     for (std::size_t b = 0; b < count; ++b) {
-      // The sign that is nearer to the one before, so that what lies between is the shorter way.
+      // q and -q are the same rotation; uses the one nearer to the previous key, so that players interpolate along the
+      // shorter arc.
       const glm::dquat& q = pose.rotation[b];
       turns[b].push_back(!turns[b].empty() && glm::dot(q, turns[b].back()) < 0 ? -q : q);
     }

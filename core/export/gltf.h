@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A posable body as glTF 2.0, all in one .glb file: the surface of its tissue with up to four bones a vertex, the
+// Writes a posable body as glTF 2.0 in one .glb file: the surface of its tissue with up to four bones per vertex, the
 // skeleton at rest, and every clip as an animation. Axes and units are glTF's [core/export/glb_writer.h].
 //
-// Every bone is a node at its head, without a rotation at rest, so that a pose's rotations are the nodes'
-// own; a clip sets a key at each of its frames. Other programs blend linearly between bones, as our linear blend does.
-// A bone's tail, roll and limits have no place in the format.
+// Each bone is a node at the bone's head without a rotation at rest, so the rotations of a pose are the nodes'
+// rotations. An animation has a key at each frame of its clip. Other programs deform the surface by linear blend
+// skinning, as Limber's linear blend does. The format cannot store a bone's tail, roll and limits.
 #pragma once
 
 #include <memory>
@@ -28,13 +28,14 @@ struct GltfBody {
 };
 
 struct GltfSettings {
-  double step =
-      0;  // mm, of the cells whose surface is taken, the volume's voxels at least; 0: 1/400 of its longest side
+  // Edge length of the cells from which the surface is made, mm. It is rounded to a whole number of voxels, at least
+  // one. 0: 1/400 of the volume's longest side.
+  double step = 0;
 };
 
-// The bytes of the file.
-//   clips  what each plays from range_start to range_end
-// Throws Error for weights of another volume or rig, for a volume that has no surface, for more than 4 GB.
+// Returns the bytes of the .glb file.
+//   clips  become animations, each from frame range_start to range_end
+// Throws Error for weights of another volume or rig, for a volume without a surface, and for more than 4 GB.
 std::string glb_of(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips,
                    const GltfSettings& settings = {}, Progress& progress = no_progress());
 void write_glb(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips, const Path& path,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What hdf5_file.cpp needs of HDF5, as one plain function. The library brings forty others with it (it can read from
-// the web), which costs 9 ms at every start; as a module of its own it is loaded only when a file is written.
+// The interface through which hdf5_file.cpp uses the HDF5 library, as one C function in a shared library of its own.
+// HDF5 loads forty other libraries (it can read from the web), which takes 9 ms. So it is loaded only when an HDF5 file
+// is written, and not at every start.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +10,16 @@
 extern "C" {
 struct LimberHdf5Item {
   const char* object;
-  const char* attribute;  // null: a data set
-  int type;               // kLimberHdf5...
-  int rank;               // 0: one value
+  const char* attribute;  // null: the item is a data set
+  int type;               // kLimberHdf5UInt8 ... kLimberHdf5Text
+  int rank;               // number of dimensions; 0: a single value
   std::int64_t size[3];
   const void* values;
   std::size_t bytes;
 };
 enum { kLimberHdf5UInt8, kLimberHdf5Int16, kLimberHdf5Int32, kLimberHdf5Float, kLimberHdf5Double, kLimberHdf5Text };
 
-// Makes the file in memory (the library takes no file without a name) and hands it over. Returns 0, or 1 when it could
-// not be made.
+// Builds an HDF5 file of the items in memory and passes its bytes to `take`. Returns 0, or 1 on failure.
 int limber_hdf5_make(const LimberHdf5Item* items, std::size_t count,
                      void (*take)(void* context, const void* bytes, std::size_t size), void* context);
 }

@@ -25,7 +25,8 @@ constexpr int kTypeOf<double> = kLimberHdf5Double;
 template <>
 constexpr int kTypeOf<char> = kLimberHdf5Text;
 
-// The module with the library.
+// Loads the module that contains HDF5 (hdf5_codec.h) and returns the module's function limber_hdf5_make(). `path` is
+// the file, for the error message.
 decltype(&limber_hdf5_make) codec(const Path& path) {
   static const auto loaded = [] {
     void* module = open_module("limber_hdf5");

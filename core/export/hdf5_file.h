@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An HDF5 file to be written: data sets of up to three dimensions (packed, the last dimension fastest) and attributes.
-// The library is loaded when the first file is written (hdf5_codec.h).
+// Builds and writes an HDF5 file of data sets and attributes. Data sets have up to three dimensions, of which the last
+// one is stored fastest; those with three are compressed. The HDF5 library is loaded when the first file is written
+// (hdf5_codec.h).
 #pragma once
 
 #include <cstdint>
@@ -17,19 +18,19 @@ class Hdf5File {
   void data(const std::string& name, const std::vector<std::int16_t>& values, const std::vector<std::int64_t>& size);
   void data(const std::string& name, const std::vector<float>& values, const std::vector<std::int64_t>& size);
 
-  // Of a data set that was added before, or of "/".
+  // Adds an attribute to the object "/" (the file) or to a data set, which must have been added before.
   void attribute(const std::string& object, const std::string& name, double value);
   void attribute(const std::string& object, const std::string& name, std::int32_t value);
   void attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, const std::vector<float>& values);
   void attribute(const std::string& object, const std::string& name, const std::vector<double>& values);
 
-  // Throws Error when the library is missing or the file cannot be written.
+  // Writes the file. Throws Error when the HDF5 library is missing or the file cannot be written.
   void write(const Path& path) const;
 
  private:
   struct Item {
-    std::string object, attribute;  // no attribute: a data set
+    std::string object, attribute;  // names; an empty attribute: the item is a data set
     int type;
     std::vector<std::int64_t> size;
     std::vector<char> bytes;

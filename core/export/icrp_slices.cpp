@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-constexpr int kNumbersALine = 16;  // as in the publication's files
+constexpr int kNumbersALine = 16;  // organ numbers per line, as in the files of ICRP Publication 110
 
 std::string organs_text(const LabelVolume& volume, const TissueTable& tissues, const std::vector<int>& medium) {
   const Grid& grid = volume.grid;
@@ -27,7 +27,8 @@ std::string organs_text(const LabelVolume& volume, const TissueTable& tissues, c
   return text;
 }
 
-// The elements of tissue always have a column; those of implants have one where an implant is.
+// Returns the table of the media in `used`, with a column per element. Elements of implants get columns only when one
+// of these media contains such an element.
 std::string media_text(const CompositionTable& media, const std::vector<int>& used) {
   const bool has_implant = std::any_of(used.begin(), used.end(), [&](int row) {
     const Composition& shares = media.shares[row];

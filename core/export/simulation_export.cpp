@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-// Names that every program takes: letters, digits and underscores, each once.
+// Returns a unique name for each material that every program accepts: letters, digits and underscores.
 std::vector<std::string> plain_names(const std::vector<TissueMaterial>& materials) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -29,14 +29,14 @@ std::vector<std::string> plain_names(const std::vector<TissueMaterial>& material
   return names;
 }
 
-// Place of each label in the materials; -1 of air.
+// Returns for each label 0 .. 65535 its index in SimulationBody::materials; -1 for air.
 std::vector<int> material_of_label(const SimulationBody& body) {
   std::vector<int> of(65536, -1);
   for (std::size_t i = 0; i < body.materials.size(); ++i) of[body.materials[i].label] = static_cast<int>(i);
   return of;
 }
 
-// Voxel faces along an axis, mm.
+// Returns the positions of all voxel faces along an axis, mm.
 std::vector<double> faces(const Grid& grid, int axis) {
   const double first = glm::dot(grid.direction[axis], grid.origin) - grid.spacing[axis] / 2;
   std::vector<double> lines;
@@ -112,7 +112,7 @@ void write_disc_material(const SimulationBody& body, const Path& path) {
   if (body.materials.size() > 254)
     throw Error("DiscMaterial holds 254 materials, this volume has " + std::to_string(body.materials.size()),
                 path.string(), "merge labels with `limber prepare --merge`");
-  // Material 0 is the background, vacuum.
+  // Material 0 is the background: vacuum.
   std::vector<float> permittivity = {1}, conductivity = {0}, density = {0};
   std::string names = "background";
   for (const TissueMaterial& m : body.materials) {
@@ -155,7 +155,7 @@ void write_gprmax(const SimulationBody& body, const Path& path) {
             "\n#material: " + text_of(m.dielectric.permittivity) + " " + text_of(m.dielectric.conductivity) + " 1 0 " +
             names[i] + "\n";
   }
-  // z fastest; -1 leaves what is there.
+  // gprMax stores z fastest. At voxels with index -1 (air), gprMax keeps the material that the user's model has there.
   const std::vector<int> material_of = material_of_label(body);
   std::vector<std::int16_t> index;
   index.reserve(body.volume.voxels.size());

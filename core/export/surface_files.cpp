@@ -28,7 +28,8 @@ std::string title_of(const LabelSurface& surface, const TissueTable& tissues) {
                                          : "label " + text_of(tissue ? tissue->file_value : surface.label);
 }
 
-// A word that is a file name and a group name everywhere, of each surface another one.
+// Returns a unique name for each surface from letters, digits and underscores, which is valid in file names and as a
+// group in OBJ.
 std::vector<std::string> words_for(const LabelSurfaces& all, const TissueTable& tissues) {
   std::vector<std::string> words;
   std::set<std::string> used;
@@ -85,7 +86,8 @@ std::string ply(const LabelSurfaces& all, const LabelSurface& surface, const std
   return bytes;
 }
 
-// Vertices that surfaces share stand there once; one that a surface has twice gets a line more.
+// Returns the text of an OBJ file. A vertex that several surfaces share is written once. A vertex that occurs twice in
+// one surface is written twice, so that the surface stays separate there.
 std::string obj(const LabelSurfaces& all, const std::vector<std::string>& names) {
   std::string text = "# surfaces of tissues, mm, LPS; neighbours share their vertices\n", faces;
   const auto line = [&](const glm::dvec3& v) {
@@ -122,7 +124,7 @@ std::vector<glm::vec3> places_of(const LabelSurfaces& all, const LabelSurface& s
   return places;
 }
 
-// At a vertex the mean over its triangles, by their area.
+// Returns the unit normal of each vertex: the mean of the normals of its triangles, weighted by area.
 std::vector<glm::vec3> normals_of(const std::vector<glm::vec3>& places, const LabelSurface& surface) {
   std::vector<glm::vec3> normals(places.size(), glm::vec3(0));
   for (const glm::ivec3& f : surface.F) {
@@ -136,7 +138,8 @@ std::vector<glm::vec3> normals_of(const std::vector<glm::vec3>& places, const La
   return normals;
 }
 
-// A node, a mesh and a material each; the label as files have it among the node's extras.
+// Returns the bytes of a .glb file with a node, a mesh and a material per surface. The `extras` of a node contain the
+// label's file value.
 std::string glb(const LabelSurfaces& all, const TissueTable& tissues) {
   using Json = nlohmann::ordered_json;
   GlbData data;

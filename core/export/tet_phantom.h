@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The list of materials that belongs to a tet mesh with organ numbers (TetGen's .node and .ele), as the phantoms of
-// ICRP Publication 145 have it: per organ a line `C NAME DENSITY g/cm3`, then `mNUMBER` with pairs of 1000 x atomic
-// number and minus the share by mass. That is MCNP's form of a material; Geant4's ICRP145_HumanPhantoms reads the file
-// as it is, PHITS takes the same cards.
+// Writes the list of materials of a tet mesh whose regions are organ numbers (TetGen's .node and .ele), as in the
+// phantoms of ICRP Publication 145. Each organ has a line `C NAME DENSITY g/cm3`, then a line `mNUMBER` and a line per
+// element: 1000 x atomic number, and minus the share by mass. This is MCNP's format of a material. Geant4's
+// ICRP145_HumanPhantoms reads the file unchanged, and PHITS accepts the same cards.
 #pragma once
 
 #include <string>
@@ -13,17 +13,19 @@
 
 namespace limber {
 
-// What a tet of a tissue carries: the label in files where that is a number from 1 to 65535, else the label here.
+// Returns the organ number of a tissue's tets: the tissue's file value when it is from 1 to 65535, else its label.
 std::uint16_t organ_number(const Tissue& tissue);
 
-// A mesh with organ numbers as regions.
-//   V, T    places, world, mm; tets
-//   labels  #T of most of what a tet holds; 0: it holds no voxel, and becomes as a tet that shares a corner
+// Returns the mesh of nodes V and tets T with organ numbers as regions.
+//   V       node positions, world, mm
+//   labels  #T, the most frequent label in each tet; 0: the tet contains no voxel, and gets the organ of a tet that
+//           shares a node with it
 TetMesh organ_mesh(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, const std::vector<Label>& labels,
                    const TissueTable& tissues);
 
-//   organs  numbers that the mesh has
-//   throws Error naming the tissues whose elements are not known: `where` is the file
+// Returns the text of the list of materials. Throws Error, which names the tissues whose elements are not known.
+//   organs  organ numbers in the mesh
+//   where   the file, for the error message
 std::string material_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs,
                           const CompositionTable& media, const std::string& where);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK's XML unstructured grid (.vtu) [VTK File Formats], as ParaView and meshio read it: the tets of a mesh where there
-// is one, else every tissue voxel as a cell. World coordinates (LPS), millimetres; `Label` of each cell is the number
-// that the label has in files, or the organ number of a mesh. Data are appended, raw, little endian.
+// Writes VTK's XML unstructured grid (.vtu) [VTK File Formats], which ParaView and meshio read. Its cells are the tets
+// of the mesh when there is one, else the tissue voxels. Coordinates are world (LPS), mm. The cell data `Label` is the
+// label's file value, for a tet its organ number. The arrays are appended to the XML as raw bytes, little-endian.
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -14,11 +14,11 @@ namespace limber {
 
 namespace {
 
-constexpr std::uint8_t kTet = 10, kVoxel = 11;  // VTK's cell types
+constexpr std::uint8_t kTet = 10, kVoxel = 11;  // VTK's numbers of the cell types tet and voxel
 
 struct Cells {
   std::vector<glm::dvec3> points;
-  std::vector<std::int64_t> corners;  // `per_cell` of each cell
+  std::vector<std::int64_t> corners;  // indices into `points`, `per_cell` for each cell
   std::vector<std::int32_t> labels;
   int per_cell = 0;
   std::uint8_t type = 0;
@@ -32,7 +32,8 @@ Cells tets_of(const TetMesh& mesh) {
   return cells;
 }
 
-// Corners of voxels are shared; only those that a voxel has become points.
+// Returns one cell per tissue voxel. Neighbouring cells share their points, and only corners of tissue voxels are
+// points.
 Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
   const glm::ivec3 size = volume.grid.size;
   const auto corner_index = [&](const glm::ivec3& c) {
@@ -55,7 +56,7 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
         const Label label = volume.voxels[place++];
         if (label == 0) continue;
         cells.labels.push_back(file_value[label]);
-        for (int corner = 0; corner < 8; ++corner) {  // x fastest, as VTK orders a voxel's corners
+        for (int corner = 0; corner < 8; ++corner) {  // x fastest, VTK's order of a voxel's corners
           const glm::ivec3 at = glm::ivec3(x, y, z) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
           std::int64_t& point = point_of[static_cast<std::size_t>(corner_index(at))];
           if (point < 0) {
@@ -70,7 +71,7 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
 
 class Arrays {
  public:
-  // Declares an array; its bytes follow the header in this order.
+  // Adds an array and returns its XML element. write() writes the arrays' bytes in the order in which they were added.
   template <class T>
   std::string array(const char* type, const std::string& name, const std::vector<T>& values, int components = 1) {
     const std::string many = components > 1 ? " NumberOfComponents=\"" + std::to_string(components) + "\"" : "";

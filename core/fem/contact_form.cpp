@@ -11,19 +11,27 @@
 namespace limber {
 
 namespace {
-constexpr double kOfRest = 0.5;  // of what a pair is apart at rest: no thickness is more
-constexpr double kSoon = 1.6;  // thicknesses: pairs this near that the way watched brings within one are in the matrix
-                               // before they touch
-constexpr double kPressed =
-    0.6;  // of the thickness: pairs nearer than this must be in the matrix, which is ordered anew for them
-constexpr double kNear = 0.5;  // of the thickness: what is further apart may come within half of this in one step, for
-                               // it is not yet, or hardly, pushed apart
-constexpr double kAbout =
-    0.2;  // of the thickness, that a node's way may change before what comes near it is looked for anew
-constexpr double kParallel = 1e-3;  // of the squared product of two edges at rest, below which they count as parallel
+// Upper limit on a pair's thickness h (below which the pair is pushed apart), as a share of the pair's distance at
+// rest.
+constexpr double kOfRest = 0.5;
+// Distance, in thicknesses h, below which a pair that may touch during the motion is put into the matrix's sparsity
+// pattern before it touches.
+constexpr double kSoon = 1.6;
+// Distance, as a share of the thickness h, below which a pair must be in the matrix's sparsity pattern. If it is not,
+// the pattern is analysed again.
+constexpr double kPressed = 0.6;
+// Distance, as a share of the largest thickness H, above which one step may bring a pair as near as half of this
+// distance. Pairs as far apart as this feel almost no barrier yet. A step keeps at least half of any smaller distance.
+constexpr double kNear = 0.5;
+// Distance, as a share of the thickness, by which a node's motion may change before pairs near the node are searched
+// again.
+constexpr double kAbout = 0.2;
+// Two edges count as parallel if their squared cross product is below this share of the product of their squared
+// lengths at rest.
+constexpr double kParallel = 1e-3;
 constexpr std::int64_t kGrain = 2048;
 
-// b(d / h) and its derivatives by d.
+// The barrier b(d / h), and its first and second derivative by the distance d.
 struct Barrier {
   double value, slope, curvature;
 };
@@ -32,7 +40,7 @@ Barrier barrier(double d, double h) {
   return {-off * off * ln, -off * (2 * ln + off / t) / h, (-2 * ln - 4 * off / t + off * off / (t * t)) / (h * h)};
 }
 
-// Of the triangles around a node, a third of each.
+// Returns the mean area of surface per node: the total area of the triangles divided by the number of their nodes.
 double mean_area(const Eigen::MatrixX3i& F, const NodePositions& V) {
   double sum = 0;
   std::vector<char> used(V.rows(), 0);
@@ -80,11 +88,11 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   NodePositions end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
   if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
-  watched_to_.resize(0, 3);  // as long as that is not done
+  watched_to_.resize(0, 3);  // invalid until the search below is done
   extend_broad_phase(x, end);
 
-  // What has left the place that it is known to be near, as it does when only a stretch of a way is kept, is known no
-  // more.
+  // Drops known pairs that are no longer near each other. This happens when the new motion covers only a part of the
+  // known one.
   const double about = kAbout * settings_.thickness_mm;
   std::vector<std::vector<Watched>> near((known_.size() + kGrain - 1) / kGrain), still_known(near.size());
   parallel_for(std::ssize(known_), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -108,8 +116,9 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   watched_limit_ = limit;
 }
 
-// A way is often one that is known but for few nodes, or goes on from a place on it and moves few nodes far. So of what
-// is known a stretch is kept, and anew is looked only for what comes near nodes that are not about there.
+// A motion often equals the known motion except for a few nodes, or continues from a position on it and moves only a
+// few nodes far. So the known motion is cut to the part that is nearest to the new motion, and pairs are searched again
+// only around nodes that are not close to that part.
 void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositions& to) {
   const double about = kAbout * settings_.thickness_mm;
   const auto is_away = [&](const NodePositions& a, const NodePositions& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
@@ -148,7 +157,7 @@ void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositi
     });
   }
   NodePositions steps = known_to_ - known_from_, begins;
-  begins.swap(known_from_);  // as long as that is not done, nothing is known
+  begins.swap(known_from_);  // no motion counts as known until the search is done
   for (const ContactPair& pair :
        surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
     known_.push_back({pair, thickness(pair), {}});
@@ -229,7 +238,8 @@ void ContactForm::add_gradient(NodePositions& gradient) const {
           (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
 }
 
-// What grows as parts come nearer; what turns the way between them only takes away, or is left out.
+// Adds the second derivative by the distance only. Leaves out all other terms; those from the turning of the shortest
+// line between a pair's two parts would be negative.
 void ContactForm::add_curvature(std::span<double> values) const {
   for (const Touch& touch : touching_)
     for (int a = 0, k = 0; a < 4; ++a)
@@ -269,9 +279,8 @@ bool ContactForm::assign_nodes(const Cholesky& matrix, std::span<const int> unkn
       }
     if (!unforeseen) continue;
     if (touch.pressed) return false;
-    const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge
-                          ? 2
-                          : 1;  // nodes before it are of the one, the others of the other
+    // The number of nodes that belong to the pair's first part (point or edge).
+    const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge ? 2 : 1;
     for (int a = 0, k = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b, ++k)
         if ((touch.order[a] < sides) != (touch.order[b] < sides)) touch.place[k].at = -1;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Contact: where parts of the skin come nearer than a few millimetres, a barrier pushes them apart, and no step takes
-// them through each other [Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang & Kaufman, Incremental Potential
-// Contact, SIGGRAPH 2020]. As long as the skin did not cross itself at the start, it never does. Over each pair of a
-// point and a triangle, or of two edges (contact_surface.h), d apart:
+// The contact energy: where parts of the skin come nearer than a few millimetres, a barrier pushes them apart, and no
+// step moves them through each other [Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang & Kaufman, Incremental
+// Potential Contact, SIGGRAPH 2020]. If the skin does not cross itself at the start, it never does. A pair is a point
+// and a triangle, or two edges (contact_surface.h). At distance d it has the energy
 //   c A H b(d / h),   b(t) = -(t - 1)^2 ln t below 1, else 0
-// with c in kPa and A the mean area of skin around a node (half of it for edges). h is the thickness H, but at most
-// half of what the pair is apart at rest: so nothing pushes at rest, however close the skin's triangles are; and small
-// triangles, whose folds would close soonest, push as hard as large ones. Between two edges the energy fades out as
-// they become parallel, where the way between them jumps.
+// with the stiffness c in kPa and the mean area A of skin per node (half of it for edges). H is the largest thickness
+// of the barrier. The pair's own thickness h is H, but at most half of the pair's distance at rest. So nothing pushes
+// at rest, however close the skin's triangles are, and small triangles, whose folds would close soonest, push as hard
+// as large ones. The energy of two edges fades out as they become parallel, because the shortest line between them
+// jumps there.
 //
-// Air is not meshed for it (as in Mueller et al. 2015, Air Meshes): such a mesh cannot tell skin that unfolds from skin
-// that meets skin, and slivers of air between neighbouring triangles push where nothing touches.
+// An alternative would be to mesh the air between the parts (Mueller et al. 2015, Air Meshes). But an air mesh cannot
+// distinguish skin that unfolds from skin that meets skin, and slivers of air between neighbouring triangles push where
+// nothing touches.
 #pragma once
 
 #include <span>
@@ -22,33 +24,35 @@
 namespace limber {
 
 struct ContactSettings {
-  double barrier_kpa = 40;  // c
-  double thickness_mm = 2;  // H
+  double barrier_kpa = 40;  // stiffness c of the barrier
+  double thickness_mm = 2;  // distance H below which parts of the skin are pushed apart
 };
 
 class ContactForm {
  public:
   ContactForm() = default;
-  // F, rigid  as for ContactSurface
+  //   F, rigid  as for the constructor of ContactSurface
   ContactForm(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid,
               const ContactSettings& settings = {});
 
   bool empty() const { return surface_.empty(); }
-  // What follows is true for places on the way from x to x + limit step.
+  // Finds the pairs that may touch during the motion from x to x + limit * step. All other functions are valid only for
+  // positions on that motion.
   void build_broad_phase(const NodePositions& x, const NodePositions& step, double limit);
 
   struct Bound {
     double length;
-    std::array<int, 4> node;  // of the pair that bounds it, -1 none
+    std::array<int, 4> node;  // nodes of the pair that limits the step, -1: none
   };
-  // x and step as they are watched, limit at most that.
+  // Returns the largest share of `step`, up to `limit`, that all pairs allow.
+  //   x, step, limit  as given to build_broad_phase(); limit may be smaller
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit) const;
 
-  // Asks the pairs watched whose step has `changed` since they were last asked whether all of it would take them too
-  // near. x as watched.
-  //   changed  #nodes; empty: asks all, about the step that is watched
+  // Marks the pairs that the whole `step` would bring too near each other. x is the one given to build_broad_phase().
+  //   changed  #nodes: 1 for nodes whose step has changed since the last call; only pairs with such a node are tested
+  //            again. Empty: tests all pairs, with the step given to build_broad_phase()
   void mark_blocking_pairs(const NodePositions& x, const NodePositions& step, const std::vector<char>& changed);
-  // visit(nodes) of each that it would.
+  // Calls visit(nodes) for each pair that mark_blocking_pairs() has marked.
   template <class Visit>
   void for_blocked(const Visit& visit) const {
     for (std::size_t k = 0; k < watched_.size(); ++k)
@@ -56,28 +60,32 @@ class ContactForm {
   }
 
   double value(const NodePositions& x) const;
-  // Also chooses whom add_gradient() and add_curvature() are about: what touches at x.
+  // Finds the pairs that are nearer at x than their thickness. add_gradient() and add_curvature() add the derivatives
+  // of these pairs' energies.
   void update_active_pairs(const NodePositions& x);
   void add_gradient(NodePositions& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // The matrix must know who may touch: who does at x, and who soon may on the way watched. What begins to touch
-  // unforeseen pushes weakly: in the matrix each side then meets the other as if that stood still, until it is pressed.
+  // Adds to the matrix's sparsity pattern the pairs that touch at x, and those that may soon touch during the motion.
+  // If another pair begins to touch, the matrix lacks the blocks that couple its two parts: each part then reacts as if
+  // the other did not move. This is accurate enough until the pair is nearer than kPressed thicknesses.
   void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown, const NodePositions& x);
-  bool assign_nodes(const Cholesky& matrix,
-                    std::span<const int> unknown);  // after touch(); false where the matrix must know more
+  // Finds the positions of the touching pairs' blocks in the matrix. Call it after update_active_pairs(). Returns false
+  // if a pair nearer than kPressed thicknesses is not in the sparsity pattern, so that the matrix must be analysed
+  // again.
+  bool assign_nodes(const Cholesky& matrix, std::span<const int> unknown);
 
   std::int64_t touching() const { return std::ssize(touching_); }
 
  private:
   struct Touch {
     ContactPair pair;
-    double slope, curvature;                  // of the energy by the distance
-    bool pressed;                             // nearer than a share of the thickness
-    Eigen::Matrix<double, 3, 4> way, fading;  // of the distance and of the fading by the nodes' places
-    double faded;                             // energy without the fading
-    std::array<Cholesky::Place, 10> place;    // lower triangle of its nodes, row by row; at -1: not in the matrix
-    std::array<int, 4> order;
+    double slope, curvature;                  // first and second derivative of the energy by the distance
+    bool pressed;                             // whether the pair is nearer than kPressed thicknesses
+    Eigen::Matrix<double, 3, 4> way, fading;  // derivatives of distance and fade factor by the nodes' positions
+    double faded;                             // the energy before it is multiplied by the fade factor
+    std::array<Cholesky::Place, 10> place;    // blocks of the lower triangle, row by row; at == -1: not in the matrix
+    std::array<int, 4> order;                 // the pair's nodes in the order of the matrix
   };
   struct Fade {
     double value;
@@ -85,10 +93,10 @@ class ContactForm {
   };
   struct Watched {
     ContactPair pair;
-    double thickness;   // h
-    Approach approach;  // from where the way watched begins, by its step
+    double thickness;   // h, mm
+    Approach approach;  // at the start of the motion, for its whole step
   };
-  // Looks for what may come near on a way, as far as that is not known yet.
+  // Adds the candidate pairs for the motion from -> to that are not known yet.
   void extend_broad_phase(const NodePositions& from, const NodePositions& to);
   double thickness(const ContactPair& pair) const;
   Fade fade(const ContactPair& pair, const NodePositions& x) const;
@@ -96,14 +104,15 @@ class ContactForm {
   ContactSurface surface_;
   NodePositions rest_;
   ContactSettings settings_;
-  double scale_ = 0;  // c A H
-  // Pairs that are not known keep their thickness, and twice what a node may be off, on these ways.
+  double scale_ = 0;  // the factor c A H of the energy
+  // Pairs that are not in known_ stay farther apart than their thickness during the motion known_from_ -> known_to_,
+  // even if each node deviates from it by kAbout thicknesses.
   NodePositions known_from_, known_to_;
   std::vector<Watched> known_;
-  NodePositions watched_from_, watched_to_;  // ends of the way,
-  double watched_limit_ = 0;                 // of its step
-  std::vector<Watched> watched_;
-  std::vector<char> blocked_;  // of those watched
+  NodePositions watched_from_, watched_to_;  // start and end of the motion of build_broad_phase()
+  double watched_limit_ = 0;                 // the limit given to build_broad_phase()
+  std::vector<Watched> watched_;             // known pairs that may touch during that motion
+  std::vector<char> blocked_;                // per watched pair: whether mark_blocking_pairs() marked it
   std::vector<Touch> touching_;
 };
 

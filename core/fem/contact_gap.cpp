@@ -13,12 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr int kBin = 8;           // mm
-constexpr double kFacing = -0.3;  // cosine between normals that face each other
+constexpr int kBin = 8;           // edge of a search bin, mm
+constexpr double kFacing = -0.3;  // largest cosine of the angle between normals that count as facing each other
 
 glm::dvec3 at(const Eigen::MatrixX3d& V, int i) { return {V(i, 0), V(i, 1), V(i, 2)}; }
 
-// Boxes of the triangles in whole mm.
+// Returns the triangles' bounding boxes, rounded outwards to whole mm.
 std::vector<VoxelRange> boxes_of(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F) {
   std::vector<VoxelRange> boxes(F.rows());
   for (int f = 0; f < F.rows(); ++f) {
@@ -45,11 +45,11 @@ std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::Matr
   parallel_for(V.rows(), 256, [&](std::int64_t begin, std::int64_t end) {
     std::vector<int> near;
     for (int i = int(begin); i < int(end); ++i) {
-      if (normal[i] == glm::dvec3(0)) continue;  // not of the border
+      if (normal[i] == glm::dvec3(0)) continue;  // the node is not on the border
       const glm::dvec3 p = at(V, i), out = glm::normalize(normal[i]);
       bins.meeting({glm::ivec3(glm::floor(p)) - reach, glm::ivec3(glm::ceil(p)) + reach}, near);
       for (int f : near) {
-        if ((F.row(f).array() == i).any()) continue;  // where two sheets share a node, or triangles are long
+        if ((F.row(f).array() == i).any()) continue;  // the node is a corner of the triangle
         const glm::dvec3 across = normal_of(f);
         if (glm::dot(out, across) > kFacing * glm::length(across)) continue;
         if (glm::distance(at(rest, i), (at(rest, F(f, 0)) + at(rest, F(f, 1)) + at(rest, F(f, 2))) / 3.0) < apart_mm)

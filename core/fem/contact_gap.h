@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How much air is left between parts of a posed mesh's border that touch.
+// Measures how much air is left between the touching parts of a posed mesh's border.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,18 @@ namespace limber {
 
 struct ContactGap {
   double smallest_mm, median_mm;
-  std::int64_t nodes;  // of the patch
+  std::int64_t nodes;  // number of nodes on both sides of the contact
 };
 
-// From each node of the border to the nearest triangle in front of it that faces it and was more than `apart_mm` away
-// at rest: #V mm of air, infinite where there is no less than `reach_mm`, and inside.
+// Returns, for each node of the border, the distance in mm to the nearest triangle in front of it that faces it and was
+// at least `apart_mm` away at rest. The value is infinite if that distance is `reach_mm` or more, and for nodes inside
+// the mesh.
 //   rest, V  #V by 3, mm      F  #F by 3, counter-clockwise seen from outside
 std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                                  double apart_mm, double reach_mm);
 
-// The patch is all nodes with less than `reach_mm` of air. None where no node is.
+// Measures the air over all border nodes that have less than `reach_mm` of air in front of them. Returns nothing if
+// there are no such nodes.
 std::optional<ContactGap> contact_gap(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V,
                                       const Eigen::MatrixX3i& F, double apart_mm, double reach_mm);
 

@@ -12,10 +12,10 @@
 namespace limber {
 
 namespace {
-constexpr int kLeaf = 4;        // faces
-constexpr double kKept = 0.5;   // of a pair's distance, by one step
-constexpr double kSafe = 0.5;   // of the way that is surely free, by one advance
-constexpr int kAdvances = 400;  // more only serve to graze
+constexpr int kLeaf = 4;        // largest number of faces in a leaf of the tree
+constexpr double kKept = 0.5;   // share of a pair's distance that one step must keep
+constexpr double kSafe = 0.5;   // length of one advance, as a share of the length that cannot lead to contact
+constexpr int kAdvances = 400;  // largest number of advances; more would only creep along a grazing contact
 
 std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
 
@@ -27,8 +27,8 @@ Corners at(const ContactPair& pair, const NodePositions& x) {
   return p;
 }
 
-// Shares of the corners b, c, d of the triangle's point nearest to a [Ericson, Real-Time Collision Detection,
-// 2005, 5.1.5].
+// Returns the barycentric coordinates of the point of triangle a, b, c that is nearest to p [Ericson, Real-Time
+// Collision Detection, 2005, 5.1.5].
 Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                     const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
@@ -53,7 +53,7 @@ Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
   return {va / sum, vb / sum, vc / sum};
 }
 
-// Shares of the second ends of the edges a b and c d at their nearest points [Ericson 2005, 5.1.9].
+// Returns the positions s and t, in [0, 1], of the nearest points on the edges p0 p1 and p2 p3 [Ericson 2005, 5.1.9].
 std::pair<double, double> nearest_of_edges(const Corners& p) {
   const Eigen::Vector3d u = p[1] - p[0], v = p[3] - p[2], w = p[0] - p[2];
   const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(w), b = u.dot(v), c = u.dot(w);
@@ -81,7 +81,8 @@ double distance(ContactPair::Kind kind, const Corners& p) {
   return (w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3]).norm();
 }
 
-// Furthest that the two parts can move towards each other by one step.
+// Subtracts the mean motion of the four nodes from `step`. Returns an upper bound of the distance by which the rest of
+// the step can move the pair's two parts towards each other.
 double relative_motion(ContactPair::Kind kind, Corners& step) {
   const Eigen::Vector3d mean = 0.25 * (step[0] + step[1] + step[2] + step[3]);
   double length[4];
@@ -90,12 +91,11 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
-// Boxes are compared in single precision, four numbers at once; what that rounds is allowed for where they are
-// compared.
+// Bounding boxes are stored in single precision and compared four numbers at once. Comparisons allow for the rounding.
 using Lanes = Eigen::Array4f;             // x y z 0
-constexpr double kRounding = 4 * 1.2e-7;  // of the furthest coordinate
+constexpr double kRounding = 4 * 1.2e-7;  // upper bound of the rounding error, as a share of the largest coordinate
 
-// Where something is, and what way it goes.
+// The bounding box of positions (low, high) and of their steps (slowest, fastest).
 struct Moving {
   Lanes low{INFINITY, INFINITY, INFINITY, 0}, high{-INFINITY, -INFINITY, -INFINITY, 0};
   Lanes slowest = low, fastest = high;
@@ -110,7 +110,7 @@ Moving around(Moving a, const Moving& b) {
   return a;
 }
 
-// Along one axis at least, by more than `reach`, all the way.
+// Returns whether two moving boxes stay more than `reach` apart along at least one axis during the whole motion.
 [[gnu::always_inline]] inline bool apart(const Moving& a, const Moving& b, float reach) {
   const Lanes before = a.low - b.high + (a.slowest - b.fastest).min(0.0f);
   const Lanes behind = b.low - a.high + (b.slowest - a.fastest).min(0.0f);
@@ -130,7 +130,8 @@ NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x) {
 }
 
 namespace {
-// Along p + a s of a pair `now` apart at a = 0, whose parts move towards each other by at most `motion`.
+// Returns how far, up to a = `limit`, a pair may move along p + a s while its distance stays at least `kept`. The
+// distance at a = 0 is `now`; a whole step (a = 1) moves the pair's parts towards each other by at most `motion`.
 double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept,
                        double limit) {
   double length = 0;
@@ -139,7 +140,7 @@ double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, doub
     if (length + advance >= limit) return limit;
     for (int a = 0; a < 4; ++a) p[a] += advance * s[a];
     now = distance(kind, p);
-    if (length > 0 && now < kept) break;  // the first advance keeps so much by itself, but for rounding
+    if (length > 0 && now < kept) break;  // except for rounding, the first advance always keeps this distance
     length += advance;
   }
   return length;
@@ -156,9 +157,9 @@ Approach approach(const ContactPair& pair, const NodePositions& x, const NodePos
 }
 
 namespace {
-// Whether the pair comes nearer than `kept` between two places on its way, where it is apart by what is known: in
-// between at least by what neither end can lose. Where that does not tell, what is in the middle does; a part of the
-// way too short to go on with counts as nearer.
+// Returns whether the pair may come nearer than `kept` between the positions `from` and `to` on its motion. The
+// distances at both ends are given; `motion` bounds how much the distance can change in between. If that does not
+// decide, halves the range. A range too short to halve counts as coming nearer.
 bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from,
                   double apart_from, double to, double apart_to) {
   constexpr double kShortest = 1.0 / 512;
@@ -172,7 +173,7 @@ bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, do
          comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
 }
 
-// Along p + a s from a = 0 to `limit`.
+// Returns whether the pair's distance stays at least `kept` along p + a s, from a = 0 to `limit`.
 bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const Approach& approach, double kept,
            double limit) {
   Corners end = p;
@@ -215,7 +216,7 @@ ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& r
   for (int f = 0; f < int(F.rows()); ++f) order[f] = f;
   if (F.rows() > 0) grow(order, centre, 0, int(F.rows()));
 
-  // Every node and every edge belongs to the first face that has it.
+  // Assigns every node and every edge to the first face that has it.
   std::vector<char> node_taken(rest.rows(), 0), edge_taken(edges.size(), 0);
   for (const int f : order) {
     Face face{{F(f, 0), F(f, 1), F(f, 2)}, 0, 0};
@@ -228,7 +229,8 @@ ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& r
   }
 }
 
-// Halves along the longest side of the box of the centres, left first.
+// Builds the tree for a range of faces: splits the range in two halves along the longest axis of the bounding box of
+// the faces' centres, and builds the left half first.
 void ContactSurface::grow(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centre, int begin, int end) {
   const auto here = tree_.size();
   tree_.push_back({begin, end, 0});
@@ -261,7 +263,8 @@ std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const Node
     for (const int v : faces_[f].node) face[f].add(node[v]);
   const float reach_of_boxes = float(nearness.reach + nearness.margin + kRounding * furthest);
 
-  // Of every branch, last first, so that what is below is known: its place, and its whole step.
+  // Computes the bounds of positions and steps in every branch, from last to first, since children come after their
+  // parents.
   std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
   const auto face_asked = [&](const Face& face) {
@@ -287,7 +290,7 @@ std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const Node
     }
   }
 
-  // Pairs of leaves.
+  // Finds the pairs of leaves whose faces may come near each other.
   std::vector<std::pair<int, int>> leaves, open{{0, 0}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
@@ -316,7 +319,8 @@ std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const Node
   };
   parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
     auto& mine = found[begin / kGrain];
-    // What of two faces stays apart by its boxes alone is left out first: most of it.
+    // Adds a pair of a point and a triangle, or of two edges, if it may come near. Most pairs are left out before by
+    // their bounding boxes.
     const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& four) {
       if (one_rigid(four)) return;
       if (!asked.empty() && !asked[four[0]] && !asked[four[1]] && !asked[four[2]] && !asked[four[3]]) return;

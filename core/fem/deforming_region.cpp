@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kCell = 4;         // voxels
-constexpr double kWhole = 0.98;  // of the weight on one motion: such tissue goes with it
+constexpr int kCell = 4;         // edge of a cell, voxels
+constexpr double kWhole = 0.98;  // least share of the weight on one motion with which tissue counts as moving rigidly
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));
@@ -33,7 +33,7 @@ std::vector<int> first_alike_on_path(const BonePath& path, const std::vector<dou
   return first;
 }
 
-// The motion that has most of an influence, and how much.
+// The motion that has most of an influence's weight, and its share of that weight, [0, 1].
 struct Main {
   int motion;
   double share;
@@ -58,7 +58,7 @@ bool has_any(const std::vector<std::uint8_t>& set) {
   return std::any_of(set.begin(), set.end(), [](std::uint8_t in) { return in != 0; });
 }
 
-// The box of cells around all tissue, with one of nothing around it.
+// The cells around all tissue, with a border one cell wide.
 class Cells {
  public:
   Cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
@@ -84,13 +84,14 @@ class Cells {
   const std::vector<std::uint8_t>& mixed() const { return mixed_; }
   glm::dvec3 spacing() const { return grid_.spacing * double(kCell); }
 
-  // Squared distance in mm to the cells of a set.
+  // Returns the squared distance of each cell to the nearest cell of the set `seeds`, mm2.
   std::vector<float> squared_distance_to(const std::vector<std::uint8_t>& seeds, Progress& progress) const {
     return squared_distance(box_, seeds, spacing(), progress);
   }
 
-  // visit(place, cells) of each looked-at place of the path that is the first to bring cells near to such of another
-  // motion that were far away at rest.
+  // Tests the positions `places` on the path in order. At each, finds the cells that come near to cells of another
+  // motion which were far away at rest, and that did not do so at an earlier position. Calls visit(k, cells) for
+  // positions places[k] where there are any; `cells` marks them.
   template <class Visit>
   void brought_near(const BonePath& path, const std::vector<double>& places, double near_mm, const Visit& visit) const {
     std::vector<std::uint8_t> before(box_.voxel_count(), 0), near;
@@ -108,7 +109,7 @@ class Cells {
         if (bin.motion != motion_[at]) bin.motion = kSeveral;
         bin.cells.push_back({at, rest, posed});
       });
-      // Cells of one limb that lie near each other at rest are no news.
+      // Cells that are closer than this at rest (mm) do not count: they belong to one limb.
       const double far = 3 * std::max({near_mm, spacing().x, spacing().y, spacing().z});
       for (const auto& [own_key, bin] : bins)
         for (int i = 0; i < 27; ++i) {
@@ -129,7 +130,7 @@ class Cells {
     }
   }
 
-  // value(cell) of the cells of each brick.
+  // Returns value(cell) for the 8 cells of each brick.
   template <class Value>
   std::vector<std::array<float, 8>> by_brick(const Value& value) const {
     std::vector<std::array<float, 8>> values(tissue_.bricks().size());
@@ -139,7 +140,7 @@ class Cells {
     return values;
   }
 
-  // The tissue of cells that pass.
+  // Returns the mask of the tissue voxels in the cells for which passes() is true.
   template <class Passes>
   TissueMask mask(const Passes& passes) const {
     TissueMask mask(tissue_.bricks().size(), std::array<std::uint64_t, 8>{});
@@ -163,7 +164,7 @@ class Cells {
   };
   struct Bin {
     glm::ivec3 place;
-    int motion;  // of its cells, or kSeveral
+    int motion;  // the motion of all cells in the bin, or kSeveral
     std::vector<Placed> cells;
   };
 
@@ -182,7 +183,8 @@ class Cells {
         }
   }
 
-  // Cells beside such as move otherwise bend too, though each follows its motion wholly.
+  // Marks neighbouring cells with different motions as bending too, although each of them follows one motion with full
+  // weight.
   void mark_borders() {
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
       if (motion_[at] == kAir) return;
@@ -221,7 +223,7 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
   const Cells cells(volume, tissue, weights, result.moves_as);
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
   const auto squared = [](double mm) { return float(mm * mm); };
-  // What comes near at one of the places may have touched from the one before it on.
+  // Cells that are near each other at one of the tested positions may have touched at any time since the previous one.
   std::vector<float> to_near(to_bending.size(), INFINITY), free_from(to_bending.size(), INFINITY);
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;

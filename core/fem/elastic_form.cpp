@@ -19,10 +19,11 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kChunk =
-    48;  // tets, at least: large enough to have few neighbours, small enough for many in a colour
-constexpr std::int64_t kPatches = 256;  // of a loop without writes to nodes
-constexpr std::int64_t kGrain = 2048;   // tets of a loop without writes to nodes
+// Least number of tets in a chunk. Larger chunks have fewer neighbours each; smaller ones give more chunks of one
+// colour, which run in parallel.
+constexpr std::int64_t kChunk = 48;
+constexpr std::int64_t kPatches = 256;  // patches per task, in loops that do not write to nodes
+constexpr std::int64_t kGrain = 2048;   // tets per task, in loops that do not write to nodes
 
 Eigen::Matrix3d deformation_of(const ElasticForm::Tet& tet, const NodePositions& x) {
   const Eigen::Vector3d o = x.row(tet.node[0]);
@@ -54,7 +55,7 @@ void ColouredChunks::for_each(const std::function<void(const Chunk&)>& body) con
 ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_count,
                              const std::function<void(std::int64_t, const std::function<void(int)>&)>& nodes_of) {
   std::vector<std::vector<ColouredChunks::Chunk>> of_colour;
-  // 64 colours at a time; chunks that meet all 64 of a round wait for the next.
+  // Each round assigns up to 64 colours. Chunks whose neighbours use all 64 of them wait for the next round.
   std::vector<ColouredChunks::Chunk> waiting;
   for (std::size_t k = 0; k < cut.size(); ++k)
     if (const std::int64_t begin = k ? cut[k - 1] : 0; begin < cut[k]) waiting.push_back({begin, cut[k]});
@@ -95,7 +96,7 @@ ElasticForm::ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, c
     for (int a = 0; a < 4; ++a) tet.node[a] = T(t, a);
     for (int a = 0; a < 3; ++a) D.col(a) = (rest.row(T(t, a + 1)) - rest.row(T(t, 0))).transpose();
     const double determinant = D.determinant();
-    const Eigen::Matrix3d slopes = cofactor(D) / determinant;  // D^-T: column a belongs to node a + 1
+    const Eigen::Matrix3d slopes = cofactor(D) / determinant;  // D^-T; its column a is the gradient of node a + 1
     for (int a = 0; a < 3; ++a) tet.slope[a + 1] = slopes.col(a);
     tet.slope[0] = -slopes.rowwise().sum();
     tet.volume = determinant / 6;
@@ -197,7 +198,7 @@ void ElasticForm::add_gradient(const NodePositions& x, std::span<const double> p
   });
 }
 
-// Blocks of one patch after the other: of its tets first, then of what they have in common.
+// Sums the Hessian's blocks of one patch at a time: first those of the patch's tets, then the patch's rank-one term.
 class ElasticForm::PatchSum {
  public:
   PatchSum(const ElasticForm& form, const PatchStiffness& stiffness, std::span<double> matrix)
@@ -213,7 +214,7 @@ class ElasticForm::PatchSum {
     if (is_stiff_) slope_.assign(patch.node_end - patch.node_begin, Eigen::Vector3d::Zero());
   }
 
-  // Of tet t, which is tet l of what is derived.
+  // Adds the Hessian blocks of tet t, whose derivatives are in lane l.
   void add(std::int64_t t, const Eigen::Matrix3d& F, const TetDerivatives& derivatives, int l) {
     const auto& corner = form_.corner_[t];
     for (int a = 0, pair = 0; a < 4; ++a) {
@@ -252,14 +253,14 @@ class ElasticForm::PatchSum {
   }
 
  private:
-  using Block = std::array<double, 9>;  // column by column
+  using Block = std::array<double, 9>;  // 3x3, column by column
   const ElasticForm& form_;
   const PatchStiffness& stiffness_;
   std::span<double> matrix_;
   std::int64_t patch_ = 0;
   bool is_stiff_ = false;
-  std::vector<Block> block_;            // lower triangle of node pairs, row by row
-  std::vector<Eigen::Vector3d> slope_;  // #nodes: G
+  std::vector<Block> block_;            // lower triangle of the patch's node pairs, row by row
+  std::vector<Eigen::Vector3d> slope_;  // one per node of the patch: the vector G of PatchStiffness
 };
 
 void ElasticForm::add_derivatives(const NodePositions& x, std::span<const double> pressure,

@@ -12,13 +12,15 @@
 namespace limber {
 
 namespace {
-constexpr double kWeakBelow = 0.4;  // det F of flesh at which the weak barrier begins
-constexpr double kSteady =
-    1e-9;  // of a node's own curvature where it has least, added to it: what hangs by an edge can turn at no cost,
-           // and a matrix that is singular but for rounding may count as indefinite
-constexpr double kKeep = 0.05;  // det F that no step goes below; what has less than twice that is halved at most
+constexpr double kWeakBelow = 0.4;  // det F of flesh below which the weak barrier acts
+// Share of a node's smallest diagonal entry that is added to its diagonal. Flesh that hangs by an edge can turn without
+// force, so the matrix would be singular except for rounding, which may make it look indefinite.
+constexpr double kSteady = 1e-9;
+// Lower bound of det F after a step. For a tet whose det F is already below twice this bound, the bound is half its
+// current det F.
+constexpr double kKeep = 0.05;
 
-// Of this process and of those it has started and seen end.
+// Returns the CPU time in seconds of this process and of its children that have ended.
 double cpu_seconds() {
   double sum = 0;
   for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -49,7 +51,7 @@ FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const
     flesh_tets_.row(k) = T.row(t);
     ordered_bulk[k] = bulk[t];
     filled[k] = material[t].filled;
-    // A barrier's c h b(J / h): c such that it is as strong as weak_barrier_kpa b(J / h).
+    // The barrier is c h b(J / h). Dividing c by h makes it weak_barrier_kpa b(J / h).
     energy[k] = {shear[t], tet_bulk(material[t]), weak_barrier_kpa / kWeakBelow, kWeakBelow};
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
@@ -102,7 +104,7 @@ void FemEnergy::prepare(const NodePositions& x) {
 }
 
 void FemEnergy::number() {
-  // Nodes that nothing pulls at are no unknowns either: a matrix has no row for them.
+  // Nodes without springs and without flesh are not unknowns, like carried nodes, so the matrix has no row for them.
   std::vector<char> used(node_count_, 0);
   for (const int node : pins_.node) used[node] = 1;
   for (const int node : flesh_tets_.reshaped()) used[node] = 1;
@@ -215,24 +217,26 @@ FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePosit
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  contact_.build_broad_phase(x, step,
-                             std::max(bound.length, std::min(limit, 1.0)));  // what yielding() would ask about too
+  // Searches pairs for the whole step, since limit_step() would need these too.
+  contact_.build_broad_phase(x, step, std::max(bound.length, std::min(limit, 1.0)));
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
     bound = {free.length, Obstacle::Contact, free.node};
   return bound;
 }
 
 NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed) {
-  constexpr double kBorne = 0.2;  // of a tet's volume,
-  constexpr double kBeyond =
-      1.2;  // or of what a step must leave of it: more than both, so that the step is not bounded
+  // A tet counts as flattened if it would keep less than kBorne of its volume, or less than kBeyond times the volume
+  // that a step must keep. These limits are above those of largest_step(), so that the smoothed step is not bounded
+  // there.
+  constexpr double kBorne = 0.2;
+  constexpr double kBeyond = 1.2;
   constexpr int kRounds = 40;
-  constexpr int kSeen =
-      20;  // rounds that pairs of skin are looked for anew after; what comes near unseen is seen by the step's bound
+  // Number of rounds after which pairs of skin are searched again. Pairs missed in between are found by largest_step().
+  constexpr int kSeen = 20;
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   NodePositions sum(x.rows(), 3), there = x + step;
-  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // tets that may have become flat, or still are
+  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // asked: tets that the step may flatten
   std::iota(asked.begin(), asked.end(), 0);
   std::vector<char> flattened(T.rows(), 0), changed;
   for (int round = 0; round < kRounds; ++round) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// All that a step's shape is the least energy of: flesh (elastic_form.h) with its patches (patch_form.h), the springs
-// of the bones (pin_form.h), and with contact what keeps skins apart (contact_form.h); and the matrix of its curvature.
-// Nodes deep in a bone, whose tets all belong to that bone alone, are no unknowns: they go where the bone goes.
+// The total energy that a solve minimises: that of flesh (elastic_form.h) with its patches (patch_form.h), of the
+// springs of the bones (pin_form.h), and of contact (contact_form.h), if any. It also owns the Hessian matrix. Nodes
+// deep in a bone, whose tets all belong to that bone, are not unknowns: they move with the bone.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@
 
 namespace limber {
 
-// Nothing of the solver but its cost, in CPU seconds of all threads. `ordering`: of the analysis, what is CHOLMOD's.
+// The time that the stages of the solver took, in CPU seconds of all threads. `analysis` includes `ordering`, the time
+// of CHOLMOD's fill-reducing ordering.
 struct FemSeconds {
   double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, search = 0, total = 0;
 
@@ -29,7 +30,7 @@ struct FemSeconds {
   }
 };
 
-// Adds the CPU time of the process, while it lives, to a sum.
+// Measures the CPU time that the process uses during the timer's lifetime, and adds it to a sum, in seconds.
 class CpuTimer {
  public:
   explicit CpuTimer(double& sum);
@@ -44,50 +45,51 @@ class CpuTimer {
 
 class FemEnergy {
  public:
-  // Flesh: T and material of the tets that deform, #T each. weak_barrier_kpa ends the oscillation of single tets near J
-  // 0.
+  //   T, material       the tets that deform and their materials, #T each
+  //   weak_barrier_kpa  strength of a barrier against det F = 0; it stops single tets from oscillating near there
   FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
             double weak_barrier_kpa, int patch_size = 8);
 
-  // Springs, and what moves without being asked: `carried` nodes go to `carried_target`. Keeps the matrix when the
-  // nodes are those of the last call.
+  // Sets the springs, and the nodes that are not unknowns: `carried` nodes move to `carried_target`. Keeps the matrix
+  // if the nodes are the same as in the last call.
   void set_constraints(PinForm pins, std::vector<int> carried, NodePositions carried_target);
-  // Volume that must not invert although it costs nothing.
+  // Adds tets that have no energy but that no step may invert.
   void add_inversion_guard(const Eigen::MatrixX4i& guarded);
   void set_contact(ContactForm contact);
 
   int node_count() const { return node_count_; }
 
-  // Energy and derivatives know who may touch on one way: that of the last largest_step() or yielding(). Elsewhere this
-  // comes first, whose way is x alone.
+  // Prepares contact for the position x. The energy and its derivatives are valid only on the motion given to the last
+  // largest_step() or limit_step(), so call this before evaluating them at any other position.
   void build_broad_phase(const NodePositions& x);
-  // Infinite where a tet is inverted.
+  // Returns the energy at x; infinite if a tet is inverted.
   double value(const NodePositions& x);
   void gradient(const NodePositions& x, NodePositions& gradient);
-  // The Newton step at x: false when the curvature is not positive definite. Also says what the energy falls by along
-  // it, to first order (above 0).
-  //   towards  where nothing holds a node, as a flap that hangs by two nodes, it takes this step; none: it stays
+  // Computes the Newton step at x. Returns false if the Hessian is not positive definite.
+  //   slope    out: decrease of the energy along the step, to first order (above 0)
+  //   towards  step for nodes on which no force acts, such as a flap that hangs by two nodes; null: they stay
   bool newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
                    const NodePositions* towards = nullptr);
   enum class Obstacle { None, Flesh, Guarded, Contact };
   struct Bound {
-    double length = 1;  // of the step
+    double length = 1;  // share of the step that is possible
     Obstacle obstacle = Obstacle::None;
-    std::array<int, 4> node{-1, -1, -1, -1};  // corners of the tet that bounds it, or the nodes of two parts of skin
+    std::array<int, 4> node{-1, -1, -1, -1};  // corners of the tet, or nodes of the contact pair, that limits the step
   };
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit);
 
-  // The step where it would flatten tets, or take parts of the skin too near each other, made smoother, until it does
-  // not or rounds are over: what moves all alike keeps its volume and its distances.
-  //   fixed  #nodes: 1 for those whose step stays; empty: none
+  // Returns the step, smoothed where it would flatten tets or bring parts of the skin too near each other. Repeats the
+  // smoothing until the step no longer does so, or a limit of rounds is reached. Smoothing helps because nodes that
+  // move alike keep their tets' volumes and their distances.
+  //   fixed  #nodes: 1 for nodes whose step stays unchanged; empty: none
   NodePositions limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed);
 
   double min_ratio(const NodePositions& x) const;                   // smallest det F of flesh
-  const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // all that must stay positive: flesh, guarded
+  const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // flesh and the tets of add_inversion_guard()
 
-  Cholesky& matrix();  // of the last newton_step()
+  Cholesky& matrix();  // the Hessian of the last newton_step()
   int factorizations() const { return factorizations_; }
-  int analyses() const { return analyses_; }  // of the matrix's pattern, which contact changes
+  int analyses() const { return analyses_; }  // how often the sparsity pattern was analysed (contact changes it)
   FemSeconds& seconds() { return seconds_; }
 
  private:
@@ -98,10 +100,9 @@ class FemEnergy {
 
   int node_count_;
   NodePositions rest_;
-  std::vector<double> keep_;  // of bounded_, as for largest_step
+  std::vector<double> keep_;  // per tet of bounded_: volume that a step must keep (see step_bound.h)
   Eigen::MatrixX4i flesh_tets_, bounded_;
-  std::vector<int> first_at_,
-      tet_at_;  // of bounded_, those around each node: tet_at_[first_at_[v] .. first_at_[v + 1])
+  std::vector<int> first_at_, tet_at_;  // indices of the tets around node v: tet_at_[first_at_[v] .. first_at_[v + 1])
   ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;
@@ -109,12 +110,12 @@ class FemEnergy {
   std::vector<int> carried_;
   NodePositions carried_target_;
 
-  std::vector<int> unknown_;  // #nodes: row of blocks in the matrix, -1 none
-  std::vector<int> node_of_;  // #rows
-  BlockGraph graph_;          // of flesh and its patches
+  std::vector<int> unknown_;  // #nodes: block row in the matrix, -1: not an unknown
+  std::vector<int> node_of_;  // #block rows: the node of each
+  BlockGraph graph_;          // the matrix's sparsity pattern without contact
   std::unique_ptr<Cholesky> matrix_;
   std::vector<double> J_, pressure_, right_side_;
-  NodePositions ratios_at_;  // that J_ is of
+  NodePositions ratios_at_;  // the positions at which J_ was computed
   int factorizations_ = 0, analyses_ = 0;
   FemSeconds seconds_;
 };

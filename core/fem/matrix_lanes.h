@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small matrices of several tets at once: what is written for lanes is compiled for two numbers and for four, and four
-// are taken where the processor has AVX2. Every helper is inlined, so that it is compiled for the processor that its
-// caller is compiled for; the same comes out for each, to the bit. Included by .cpp files only.
+// Computes with small matrices of several tets at once, one tet per SIMD lane. Code is compiled for two lanes and for
+// four; four are used if the processor has AVX2. Every helper is inlined, so that it is compiled for the same processor
+// as its caller. Both widths give the same result, bit for bit. Only .cpp files include this header.
 #pragma once
 
 #include "core/fem/signed_svd.h"
@@ -9,7 +9,7 @@
 namespace limber {
 
 #define LIMBER_INLINE [[gnu::always_inline]] inline
-#pragma GCC diagnostic ignored "-Wpsabi"  // no vector is handed to a function that is called
+#pragma GCC diagnostic ignored "-Wpsabi"  // no vector is passed to a function that is not inlined
 
 struct TwoLanes {
   static constexpr int kCount = 2;
@@ -20,7 +20,7 @@ struct FourLanes {
   using Numbers = double __attribute__((vector_size(32)));
 };
 
-// Whether four are to be taken.
+// Returns whether to compute with four lanes: AVX2 is available and `width` permits it.
 inline bool takes_four(MatrixLanes width) {
 #if defined(__x86_64__)
   static const bool has_avx2 = __builtin_cpu_supports("avx2");
@@ -31,7 +31,7 @@ inline bool takes_four(MatrixLanes width) {
 #endif
 }
 
-// In front of what takes four.
+// Attribute of functions that compute with four lanes: compiles them for AVX2.
 #if defined(__x86_64__)
 #define LIMBER_FOR_FOUR [[gnu::target("avx2")]]
 #else

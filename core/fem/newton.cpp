@@ -7,16 +7,17 @@
 namespace limber {
 
 namespace {
-constexpr double kSufficient = 1e-4;  // of the first-order decrease that a step must bring [Armijo 1966]
-constexpr double kFurthest = 8;       // times the full step
-constexpr int kHalvings = 24;         // of a step, before the search is given up
-constexpr double kShort = 0.5;        // a step that something bounds below this is tried around it too
-constexpr double kJam = 0.05;         // a step this short is a jam;
-constexpr int kJams = 3;              // after so many in a row the solve is given up
-constexpr double kLeft =
-    0.25;  // of the tolerance, that a step shorter than the full one may leave undone and be the last
-
-constexpr double kStraggle = 3;  // times the tolerance, for the few nodes that may
+constexpr double kSufficient = 1e-4;  // share of the first-order decrease that a step must achieve [Armijo 1966]
+constexpr double kFurthest = 8;       // longest step, in full Newton steps
+constexpr int kHalvings = 24;         // number of halvings of a step after which the search gives up
+constexpr double kShort = 0.5;        // a step of which less than this share is possible is also tried in smoothed form
+constexpr double kJam = 0.05;         // a step shorter than this share of the full step counts as a jam
+constexpr int kJams = 3;              // number of jams in a row after which the solve gives up
+// Upper limit on the distance that the last step may leave undone (where it is shorter than the full step), as a share
+// of the tolerance.
+constexpr double kLeft = 0.25;
+// Upper limit on the motion of stragglers (NewtonSettings) at the end, in tolerances.
+constexpr double kStraggle = 3;
 
 double longest(const NodePositions& step) {
   return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0;
@@ -29,8 +30,8 @@ bool settled(const NodePositions& step, double longest, const NewtonSettings& se
   return double(moving) <= settings.stragglers * double(step.rows());
 }
 
-// x + length step of lower energy, in place; the length, 0 if none was found.
-//   bound  of the length, at most 1; a full step is followed further where the energy falls more than a parabola does
+// Moves x to x + length * step with a lower energy. Returns the length; 0: no lower energy was found.
+//   bound  largest length, at most 1; a full step is extended where the energy falls further than expected
 double search(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
               double bound) {
   const double rounding = 1e-13 * std::abs(value);
@@ -43,7 +44,7 @@ double search(FemEnergy& energy, NodePositions& x, double& value, const NodePosi
     best = energy.value(there);
     if (best <= value - kSufficient * length * slope + rounding) break;
   }
-  // Forward tracking, where the parabola through what is known is lower at 2 than at 1.
+  // Extends the step if the parabola through the known energies predicts a lower energy at length 2 than at length 1.
   if (length == 1 && slope > 0 && 3 * (best - value + slope) < slope) {
     const double furthest = energy.largest_step(x, step, kFurthest).length;
     NodePositions further;
@@ -90,7 +91,8 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     jams = length < kJam ? jams + 1 : 0;
     if (jams == kJams) break;
     if (length == 0) {
-      // Nothing lower along a step too short to matter is the end; along a longer one it is a dead end.
+      // No lower energy was found along the step. If the step is too short to matter, the solve has converged;
+      // otherwise it has failed.
       result.converged = result.residual < settings.tolerance_mm;
       break;
     }

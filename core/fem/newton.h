@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projected Newton to the shape of least energy. No iterate ever has an inverted tet or skin that crosses: every
-// step is bounded (step_bound.h, contact_surface.h) and searched along, and a search that finds nothing lower does not
-// move. The curvature is the projected one throughout: up to the last iterations of a deep bend the exact one is
-// indefinite, or so nearly that its steps lead nowhere. It ends when neither the step nor what a search left of it
-// matters, and gives up when three searches in a row hardly moved. A full step that lowers the energy is tried at 2, 4,
-// 8 times its length. A step that one place bounds to less than half is made smoother there first, so that it can be
-// taken everywhere else.
+// Minimises the energy by projected Newton steps with a line search. No iterate ever has an inverted tet or skin that
+// crosses itself: every step is bounded (step_bound.h, contact_surface.h), and a line search that finds no lower energy
+// does not move. All steps use the projected Hessian: until the last iterations of a deep bend, the exact one is
+// indefinite, or so nearly that its steps lead nowhere. The solve ends when both the step and the remainder of it that
+// the line search left out are too small to matter. It gives up when three searches in a row hardly moved. A full step
+// that lowers the energy is also tried at 2, 4 and 8 times its length. A step that is bounded to less than half is
+// first smoothed around the tets or pairs that bound it, so that all other nodes can take it.
 #pragma once
 
 #include <functional>
@@ -17,22 +17,27 @@
 namespace limber {
 
 struct NewtonSettings {
-  double tolerance_mm = 0.3;  // ends when no node would move further than this
-  double stragglers = 0;  // share of the nodes that may, up to 3 times as far: a few of many thousands hover for long
+  double tolerance_mm = 0.3;  // the solve ends when no node would move further than this in a step
+  // The share of the nodes that may still move up to 3 times as far at the end, since a few of many thousands converge
+  // very slowly.
+  double stragglers = 0;
   int iterations = 40;
-  std::vector<char> fixed;  // #nodes: 1 where a step is not made smoother (FemEnergy::yielding); empty: nowhere
+  std::vector<char> fixed;  // #nodes: 1 for nodes whose step is never smoothed (FemEnergy::limit_step); empty: none
 };
 
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;         // furthest that a node wanted to move in the last iteration, mm
-  double shortest_search = 1;  // of all steps taken, in shares of the full step
-  FemEnergy::Bound bound;      // of the last step
+  double residual = 0;         // longest motion of a node in the last full Newton step, mm
+  double shortest_search = 1;  // shortest of all steps taken, as a share of the full step
+  FemEnergy::Bound bound;      // what limited the last step
 };
 
-// x  in: positive tets, on the way that the energy watches; out: the least energy found, never higher than where it
-// began on_iteration(iteration, residual) after each
+// Minimises the energy, starting at x.
+//   x             in: positions without inverted tets, for which the energy's broad phase is built; out: the positions
+//                 of least energy found, never higher than at the start
+//   on_iteration  on_iteration(iteration, residual) is called after each iteration
+//   throws Cancelled
 NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings,
                       Progress& progress = no_progress(), const std::function<void(int, double)>& on_iteration = {});
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Places of mesh nodes, mm, or what else has three numbers a node (steps, forces): x y z of one node beside each other.
+// The positions of mesh nodes in mm, or other vectors per node (steps, forces). The x, y and z of a node are adjacent
+// in memory.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace limber {
 
-using NodePositions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3
+using NodePositions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3; row by row
 
 }  // namespace limber

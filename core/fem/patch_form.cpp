@@ -12,8 +12,8 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 512;  // patches
-constexpr double kAlike = 1.5;        // largest ratio of shear within a patch: fat and muscle would trade their volumes
+constexpr std::int64_t kGrain = 512;  // patches per task
+constexpr double kAlike = 1.5;  // largest ratio of shear moduli in a patch, so that fat and muscle do not trade volume
 
 std::uint64_t spread_bits(std::uint64_t v) {
   std::uint64_t spread = 0;
@@ -57,7 +57,8 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
       for (const int t : patch)
         for (const int n : neighbour[t]) {
           if (n < 0 || patch_of[n] >= 0 || !alike(seed, n)) continue;
-          // Shared nodes first; then the one that leaves fewest free neighbours behind.
+          // Prefers the tet that shares most nodes with the patch; among equals, the one with the fewest neighbours
+          // that are in no patch yet.
           int score = 0;
           for (const int node : T.row(n)) score += 8 * int(std::count(nodes.begin(), nodes.end(), node));
           for (const int m : neighbour[n]) score += m < 0 || patch_of[m] >= 0;
@@ -72,7 +73,7 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
     patches.push_back(std::move(patch));
   }
 
-  // What was left over in between joins the smallest patch beside it.
+  // Joins each patch that has less than half of the intended number of tets to its smallest neighbouring patch.
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (patches[p].empty() || 2 * int(patches[p].size()) >= size || bulk[patches[p][0]] <= 0) continue;
     int best = -1;

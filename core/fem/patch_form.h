@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Nearly incompressible flesh without locking: the stiff part of the volume term acts on the mean of J over a patch of
-// about eight tets that share faces, not on each tet [after de Souza Neto, Pires & Owen 2005, F-bar patches]:
+// The volume energy of nearly incompressible flesh, without locking. The stiff share of the volume term acts on the
+// mean of J over a patch of about eight tets that share faces, not on each tet [after de Souza Neto, Pires & Owen 2005,
+// F-bar patches]:
 //   K/2 V (Jbar - 1)^2,   Jbar = sum of V_t J_t / V
-// with V_t the tissue that the tet holds: a mesh has some room around its tissue, which has no volume to keep. On its
-// tets it acts as a pressure K (Jbar - 1), by how full they are, and its own curvature is of rank one.
+// with V_t the volume of tissue in tet t, and V their sum: around its tissue a mesh has some room, which need not keep
+// its volume. On each tet this energy acts as a pressure K (Jbar - 1) times the share of the tet that is tissue. The
+// patch's own Hessian has rank one.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +16,16 @@
 
 namespace limber {
 
-// Tets in an order in which every patch stands together.
+// An order of the tets in which the tets of each patch are adjacent.
 struct PatchOrder {
-  std::vector<std::int64_t> tet;       // #T
-  std::vector<std::int64_t> first{0};  // #patches + 1
+  std::vector<std::int64_t> tet;       // #T: tet indices in this order
+  std::vector<std::int64_t> first{0};  // #patches + 1: where each patch begins in `tet`
 };
 
-// Patches grow from tet to tet over faces, to the neighbour that shares most nodes with the patch, in the order of a
-// curve through space [Morton 1966]. Only tets of `bulk` above 0 share a patch, and only those whose shear is within a
-// factor of 1.5 of the patch's first; the others are patches of their own.
+// Groups tets into patches. A patch grows over faces from tet to tet, always to the neighbour that shares most nodes
+// with it. The first tets of patches follow a space-filling curve [Morton 1966]. A patch contains only tets whose
+// `bulk` is above 0 and whose shear modulus is within a factor of 1.5 of that of its first tet; each tet without bulk
+// is a patch of its own.
 //   bulk, shear  #T, kPa
 PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<double>& bulk,
                         const std::vector<double>& shear, int size = 8);
@@ -30,23 +33,24 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
 class PatchForm {
  public:
   PatchForm() = default;
-  // first  as in PatchOrder, over the tets of `tets`, in whose order `bulk` and `filled` (TetMaterial) stand; a patch
-  // takes the mean
-  //        of its tets' bulk by tissue
+  //   first         as in PatchOrder, for the tets of `tets`
+  //   bulk, filled  per tet of `tets` (patch_bulk() and TetMaterial::filled). The bulk of a patch is the mean over its
+  //                 tets, weighted by their volumes of tissue
   PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk,
             std::vector<double> filled);
 
-  // J  of every tet
+  //   J         det F of every tet
+  //   pressure  out: the pressure on every tet, kPa
   double value(const std::vector<double>& J) const;
-  void pressures(const std::vector<double>& J, std::vector<double>& pressure) const;  // kPa, of every tet
+  void pressures(const std::vector<double>& J, std::vector<double>& pressure) const;
   PatchStiffness stiffness() const { return {stiffness_, tissue_}; }
 
  private:
   double mean_ratio(std::size_t p, const std::vector<double>& J) const;
 
-  std::vector<std::int64_t> first_;               // #patches + 1
-  std::vector<double> patch_tissue_, stiffness_;  // #patches: mm3; K / V, 0 where the bulk is
-  std::vector<double> filled_, tissue_;           // #T: share of a tet, mm3 in it
+  std::vector<std::int64_t> first_;               // #patches + 1: index of the first tet of each patch
+  std::vector<double> patch_tissue_, stiffness_;  // #patches: mm3 of tissue; K / V, kPa/mm3 (0: no bulk)
+  std::vector<double> filled_, tissue_;           // #T: share of the tet that is tissue; mm3 of tissue in it
 };
 
 }  // namespace limber

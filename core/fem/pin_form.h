@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Springs from nodes to places: how bones hold their nodes. Stiff, but no more than that: where a joint leaves no room,
-// bone gives way a little before flesh is crushed.
-//   sum of k/2 (x - target)^2, k in kPa mm, of each axis
+// The energy of springs from nodes to target positions, by which bones hold their nodes:
+//    the sum over nodes and axes of k/2 (x - target)^2, k in kPa mm
+// Springs are stiff but not rigid: where a joint leaves no room, the bone's nodes give way a little before flesh is
+// crushed.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ namespace limber {
 
 struct PinForm {
   std::vector<int> node;
-  NodePositions stiffness;  // #node by 3, kPa mm
-  NodePositions target;     // #node by 3
+  NodePositions stiffness;  // one row per entry of `node`, kPa mm
+  NodePositions target;     // one row per entry of `node`, mm
 
   double value(const NodePositions& x) const;
   void add_gradient(const NodePositions& x, NodePositions& gradient) const;

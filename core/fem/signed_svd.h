@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Singular values of deformation gradients, two or four at once, as the processor can: a third of what assembling a
-// matrix took went there. By one-sided Jacobi rotations, which find small singular values as exactly as large ones
-// [Demmel & Veselic 1992].
+// Computes singular value decompositions of deformation gradients, two or four at once (matrix_lanes.h): one at a time
+// they would take a third of the time that assembling a matrix needs. One-sided Jacobi rotations find small singular
+// values as precisely as large ones [Demmel & Veselic 1992].
 #pragma once
 
 #include <span>
@@ -10,15 +10,16 @@
 
 namespace limber {
 
-// F = U diag(sigma) V^T with rotations U and V; only the smallest singular value, the last, is negative where det F is.
+// F = U diag(sigma) V^T with rotations U and V. The last singular value, the smallest in magnitude, is negative if det
+// F is.
 struct Principal {
   Eigen::Matrix3d U, V;
-  Eigen::Vector3d sigma;  // falling
+  Eigen::Vector3d sigma;  // in descending order
 };
 
-enum class MatrixLanes { Widest, Two };  // the same comes out, to the bit
+enum class MatrixLanes { Widest, Two };  // both give the same result, bit for bit
 
-// Of each F, as many as there are.
+// Decomposes each F into the result with the same index.
 void signed_svd(std::span<const Eigen::Matrix3d> F, std::span<Principal> result,
                 MatrixLanes width = MatrixLanes::Widest);
 Principal signed_svd(const Eigen::Matrix3d& F);

@@ -16,18 +16,20 @@
 namespace limber {
 
 namespace {
-// A bone gives way by 0.01 mm where flesh pulls with 50 kPa.
-constexpr double kPinStiffness = 1000;      // kPa per mm2, times the volume around a node
-constexpr double kJointPinStiffness = 0.1;  // of nodes of tets between two bones: as coarse as the mesh is there, the
-                                            // bones' ends would often not pass each other
-constexpr TetMaterial kBoneTet{100, 0.3};   // of a rigid tet where flesh pulls at it
-constexpr int kSettling = 3;                // times the iterations of a step, at the end
-constexpr double kStragglers = 1e-3;        // of the nodes, while the end settles
-constexpr double kTight = 0.25;             // of a step's tolerance, where the next one does not succeed
-constexpr double kWorth = 0.125;            // of the nodes solved for: fewer more are not worth another matrix
-constexpr double kRough = 0.5;              // of a way that tissue does not bear further than this, it is made smoother
-constexpr double kWeakBarrier =
-    100;  // kPa, on flesh: halves the iterations of a deep bend, for no tet gets nearly flat on the way
+// The stiffness of springs at bones' nodes, kPa per mm2, times the volume around the node. With it a bone gives way by
+// 0.01 mm where flesh pulls with 50 kPa.
+constexpr double kPinStiffness = 1000;
+// The same at nodes of tets between two bones. It is low because the mesh is coarse there, and the bones' ends could
+// often not pass each other.
+constexpr double kJointPinStiffness = 0.1;
+constexpr TetMaterial kBoneTet{100, 0.3};  // material of a rigid tet where flesh pulls at it
+constexpr int kSettling = 3;               // factor on step_iterations for the last solve, at the pose
+constexpr double kStragglers = 1e-3;       // share of the nodes that may lag while the solve settles at the pose
+constexpr double kTight = 0.25;            // share of a step's tolerance that is used after the next step failed
+constexpr double kWorth = 0.125;  // share of the solved nodes below which freeing more is not worth a new matrix
+constexpr double kRough = 0.5;    // a first guess bounded to less than this share is smoothed
+// The strength of the barrier on flesh, kPa. It halves the iterations of a deep bend, since no tet gets nearly flat.
+constexpr double kWeakBarrier = 100;
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
   const glm::dvec3 q = transform * glm::dvec3(p[0], p[1], p[2]);
@@ -58,8 +60,8 @@ bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet)
   return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
 }
 
-// The model's waiting nodes; few that could wait longer than others go with those, for to solve for more nodes the
-// matrix is ordered anew.
+// Returns the model's waiting nodes. If only a few nodes could wait longer than others, they are freed together with
+// those, since the matrix must be analysed again whenever more nodes are solved for.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
@@ -79,15 +81,16 @@ std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   return waiting;
 }
 
-// What of the mesh deforms, what bones hold, and what they carry along. A tet that one bone holds at every node is
-// rigid; it deforms nevertheless where flesh pulls at one of its nodes, for there its node may give way.
+// The parts of the mesh that deform, those that bones hold by springs, and those that bones carry along. A tet that one
+// bone holds at every node is rigid, unless flesh pulls at one of its nodes: this node may give way, so the tet
+// deforms.
 struct Parts {
   Eigen::MatrixX4i elastic, rigid;
-  std::vector<TetMaterial> material;  // of elastic tets
-  std::vector<char> is_flesh;         // of elastic tets: not rigid
-  std::vector<int> pinned, carried;   // nodes that bones hold: in elastic tets or not
+  std::vector<TetMaterial> material;  // per elastic tet
+  std::vector<char> is_flesh;         // per elastic tet: whether no single bone holds all of its nodes
+  std::vector<int> pinned, carried;   // nodes that bones hold: in elastic tets, and elsewhere
   std::vector<double> pin_stiffness;
-  std::vector<char> in_joint;  // nodes of tets between two bones
+  std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
 
   Parts() = default;
   Parts(const FemModel& model, const std::vector<int>& held_by) {
@@ -200,19 +203,20 @@ class PoseSolve {
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
   const std::vector<FemModel::Waiting> waiting_;
-  double freed_ = 0;          // place on the path: what waits until before that is free
-  std::vector<int> held_by_;  // #V: as the model's, and what still waits
+  double freed_ = 0;          // position on the path: nodes that wait until before it are free
+  std::vector<int> held_by_;  // #V: the model's held_by, with the bones of nodes that still wait
   Parts parts_;
   const NodePositions rest_;
-  std::vector<char> held_;  // #V: nodes that a bone holds stiffly, or carries along
+  std::vector<char> held_;  // #V: 1 for nodes that a bone holds by stiff springs, or carries along
   NodePositions x_;
-  double shortest_ = 0;  // step, of the path
+  double shortest_ = 0;  // shortest step, as a share of the path
   std::optional<FemEnergy> energy_;
   FemSeconds seconds_;
   SolvedPose result_;
 };
 
-// What waits on the way to `place` is part of its bone; what waits no more is flesh like any other.
+// Frees the nodes that stop waiting before `place` on the path, so that they are solved for like other flesh. Nodes
+// that still wait move with their bone.
 void PoseSolve::free_for(double place) {
   freed_ = std::max(freed_, place);
   std::vector<int> held_by = model_.held_by;
@@ -238,7 +242,7 @@ void PoseSolve::count_spent() {
   seconds_ += energy_->seconds();
 }
 
-// Nothing is asked to move: the start is the answer, to the last bit.
+// Returns whether nothing has to move, so that the start is the answer, bit for bit.
 bool PoseSolve::at_rest() const {
   const auto pose = path_(1);
   for (int v = 0; v < int(rest_.rows()); ++v)
@@ -246,7 +250,8 @@ bool PoseSolve::at_rest() const {
   return x_ == rest_;
 }
 
-//   less  #V: is taken off the places that nodes are held at; none: nothing
+// Holds the bones' nodes where `pose` puts them.
+//   less  #V offsets that are subtracted from these positions; null: none
 void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less) {
   const auto place_of = [&](int v) {
     const Eigen::RowVector3d place = moved(pose[held_by_[v]], rest_.row(v));
@@ -262,7 +267,7 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePosit
   energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// By the bone that holds a node, or the blend of those that it follows: way(bone, place) of each.
+// Returns, for each node, way(bone, position) of the bone that holds it, or the weighted sum over its influences.
 template <class Way>
 NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   NodePositions sum = NodePositions::Zero(x.rows(), 3);
@@ -281,7 +286,7 @@ NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   return sum;
 }
 
-// By their bone, -1 the others.
+// Returns the bone of each node that moves rigidly with a bone, -1 for the others.
 std::vector<int> PoseSolve::rigid_nodes() const {
   std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
@@ -289,10 +294,10 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// From x, good at `from`, towards its shape at `to`: as the tissue's own curvature has it, which knows what presses
-// where, for the paces that the bones set out with; and what the bones' turns add to those. Half of the way, or a
-// quarter, ..., where tissue does not bear it. Returns the place on the path that x is now about, and that the bones
-// are held at; `from` where there is no such way.
+// Moves x, a solution at `from`, to a first guess of the shape at `to`. The guess is a Newton step, with the tissue's
+// Hessian, for the velocities with which the bones start (the tangent of the path), plus what the turns of the bones
+// add to these. If tissue does not allow the whole step, it is half of it, a quarter, ... Returns the position on the
+// path that x has reached and at which the bones are held; `from` if there is no such step.
 double PoseSolve::follow(double from, double to, NodePositions& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
@@ -339,7 +344,7 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
   return drift;
 }
 
-// "between Humerus and Forearm near (1, 2, 3) mm": the two bones that move the corners most.
+// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm", with the two bones of most weight at the nodes.
 std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
@@ -375,7 +380,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const NodePositi
   on_step_({at, iteration, residual, V});
 }
 
-// To the least energy, with the bones where they are held, from x on a way that is watched.
+// Minimises the energy with the bones where they are held. x must be on the motion of the last broad phase.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
@@ -386,7 +391,8 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
   return solved;
 }
 
-// At the pose: what the last step has left, which is small to it. A shape that does not settle is as good as a step's.
+// Solves to the final tolerance at the pose, since a step ends with a coarser one. A shape that does not settle is
+// kept, as it is as good as that of a step.
 void PoseSolve::settle() {
   result_.blocked_by.clear();
   if (result_.residual < settings_.tolerance_mm) return;
@@ -404,7 +410,7 @@ void PoseSolve::settle() {
   result_.blocked_by = moves + obstacle(solved.bound, x_);
 }
 
-// Bones where they are held.
+// Returns whether no bone's node has moved too far from its bone; else sets blocked_by.
 bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePositions& x) {
   const Drift drift = bone_drift(pose, x);
   if (drift.mm > settings_.bone_drift_mm) {
@@ -422,7 +428,8 @@ void PoseSolve::record() {
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// From x, good at `from`, to the shape at `to`, or at a place before it, which `to` becomes.
+// Moves x, a solution at `from`, to the shape at `to`, or at an earlier position on the path, to which `to` is set.
+// Returns false if that fails.
 bool PoseSolve::part(double from, double& to, NodePositions& x) {
   const double at = follow(from, to, x);
   if (at == from) {
@@ -438,7 +445,8 @@ bool PoseSolve::part(double from, double& to, NodePositions& x) {
   return good(path_(at), x);
 }
 
-// As far towards `to` as it goes, in as few parts as can be. False when not even the shortest part can be done.
+// Solves as far towards `to` as possible, in as few parts as possible. Returns false if not even the shortest part can
+// be solved.
 bool PoseSolve::step(double to) {
   free_for(to);
   const double begin = result_.reached;
@@ -454,13 +462,13 @@ bool PoseSolve::step(double to) {
       from = next;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
-      // A shape that lags behind its bones is a poor start for the next step.
+      // A shape that lags behind its bones is a poor start for the next part, so it is solved more precisely.
       hold_at(path_(from));
       energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       if (held_by_ == model_.held_by) break;
-      free_for(INFINITY);  // maybe what waits stands in the way
+      free_for(INFINITY);  // nodes that still wait may be what blocks the step
       way = to - from;
     }
   }

@@ -13,16 +13,17 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 4096;
-constexpr double kKept = 0.1;  // of a tet's volume, by one step
-constexpr double kHalf = 0.5;  // of it, where that is less than what the tet must keep
+constexpr double kKept = 0.1;  // share of a tet's volume that one step must keep
+constexpr double kHalf = 0.5;  // largest share of a tet's volume that its volume to keep (`keep`) can demand
 
-// First a in (0, limit] where c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, from below; limit if none. c0 > 0.
+// Returns the first a in (0, limit] at which c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, rounded down; `limit` if there
+// is none. c0 must be positive.
 double first_root(double c0, double c1, double c2, double c3, double limit) {
   const auto f = [&](double a) { return c0 + a * (c1 + a * (c2 + a * c3)); };
   const auto falling = [](double c) { return std::min(c, 0.0); };
   if (c0 + limit * (falling(c1) + limit * (falling(c2) + limit * falling(c3))) > 0) return limit;
 
-  // Between extremes the cubic goes one way.
+  // Searches between the cubic's extremes, where it is monotonic.
   double extreme[2] = {limit, limit};
   const double discriminant = c2 * c2 - 3 * c3 * c1;
   if (discriminant > 0) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far nodes may go along a step before a tet would lose nine tenths of its volume, exactly: the volume of a tet
-// whose nodes move straight is a cubic, whose first root is looked for, not guessed. What is pressed flat is hard to
-// unfold: so a tet may have a volume that it must keep too, or half of what it has where that is less.
+// Computes how far nodes may move along a step before a tet would lose nine tenths of its volume. The volume of a tet
+// whose nodes move along straight lines is a cubic, whose first root is found, so the result is exact. A flat tet is
+// hard to unfold. So each tet may also be given a volume to keep; if it has less than twice that volume, a step must
+// keep half of what it has.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +13,20 @@
 namespace limber {
 
 struct StepBound {
-  double length;     // of the step, at most `limit`
-  std::int64_t tet;  // that bounds it, -1 none
+  double length;     // share of the step that is possible, at most `limit`
+  std::int64_t tet;  // index of the tet that limits the step, -1: none
 };
 
-// T     #T corners, all with positive volume at x
-// keep  #T: six times the volume that each must keep; empty: none
+// Returns the largest share of `step`, up to `limit`, that all tets allow.
+//   T     #T tets, all with positive volume at x
+//   keep  #T: six times the volume that each tet must keep, mm3; empty: none
 StepBound largest_step(const Eigen::MatrixX4i& T, const NodePositions& x, const NodePositions& step, double limit,
                        std::span<const double> keep = {});
 
-// Six times the volume of tet (a, b, c, d).
+// Returns six times the signed volume of tet (a, b, c, d), mm3.
 double determinant(const NodePositions& x, int a, int b, int c, int d);
 
-// Tets without positive volume.
+// Returns the number of tets without positive volume.
 std::int64_t count_inverted(const Eigen::MatrixX4i& T, const NodePositions& x);
 
 }  // namespace limber

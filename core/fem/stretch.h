@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far a pose stretches and presses each tissue: the singular values of F of the tets that hold its voxels. Skin
-// that has to cover the outside of a bent joint is stretched there; where in life it would slide over what lies below,
-// this says how much of that the model makes up for by stretch.
+// Measures how much a pose stretches and compresses each tissue, by the singular values of F in the tets that contain
+// its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it,
+// which the model cannot do: the measured stretch includes what takes the place of sliding.
 #pragma once
 
 #include <array>
@@ -15,12 +15,14 @@ namespace limber {
 
 struct TissueModel;
 
-// The 5th, 50th and 95th percentile of its voxels; 1 is as at rest.
+// The 5th, 50th and 95th percentiles of the principal stretches over a tissue's volume; a stretch of 1 is unchanged
+// length.
 struct Stretch {
   std::array<double, 3> least{1, 1, 1}, most{1, 1, 1};  // smallest and largest principal stretch
 };
 
-// Of the voxels of each label in tets that bend: not in those that one bone holds wholly, nor between two bones.
+// Returns the stretch of each label over the soft tets that may deform. Leaves out tets that one bone holds at every
+// node, and tets between two bones.
 //   V  #V posed nodes
 std::map<Label, Stretch> stretches(const TissueModel& model, const Eigen::MatrixX3d& V);
 

@@ -21,20 +21,20 @@ LIMBER_INLINE void cross(const N* a, const N* b, N* product) {
   for (int k = 0; k < 3; ++k) product[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-// columns times v
+// Computes the product of a matrix, given by its columns, with the vector v.
 template <class N>
 LIMBER_INLINE void multiply(const N columns[3][3], const N* v, N* product) {
   for (int k = 0; k < 3; ++k) product[k] = columns[0][k] * v[0] + columns[1][k] * v[1] + columns[2][k] * v[2];
 }
 
-// Lanes from `first` on; those beyond the last tet are that again.
+// Computes the derivatives of the tets from index `first` on, one per lane. Lanes beyond the last tet repeat that tet.
 template <class Lanes>
 LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivatives& result) {
   using N = typename Lanes::Numbers;
   const TetState* state[Lanes::kCount];
   for (int l = 0; l < Lanes::kCount; ++l) state[l] = &tets[std::min<std::size_t>(first + l, tets.size() - 1)];
 
-  N F[3][3], s[4][3], volume, shear, force_slope, g, h;  // F by columns
+  N F[3][3], s[4][3], volume, shear, force_slope, g, h;  // F[j] is column j
   int negative = 0;
   for (int l = 0; l < Lanes::kCount; ++l) {
     const TetState& tet = *state[l];

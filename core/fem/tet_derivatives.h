@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Forces and curvature of tets by the places of their nodes, four tets at a time (matrix_lanes.h): half of what
-// assembling a matrix took went there. With s_a the slope of node a's hat function, C the cofactors of F, c_a = C s_a,
-// and g and h the slope and curvature of the volume term (tet_energy.h), the block between nodes a and b is, times the
-// tet's volume,
-//   mu (s_a . s_b) I + h c_a c_b^T - g [F (s_a x s_b)]_x   and for each direction Q left out of it   + value (Q s_a) (Q
-//   s_b)^T
+// Computes the gradient and the Hessian of tets' energies by their nodes' positions, four tets at a time
+// (matrix_lanes.h): one at a time this would take half of the time that assembling a matrix needs. Let s_a be the
+// gradient of node a's hat function, C the cofactors of F, c_a = C s_a, and g and h the first and second derivative of
+// the volume term (tet_energy.h). Then the Hessian's block between nodes a and b is the tet's volume times
+//   mu (s_a . s_b) I + h c_a c_b^T - g [F (s_a x s_b)]_x,
+// plus, for each direction Q of negative curvature that is left out,
+//   value (Q s_a) (Q s_b)^T
 #pragma once
 
 #include <array>
@@ -18,23 +19,23 @@
 namespace limber {
 
 struct TetState {
-  const std::array<Eigen::Vector3d, 4>* slopes;  // of the nodes' hat functions at rest, 1/mm
+  const std::array<Eigen::Vector3d, 4>* slopes;  // gradients of the nodes' hat functions at rest, 1/mm
   Eigen::Matrix3d F;
-  double volume, shear;             // mm3, kPa
-  double force_slope;               // of what depends on J, for the forces,
-  double slope, curvature;          // and for the curvature
-  const Principal* axes = nullptr;  // of F, where there is anything negative
-  NegativeCurvature negative;       // left out
+  double volume, shear;             // volume at rest, mm3; shear modulus, kPa
+  double force_slope;               // first derivative of the volume term (with pressure) by J, for the gradient
+  double slope, curvature;          // first and second derivative of the volume term by J, for the Hessian
+  const Principal* axes = nullptr;  // singular value decomposition of F; needed if there is negative curvature
+  NegativeCurvature negative;       // negative curvature to leave out of the Hessian
 };
 
-// Of tet l at [...][l].
+// The derivatives of up to kTets tets. The last index of each array is the tet.
 struct TetDerivatives {
   static constexpr int kTets = 4;
-  double force[4][3][kTets];      // by node and axis: of the energy by the node's place
-  double block[10][3][3][kTets];  // by pair of nodes a >= b (lower triangle, row by row), column, row
+  double force[4][3][kTets];      // [node][axis][tet]: derivative of the energy by the node's position
+  double block[10][3][3][kTets];  // [pair][column][row][tet]: pairs of nodes a >= b (lower triangle, row by row)
 };
 
-// tets  at most kTets
+//   tets  at most kTets tets
 void tet_derivatives(std::span<const TetState> tets, TetDerivatives& result, MatrixLanes width = MatrixLanes::Widest);
 
 }  // namespace limber

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The energy of one tet by its deformation gradient F, its stress and its curvature:
+// Computes the energy density of one tet from its deformation gradient F, and the directions in which its Hessian is
+// negative:
 //   W(F) = mu/2 (|F|^2 - 3) - mu ln J + k/2 (J - 1)^2 + c h b(J / h),   b(t) = -(t - 1)^2 ln t below 1, else 0
-// The last term is a barrier against J = 0 that begins at J = h and is smooth there [Li et al. 2020, Incremental
-// Potential Contact]; c in kPa is how hard it pushes. A pressure p (of a patch, patch_form.h) adds p (J - 1).
+// with J = det F. The last term is a barrier against J = 0 that begins at J = h and is smooth there [Li et al. 2020,
+// Incremental Potential Contact]; c in kPa is its strength. A pressure p (of a patch, patch_form.h) adds p (J - 1).
 //
-// All of it depends on |F|^2 and J only, so with the singular values s of F the curvature falls apart into a 3x3 block
-// of stretches and, for each pair of axes, a shear mu - g s and a turn mu + g s, g = dW/dJ and s the third singular
-// value [Smith, de Goes & Kim 2019]. The projected curvature leaves out what is negative of these: nearest, and never
-// indefinite.
+// All terms depend on |F|^2 and J only. In the axes of the singular values s of F the Hessian therefore splits into a
+// 3x3 block of stretches and, for each pair of axes, the eigenvalues mu - g s of a shear and mu + g s of a rotation.
+// Here g = dW/dJ, and s is the singular value of the third axis [Smith, de Goes & Kim 2019]. The projected Hessian
+// leaves out the negative eigenvalues: this gives the nearest Hessian that is not indefinite.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +16,13 @@
 namespace limber {
 
 struct TetEnergy {
-  double shear = 1;          // mu, kPa
-  double bulk = 0;           // k, kPa
-  double barrier = 0;        // c, kPa
-  double barrier_below = 1;  // h, of J
+  double shear = 1;          // shear modulus mu, kPa
+  double bulk = 0;           // bulk modulus k, kPa
+  double barrier = 0;        // strength c of the barrier, kPa
+  double barrier_below = 1;  // h: the barrier acts where J is below it
 };
 
-// Of what depends on J alone.
+// The terms of the energy that depend on J only: their value, and their first and second derivative by J.
 struct VolumeTerm {
   double value, slope, curvature;
 };
@@ -29,16 +30,18 @@ VolumeTerm volume_term(const TetEnergy& energy, double J);
 
 double energy_density(const TetEnergy& energy, const Eigen::Matrix3d& F, double J);
 
-// Directions in which the curvature of W is negative: curvature -value along the unit matrix U mode V^T.
+// The directions in which the Hessian of W is negative. Along the unit matrix U mode V^T (F = U diag(sigma) V^T) its
+// eigenvalue is -value.
 struct NegativeCurvature {
   struct Direction {
     double value;          // above 0
-    Eigen::Matrix3d mode;  // in principal axes
+    Eigen::Matrix3d mode;  // in the principal axes of F
   };
   int count = 0;
   Direction direction[9];
 };
-// slope, curvature  of the volume term, the pressure included
+//   slope, curvature  first and second derivative of the volume term by J
+//   sigma             singular values of F
 NegativeCurvature negative_curvature(double shear, double slope, double curvature, const Eigen::Vector3d& sigma);
 
 }  // namespace limber

@@ -13,22 +13,22 @@ namespace limber {
 
 namespace {
 
-constexpr int kReach = 16;               // voxels: as far as tissue is looked for from a node that lies in air
-constexpr int kPlaces = 4;               // along each edge of a tet, less one, that are asked for their label
-constexpr double kLeastFilled = 0.1;     // of a tet where tissue ends, so that it keeps some volume of its own
-constexpr double kMostPoisson = 0.4999;  // what volume terms are made for; 0.5 cannot be computed with
+constexpr int kReach = 16;            // largest distance to the tissue near a node in air, voxels
+constexpr int kPlaces = 4;            // intervals along each tet edge in the grid of points that sample labels
+constexpr double kLeastFilled = 0.1;  // least share of tissue assumed in a tet, so that each tet resists volume change
+constexpr double kMostPoisson = 0.4999;  // largest Poisson ratio that the volume terms allow; 0.5 is impossible
 
 TetMaterial material_of(const Tissue& tissue, double stiffest) {
   const double nu = std::clamp(tissue.poisson_ratio, 0.0, kMostPoisson);
   return {std::clamp(tissue.young_modulus / (2 * (1 + nu)), 1e-3, stiffest), nu};
 }
 
-// Tissue near places of the world.
+// Finds the tissue voxel nearest to a position in the world.
 class Surroundings {
  public:
   explicit Surroundings(const LabelVolume& volume) : volume_(volume), voxel_(voxel_from_world(volume.grid)) {}
 
-  // The nearest voxel that passes, mm counted; false where there is none around.
+  // Finds the nearest tissue voxel (in mm) for which passes() is true. Returns false if there is none within kReach.
   template <class Passes>
   bool nearest(const Eigen::RowVector3d& world, const Passes& passes, glm::ivec3& found) const {
     const glm::dvec3 at = voxel_ * glm::dvec3(world[0], world[1], world[2]), spacing = volume_.grid.spacing;
@@ -71,11 +71,11 @@ Influence influence_at(const SkinWeights& weights, const TissueVoxels& tissue, c
   return weights.chunk(brick)[tissue.index_of(v) - tissue.bricks()[brick].first];
 }
 
-// Of the tissue in the 27 voxels around one of tissue.
+// Returns the mean influences of the tissue voxels among the 27 voxels around a tissue voxel.
 std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume,
                                           const TissueVoxels& tissue, const std::vector<int>& moves_as,
                                           const glm::ivec3& voxel) {
-  std::vector<std::pair<int, std::int64_t>> sums;  // few, rising
+  std::vector<std::pair<int, std::int64_t>> sums;  // (bone, sum of weights) in ascending order of bones; only a few
   std::int64_t total = 0;
   const auto add = [&](int bone, int weight) {
     const auto at = std::lower_bound(sums.begin(), sums.end(), bone,
@@ -95,13 +95,14 @@ std::vector<BoneWeight> influences_around(const SkinWeights& weights, const Labe
   return result;
 }
 
-// What of each tet which label fills: of 35 places in it, each stands for as much.
+// Estimates the volume that each label fills in each tet from 35 sample points, each of which stands for an equal
+// volume.
 void find_parts(TissueModel& model, const LabelVolume& volume) {
   const TetMesh& mesh = model.fem.mesh;
   const AffineTransform voxel = voxel_from_world(volume.grid);
   std::vector<glm::dvec3> node;
   for (int i = 0; i < mesh.V.rows(); ++i) node.push_back(voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
-  std::vector<glm::dvec4> shares;  // of the corners
+  std::vector<glm::dvec4> shares;  // barycentric coordinates of the sample points
   for (int i = 0; i <= kPlaces; ++i)
     for (int j = 0; i + j <= kPlaces; ++j)
       for (int k = 0; i + j + k <= kPlaces; ++k)
@@ -165,9 +166,9 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
 
 constexpr int kNone = -1, kSeveral = -2;
 
-// Nodes between two bones: the ways to both are together shorter than `joint_mm`. Of each bone's own nodes half at
-// most, those nearest to another bone.
-//   bone  of each node, kNone or kSeveral
+// Returns, for each node, whether it lies between two bones: whether its distances to the two nearest bones sum to less
+// than `joint_mm`. At most half of each bone's own nodes are included, those nearest to another bone.
+//   bone  #V: the bone of each node, kNone or kSeveral
 std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector<int>& bone, double joint_mm) {
   std::vector<VoxelRange> boxes(mesh.V.rows()), of_bones(mesh.V.rows());
   for (int i = 0; i < mesh.V.rows(); ++i) {
@@ -176,7 +177,7 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   }
   const BoxBins bins(of_bones, 8);
   const int reach = static_cast<int>(std::ceil(joint_mm)) + 1;
-  std::map<int, std::vector<std::pair<double, int>>> near_other;  // by bone: distance, node
+  std::map<int, std::vector<std::pair<double, int>>> near_other;  // per bone: (node's distance to another bone, node)
   std::map<int, std::size_t> count;
   std::vector<std::uint8_t> between(mesh.V.rows(), 0);
   std::vector<int> near;
@@ -205,7 +206,8 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   return between;
 }
 
-// By the regions of the tets at each node, then by what does not bend; joints are what lies between two bones.
+// Chooses the bone that holds each node: the bone of the tets around it, or the bone with which rigid tissue moves.
+// Also marks the tets between two bones as joints.
 void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
                     const SkinWeights& weights, const DeformingRegion& moving, double joint_mm) {
   const TetMesh& mesh = model.fem.mesh;

@@ -20,11 +20,12 @@ struct Triangle {
   std::array<int, 3> node;
 };
 
-// --- On a plane: the axis is left out along which its normal is longest, so that nothing becomes flat.
+// --- Tests in a plane. Projecting along the axis in which the triangle's normal is longest keeps the triangle from
+// becoming flat.
 
 P2 flat(const P3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-bool between(const P2& a, const P2& b, const P2& p) {  // of three points on one line
+bool between(const P2& a, const P2& b, const P2& p) {  // requires that the three points lie on one line
   return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= p[1] &&
          p[1] <= std::max(a[1], b[1]);
 }
@@ -61,9 +62,9 @@ bool meets_on_plane(const P3& p, const P3& q, const Triangle& t) {
   return false;
 }
 
-// --- In space.
+// --- Tests in space.
 
-// Whether the segment from p to q has a point of the triangle, its border and the segment's ends counted.
+// Returns whether the segment from p to q meets the triangle; the triangle's border and the segment's ends count.
 bool segment_meets(const P3& p, const P3& q, const Triangle& t) {
   const int at_p = side_3d(t.corner[0], t.corner[1], t.corner[2], p),
             at_q = side_3d(t.corner[0], t.corner[1], t.corner[2], q);
@@ -106,7 +107,7 @@ bool cross(const Triangle& one, const Triangle& other) {
   return false;
 }
 
-// --- Which triangles are near each other.
+// --- A uniform grid of cells, which finds triangles that lie near each other.
 
 struct Box {
   P3 low, high;
@@ -129,8 +130,8 @@ class Cells {
       for (int i = 0; i < 3; ++i)
         low_[i] = std::min(low_[i], box.low[i]), size += (box.high[i] - box.low[i]) / (3.0 * double(boxes.size()));
     side_ = std::max(2 * size, 1e-9);
-    // Larger ones where a few triangles are far larger than most.
-    constexpr double kMostEntries = 20;  // a triangle, in the mean
+    // Doubles the cell size while a few large triangles would fill too many cells.
+    constexpr double kMostEntries = 20;  // upper limit on the mean number of cells per triangle
     while (entries_needed() > kMostEntries * double(boxes.size())) side_ *= 2;
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       const auto from = cell_of(boxes[t].low), to = cell_of(boxes[t].high);
@@ -146,7 +147,8 @@ class Cells {
 
   std::int64_t count() const { return std::ssize(first_) - 1; }
 
-  // Every pair of triangles whose boxes meet, in one of the cells that both are in.
+  // Calls body for each pair of triangles of a cell whose bounding boxes overlap. A pair that shares several cells is
+  // passed in only one of them.
   template <class Body>
   void for_each_pair(std::int64_t cell, const Body& body) const {
     for (std::size_t i = first_[cell]; i < first_[cell + 1]; ++i)
@@ -175,7 +177,7 @@ class Cells {
       double cells = 1;
       for (int i = 0; i < 3; ++i) cells *= double(to[i] - from[i] + 1);
       sum += cells;
-      if (*std::max_element(to.begin(), to.end()) >= 1 << 21) return 1e300;  // beyond what a key can say
+      if (*std::max_element(to.begin(), to.end()) >= 1 << 21) return 1e300;  // a cell's key has only 21 bits per axis
     }
     return sum;
   }

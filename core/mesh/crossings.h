@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where a surface cuts or touches itself: pairs of triangles with a common point that is no common corner or edge.
-// Decided exactly (predicates.h), found through a grid of cells.
+// Finds where a surface crosses or touches itself: the pairs of triangles that have a point in common other than on an
+// edge or corner that they share. A grid of cells finds candidate pairs; exact predicates (predicates.h) decide each.
 #pragma once
 
 #include <array>
@@ -10,9 +10,10 @@
 
 namespace limber {
 
-// Pairs of rows of F, the smaller first, in ascending order. Triangles that share an edge count where they lie upon
-// each other, those that share a corner where they meet elsewhere too; the same for any number of threads.
-//   V  #V places (finite)   F  #F corners
+// Returns the pairs of rows of F whose triangles cross, the smaller row first, in ascending order. Triangles that share
+// an edge cross if they overlap; triangles that share only a corner cross if they also meet elsewhere. The result does
+// not depend on the number of threads.
+//   V  #V vertex positions (finite)   F  #F triangles
 std::vector<std::array<int, 2>> crossing_pairs(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F);
 
 }  // namespace limber

@@ -17,12 +17,16 @@ namespace {
 
 using Point = Eigen::Vector3d;
 
-const double kFlat = std::cos(6 * std::numbers::pi / 180);  // of tets that deserve every effort
+// Badness (cosine of the smallest dihedral angle) above which a tet counts as flat: its smallest angle is below 6
+// degrees. Flat tets are worth the slower search in Improver::move.
+const double kFlat = std::cos(6 * std::numbers::pi / 180);
 
-// 2 where the tet has no positive volume, else the cosine of its smallest dihedral angle: less is better.
+// Returns the badness of a tet: the cosine of its smallest dihedral angle, or 2 if its volume is not positive. A
+// smaller value is better.
 double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Point ab = b - a, ac = c - a, ad = d - a, bc = c - b, bd = d - b;
-  const Point normal[4] = {bc.cross(bd), ad.cross(ac), ab.cross(ad), ac.cross(ab)};  // outwards, opposite to a, b, c, d
+  const Point normal[4] = {bc.cross(bd), ad.cross(ac), ab.cross(ad),
+                           ac.cross(ab)};  // outward normals of the faces opposite to corners a, b, c, d
   if (normal[3].dot(ad) >= 0) return 2;
   double length[4], worst = -1;
   for (int i = 0; i < 4; ++i) length[i] = normal[i].norm();
@@ -31,12 +35,12 @@ double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::isfinite(worst) ? worst : 2;
 }
 
-constexpr int kAskEvery = 256;  // nodes, some 20 ms, between questions whether to stop
+constexpr int kAskEvery = 256;  // number of nodes (about 20 ms) between two checks for cancellation
 
 class Improver {
  public:
-  // Nodes are kept in lattice axes, where the boxes are.
-  //   may_lose  voxels that may come to lie outside
+  // Converts the nodes to lattice axes, in which the boxes of the net's nodes are given.
+  //   may_lose  number of tissue voxels that may end up outside the mesh
   Improver(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, std::int64_t may_lose)
       : mesh_(mesh),
         net_(net),
@@ -67,7 +71,8 @@ class Improver {
       for (const int corner : mesh.T.row(tet)) tet_[next[corner]++] = static_cast<int>(tet);
   }
 
-  // Moves the nodes of the tets that are worse than enough, until no move helps. Only what moved is asked again.
+  // Moves the nodes of tets whose badness is above `enough`, until no move helps or `most` sweeps over the mesh are
+  // done. After the first sweep, tests only the tets around nodes that moved.
   int sweeps(int most, double enough, double reach, Progress& progress) {
     std::vector<int> tets(mesh_.T.rows());
     std::iota(tets.begin(), tets.end(), 0);
@@ -91,7 +96,7 @@ class Improver {
     return moves;
   }
 
-  // Only what moved is written, so that the rest keeps its bits.
+  // Writes only the moved nodes back to the mesh, so that the positions of all others stay equal bit by bit.
   void write() {
     for (const int node : moved_) mesh_.V.row(node) = (turn_ * V_[node] + offset_).transpose();
   }
@@ -102,7 +107,7 @@ class Improver {
     return badness(V_[tet[0]], V_[tet[c]], V_[tet[b]], V_[tet[3]]);
   }
 
-  // Of the tets around a node; any number above `limit` where that is passed.
+  // Returns the largest badness of the tets around a node. Stops early once a tet exceeds `limit`.
   double worst_around(int node, double limit = 2) const {
     double worst = -1;
     for (int i = first_[node]; i < first_[node + 1] && worst <= limit; ++i)
@@ -120,7 +125,7 @@ class Improver {
     return brick >= 0 && (voxels_.tissue.bricks()[brick].mask[v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
   }
 
-  // The tissue voxels in the tets around a node.
+  // Collects the grid indices, sorted, of the tissue voxels in the tets around a node.
   void voxels_around(int node, std::vector<std::int64_t>& places) const {
     places.clear();
     const Grid& grid = voxels_.grid;
@@ -141,7 +146,7 @@ class Improver {
     places.erase(std::unique(places.begin(), places.end()), places.end());
   }
 
-  // The voxels that a node's tets no longer hold.
+  // Returns how many voxels of `before` the tets around a node no longer contain.
   std::int64_t lost_around(int node, const std::vector<std::int64_t>& before) const {
     if (!on_skin_[node]) return 0;
     std::vector<std::int64_t> after, lost;
@@ -150,7 +155,8 @@ class Improver {
     return std::ssize(lost);
   }
 
-  // The best place found for a node; `accept` is asked with the node there.
+  // Searches for the node position with the least badness and returns it. Calls accept() with the node at each
+  // candidate position; false rejects that position.
   template <class Accept>
   Point search(int node, double reach, const Accept& accept) {
     Point& place = V_[node];
@@ -192,12 +198,13 @@ class Improver {
     if (on_skin_[node]) voxels_around(node, before);
     if (settle(node, best, worst, before)) return true;
     if (worst <= kFlat) return false;
-    // Worth the time to ask for the voxels at every place tried.
+    // The tet is flat, so it is worth the time to count the voxels that leave the mesh at every candidate position.
     const Point kept = search(node, reach, [&] { return lost_around(node, before) <= may_lose_; });
     return kept != start && settle(node, kept, worst, before);
   }
 
-  // Moves a node to a place or, where that would leave too many voxels outside, part of the way.
+  // Moves a node to `there`, or 1/2 or 1/4 of the way if the whole way would leave too many voxels outside the mesh.
+  // Returns whether the node moved.
   bool settle(int node, const Point& there, double worst, const std::vector<std::int64_t>& before) {
     Point& place = V_[node];
     const Point start = place;
@@ -219,7 +226,7 @@ class Improver {
   const VoxelRegions& voxels_;
   AffineTransform voxel_from_lattice_;
   std::int64_t may_lose_;
-  std::vector<int> first_, tet_;  // tets of each node
+  std::vector<int> first_, tet_;  // indices of the tets around node i: tet_[first_[i]] .. tet_[first_[i + 1] - 1]
   std::vector<Point> V_;
   std::vector<std::uint8_t> on_skin_;
   std::vector<int> moved_;
@@ -236,7 +243,7 @@ int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, co
   Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
-  // The worst first: they may leave voxels outside that others must then keep.
+  // The flattest tets come first: all tets share one limit on the number of voxels that may leave the mesh.
   for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3, progress);
   improver.write();
   return moves;

@@ -10,20 +10,22 @@
 namespace limber {
 
 namespace {
-constexpr double kFurthest = 0.4;  // of a vertex from its cube's middle, voxels
-// Towards the neighbours, then away by a little more, or the body would shrink [Taubin, SIGGRAPH 1995]: pass band 0.1.
+constexpr double kFurthest = 0.4;  // largest distance of a vertex from its cube's centre along each axis, voxels
+// Step lengths of one smoothing step: first towards the mean of the neighbours, then slightly further away from it,
+// since the body would shrink otherwise [Taubin, SIGGRAPH 1995]. The pass band is 0.1.
 constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
 
 struct Quad {
-  std::array<int, 4> corner;  // vertices, around the pair of voxels, counter-clockwise seen from `above`
-  std::array<int, 4>
-      middle;  // of the side from corner i to the next, where the surface of a tissue would have it twice; else -1
-  Label below, above;  // of the pair
-  std::int64_t voxel;  // the one below, in the grid with a border of air
-  int axis;            // from below to above
+  std::array<int, 4> corner;  // vertices around the quad's two voxels, counter-clockwise seen from `above`
+  // Number of the extra vertex in the middle of the edge from corner i to the next corner; -1: none. An edge has such a
+  // vertex if the surface of one tissue would pass it twice.
+  std::array<int, 4> middle;
+  Label below, above;  // labels of the quad's two voxels
+  std::int64_t voxel;  // index of the voxel below, in the grid with a border of air
+  int axis;            // axis from the voxel below to the voxel above
 };
 
-// The labels with a border of air one voxel wide.
+// The labels of a volume, surrounded by a border of air one voxel wide.
 struct Bordered {
   explicit Bordered(const LabelVolume& volume)
       : size(volume.grid.size + 2),
@@ -44,8 +46,8 @@ struct Bordered {
   std::array<std::int64_t, 3> step;
 };
 
-// A tissue on one diagonal of the four voxels around an edge of the net, and nowhere else there: its surface passes
-// that edge twice.
+// Returns whether the surface of one tissue passes an edge of the net twice. a, b, c, d are the labels of the four
+// voxels around that edge: the tissue then fills two diagonally opposite voxels and neither of the other two.
 bool passes_twice(Label a, Label b, Label c, Label d) {
   return (a == c && a != 0 && b != a && d != a) || (b == d && b != 0 && a != b && c != b);
 }
@@ -69,7 +71,7 @@ class Net {
     glm::ivec3 corner;
     int quad;
   };
-  // The voxel of the pair that is the tissue's.
+  // Returns the index of that voxel of the triangle's pair which has the label.
   std::int64_t voxel_of(const Triangle& triangle, Label label) const {
     const Quad& quad = quads_[triangle.quad];
     return quad.below == label ? quad.voxel : quad.voxel + body_.step[quad.axis];
@@ -77,13 +79,13 @@ class Net {
 
   const LabelVolume& volume_;
   Bordered body_;
-  std::vector<glm::dvec3> middle_;  // of each vertex' cube, voxel coordinates of the volume
-  std::vector<glm::dvec3> offset_;  // of each vertex from there, voxels
+  std::vector<glm::dvec3> middle_;  // centre of each vertex's cube, voxel coordinates of the volume
+  std::vector<glm::dvec3> offset_;  // offset of each vertex from the centre of its cube, voxels
   std::vector<std::uint8_t> junction_;
   std::vector<Quad> quads_;
-  std::map<std::array<int, 2>, int> middles_;  // by the side's ends
+  std::map<std::array<int, 2>, int> middles_;  // number of an edge's middle vertex, by the edge's two vertices
   std::vector<Triangle> triangles_;
-  std::vector<glm::dvec3> extra_;  // middles of sides, then of quads: voxel coordinates
+  std::vector<glm::dvec3> extra_;  // middle vertices of edges, then centre vertices of quads; voxel coordinates
 };
 
 bool Net::is_mixed(std::int64_t cube, bool& junction) const {
@@ -115,7 +117,8 @@ void Net::add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axi
   quads_.push_back(quad);
 }
 
-// Cubes layer by layer: vertices of two layers are enough, since quads join a layer with the one below.
+// Walks over the cubes layer by layer. Only the vertices of two layers are stored, since every quad joins vertices of
+// one layer or of two successive layers.
 void Net::build(Progress& progress) {
   const glm::ivec3 size = body_.size;
   const auto [sx, sy, sz] = body_.step;
@@ -131,8 +134,9 @@ void Net::build(Progress& progress) {
         here[at] = static_cast<int>(middle_.size());
         middle_.push_back(glm::dvec3(x, y, z) - 0.5);
         junction_.push_back(junction);
-        // The three pairs that leave the cube's lowest voxel, each with the four cubes around it and, per side, the way
-        // to the voxels beyond it.
+        // Adds the quads of the three pairs of voxels that begin at the cube's lowest voxel. Each quad gets the
+        // vertices of the four cubes around the pair and, for each of its edges, the index step to the pair of voxels
+        // beyond that edge.
         const Label label = body_.labels[cube];
         if (label != body_.labels[cube + sx])
           add_quad({below[at - row], below[at], here[at], here[at - row]}, cube, 0, {-sz, sy, sz, -sy});
@@ -170,7 +174,7 @@ void Net::relax(int times) {
   }
 }
 
-// Two triangles, or a fan around the quad's middle where a side has one of its own.
+// Splits a quad into two triangles, or into a fan around its centre if any of its edges has a middle vertex.
 void Net::triangulate(const Quad& quad, int number) {
   const auto& c = quad.corner;
   if (*std::max_element(quad.middle.begin(), quad.middle.end()) < 0) {
@@ -194,7 +198,7 @@ void Net::triangulate(const Quad& quad, int number) {
   }
 }
 
-// Joined sets of whole numbers.
+// Disjoint sets of the integers 0 .. count - 1 (union-find).
 class Sets {
  public:
   explicit Sets(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
@@ -212,11 +216,12 @@ class Sets {
 };
 
 LabelSurface Net::surface_of(Label label, const std::vector<int>& triangles) const {
-  // Sides of triangles, those between the same two vertices beside each other; where they are four, those of one voxel.
+  // The edges of all triangles, sorted so that edges between the same two vertices follow each other. If there are four
+  // of these, the two that belong to the same voxel of the tissue follow each other.
   struct Side {
     int low, high;
     std::int64_t voxel;
-    int at_low, at_high;  // corners: 3 triangle + which
+    int at_low, at_high;  // the triangle's corners at the edge's ends, as 3 * triangle + corner
     auto key() const { return std::tie(low, high, voxel, at_low); }
   };
   std::vector<Side> sides;
@@ -231,7 +236,7 @@ LabelSurface Net::surface_of(Label label, const std::vector<int>& triangles) con
   }
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
 
-  // Corners of triangles that share a side are one vertex.
+  // Joins the corners of two triangles at each end of their common edge into one vertex.
   Sets corners(3 * triangles.size());
   for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
     while (end < sides.size() && sides[end].low == sides[first].low && sides[end].high == sides[first].high) ++end;
@@ -295,7 +300,8 @@ LabelSurfaces label_surfaces(const LabelVolume& volume, const LabelSurfaceSettin
 
 double enclosed_volume(const LabelSurfaces& all, const LabelSurface& surface) {
   if (surface.F.empty()) return 0;
-  const glm::dvec3 about = all.V[surface.vertex[0]];  // near it, so that nothing is lost to large coordinates
+  // Uses a point of the surface as the origin, so that large coordinates do not reduce the precision.
+  const glm::dvec3 about = all.V[surface.vertex[0]];
   double six_volumes = 0;
   for (const glm::ivec3& f : surface.F) {
     const glm::dvec3 a = all.V[surface.vertex[f.x]] - about, b = all.V[surface.vertex[f.y]] - about,

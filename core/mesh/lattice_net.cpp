@@ -14,13 +14,15 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kPushes = 12;  // of a point, then samples become tissue
+constexpr int kPushes = 12;  // how often one point may be pushed outwards; after that, samples become tissue
 constexpr int kRounds = 90;
-constexpr std::int64_t kBricks = 64, kVoxels = 4096;  // that a thread takes at a time
+constexpr std::int64_t kBricks = 64, kVoxels = 4096;  // bricks per task, voxels per task
 
 using Cell = SampleLattice::Cell;
 
-// Those of `count` voxels that pass, in order.    voxels(begin, end, body): body(voxel) of each
+// Returns, in order, the voxels for which passes() is true.
+//   count                     size of the range that is split over threads
+//   voxels(begin, end, body)  calls body(voxel) for each voxel of a part of that range
 template <class Voxels, class Passes>
 std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Voxels& voxels, const Passes& passes) {
   std::vector<std::vector<glm::ivec3>> found((count + grain - 1) / grain);
@@ -34,7 +36,8 @@ std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Vox
   return all;
 }
 
-// The tissue voxels in cells that hold air, which may lie outside, in brick order.
+// Returns the tissue voxels of those cells that contain air, in brick order. Only these voxels can lie outside the
+// surface.
 std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SmallestCells& smallest,
                                       const TissueVoxels& tissue) {
   return select(
@@ -57,12 +60,12 @@ std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice&
 
 struct Missed {
   Cell cell;
-  glm::dvec3 sum{0};  // of the places of its voxels outside
+  glm::dvec3 sum{0};  // sum of the positions of the cell's tissue voxels outside the surface, lattice steps
   int count = 0;
   glm::dvec3 place() const { return sum / double(count); }
 };
 
-// The cells with voxels outside, those with most of them first.
+// Returns the cells that have tissue voxels outside the surface, those with most of such voxels first.
 std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const std::vector<glm::ivec3>& outside) {
   std::unordered_map<std::int64_t, std::size_t> place_of;
   std::vector<Missed> missed;
@@ -78,8 +81,8 @@ std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const std::vec
   return missed;
 }
 
-// Of each cell that misses voxels, the edge between tissue and air whose point lies nearest to them; null where there
-// is none.
+// Returns a lattice edge for each cell that has tissue voxels outside the surface: of the edges between tissue and air,
+// the one whose point of the surface net is nearest to the mean of those voxels. Null if there is none.
 std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const std::vector<Missed>& missed) {
   std::vector<int> miss_at(net.nodes().size(), -1);
   for (std::size_t m = 0; m < missed.size(); ++m)
@@ -99,9 +102,9 @@ std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const 
   return nearest;
 }
 
-// Pushes the point next to the voxels that a cell misses, or else the other one: what is further away need not give
-// way, so that the surface stays close to the voxels. Late rounds are in a hurry and push both. False where none can be
-// pushed any more.
+// Pushes outwards the net's point in the cell or its point on the edge: the one nearer to the cell's voxels outside the
+// surface, or the other point if the nearer one has reached its limit of pushes. Pushing only one keeps the surface
+// close to the voxels; late rounds push both points, to end sooner. Returns false if both have reached their limit.
 bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& miss, const SurfaceNet::Edge* edge,
           int round, Pushes& pushes) {
   const int node = net.node_of(miss.cell);
@@ -118,8 +121,8 @@ bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& mis
   return first_can || pushes_second;
 }
 
-// Makes room for `to_gain` of the voxels outside, where most are: points are pushed outwards, or samples become tissue.
-// Returns whether samples did.
+// Brings at least `to_gain` of the voxels outside the surface closer to being inside, starting with the cells that have
+// most of them: pushes points of the net outwards, or makes samples tissue. Returns whether any sample became tissue.
 bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain,
                int round, Pushes& pushes) {
   bool any_became = false;
@@ -185,14 +188,14 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
   auto net = std::make_unique<SurfaceNet>(lattice, voxel_at);
   std::vector<glm::ivec3> near_air, outside;
-  bool is_known = false;  // near_air, of this net
+  bool is_known = false;  // whether near_air was found for the current net
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     net->place(pushes);
     if (round > 0)
       std::erase_if(outside,
                     [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
-    if (round == 0 || std::ssize(outside) <= allowed) {  // a point that moved may have left others outside
+    if (round == 0 || std::ssize(outside) <= allowed) {  // moved points may have left other voxels outside
       if (!std::exchange(is_known, true)) near_air = find_near_air(*net, smallest, voxels.tissue);
       outside = find_outside(*net, lattice, near_air);
     }

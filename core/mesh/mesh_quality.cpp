@@ -14,7 +14,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kVolumeTolerance = 1e-9;  // of the whole
+constexpr double kVolumeTolerance = 1e-9;  // largest error of a region's volume, as a share of the total volume
 
 double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue) {
   if (tissue.size() == 0) return 1;
@@ -22,7 +22,8 @@ double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& 
   const bool mirrored = glm::determinant(to_voxel.linear) < 0;
   std::vector<glm::dvec3> V(mesh.V.rows());
   for (std::size_t i = 0; i < V.size(); ++i) V[i] = to_voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2));
-  // Slices by themselves, so that threads share nothing.
+  // Lists the tets of each slice of voxels: each thread then fills whole slices, so that no two threads write to the
+  // same memory.
   std::vector<std::vector<int>> tets_of(grid.size.z);
   for (int tet = 0; tet < mesh.T.rows(); ++tet) {
     double low = 1e300, high = -1e300;
@@ -57,7 +58,7 @@ double total(const std::map<std::uint16_t, double>& volumes) {
   return sum;
 }
 
-// Each edge of the boundary is passed as often one way as the other.
+// Returns whether a boundary is closed: its triangles run along each edge as often in one direction as in the other.
 bool is_closed(const Eigen::MatrixX3i& F) {
   std::vector<std::pair<std::int64_t, int>> passes;
   passes.reserve(F.size());

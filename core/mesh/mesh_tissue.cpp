@@ -12,13 +12,14 @@ namespace limber {
 
 namespace {
 
-const double kLatticePerSpacing = std::cbrt(2.0);  // the body-centred cubic lattice has two nodes for each cube
+// Edge of the lattice's cells relative to the node spacing: a body-centred cubic cell contains two nodes.
+const double kLatticePerSpacing = std::cbrt(2.0);
 
 std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) {
   return find_fault(mesh, enclosed_volumes(net.surface, mesh.V));
 }
 
-// Empty, or why there is no mesh by TetGen.
+// Fills the net's surface with tets by TetGen. Returns why that failed, or an empty string.
 std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels,
                            const MeshSettings& settings, Progress& progress) {
   Tetrahedralized filled = tetrahedralize_inside(net.surface, settings.limits, progress);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A body's tissue as tetrahedra: a surface net fitted to the voxels with the lattice's own tets inside it, the flat
-// ones improved, and all of it checked. That needs no library and cannot fail. TetGen may fill the same net instead;
-// where it fails, the lattice's tets stand, and that is part of the answer, to be said to the user.
+// Meshes a body's tissue with tetrahedra: fits a surface net to the voxels, fills it with the lattice's own tets,
+// improves the flat ones, and checks the result. Filling with the lattice's tets needs no library and cannot fail.
+// TetGen may fill the same net instead; if TetGen fails, the result has the lattice's tets and a warning for the user.
 #pragma once
 
 #include <string>
@@ -16,28 +16,29 @@ namespace limber {
 enum class Mesher { lattice, tetgen };
 
 struct MeshSettings {
-  double spacing_mm =
-      8;  // of nodes, but deep inside: one for each cube of this side, by the lattice; of the net's samples for TetGen
+  // Mesher::lattice: the edge of a cube that contains one node on average; deep inside, nodes are sparser.
+  // Mesher::tetgen: the distance between the samples from which the surface is built.
+  double spacing_mm = 8;
   Mesher mesher = Mesher::lattice;
-  std::vector<glm::dvec3> fine_around;  // world, mm: joints that bend; nodes are half as far apart there
+  std::vector<glm::dvec3> fine_around;  // joints that bend, world, mm; nodes near them are half as far apart
   double fine_radius_mm = 40;
-  TetrahedralizeLimits limits = {};  // of TetGen
+  TetrahedralizeLimits limits = {};  // limits on TetGen's time and memory
 };
 
 struct TissueMesh {
   TetMesh mesh;                     // no tets for a body without voxels
-  Mesher mesher = Mesher::lattice;  // that made it
-  std::string warning;              // for the user, when it is not the one asked for: why; else empty
-  double spacing_mm = 0;            // as it became
+  Mesher mesher = Mesher::lattice;  // the mesher that made the mesh
+  std::string warning;              // tells the user why the requested mesher was not used; empty if it was
+  double spacing_mm = 0;            // the spacing in use, which may be larger than requested
   double seconds = 0;
 };
 
-// The same for any number of threads.
-//   throws Cancelled
+// Returns the mesh, which does not depend on the number of threads.
+//   throws Cancelled; Error if the mesh of the lattice's tets does not pass its check
 TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings = {},
                        Progress& progress = no_progress());
 
-// Of a volume whose labels are regions: 0 not to be meshed, 1 soft tissue, 2 + bone.
+// Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i.
 TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings = {},
                        Progress& progress = no_progress());
 

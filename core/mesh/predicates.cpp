@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 
-// A number as a sum of at most N doubles that do not overlap, smallest first.
+// A number as the exact sum of at most N doubles whose bits do not overlap, from smallest to largest.
 template <int N>
 struct Expansion {
   std::array<double, N> part;
@@ -22,7 +22,7 @@ struct Expansion {
   int sign() const { return count == 0 ? 0 : part[count - 1] > 0 ? 1 : -1; }
 };
 
-// a + b = sum + rest, exactly.
+// Computes sum = a + b, rounded, and its rounding error `rest`, so that a + b = sum + rest exactly.
 void two_sum(double a, double b, double& sum, double& rest) {
   sum = a + b;
   const double b_part = sum - a;

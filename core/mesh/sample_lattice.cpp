@@ -11,15 +11,16 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kBorder = 3;   // usual cells of air around the tissue: room for samples that become tissue
-constexpr int kLargest = 4;  // times the usual size, of cells deep inside
+constexpr int kBorder = 3;   // width in cells of the air around the tissue, where samples may become tissue
+constexpr int kLargest = 4;  // largest cells deep inside, relative to the usual cell size
 constexpr std::int64_t kMostSamples = 12'000'000;
 
 struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
 };
 
-// Of the tissue, in voxels, with the voxels' own extent.
+// Returns the bounding box of whole tissue voxels, in voxel coordinates: it extends half a voxel beyond the outermost
+// centres.
 Box extent_of(const TissueVoxels& tissue) {
   Box box;
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -43,7 +44,7 @@ void place(SampleLattice& lattice, const VoxelRegions& voxels, const LatticeNetS
   lattice.step = spacing_mm / lattice.usual;
   const glm::ivec3 cells = glm::ivec3(glm::ceil((box.high - box.low) / spacing_mm)) + 2 * kBorder;
   lattice.size = cells * lattice.usual + 1;
-  // The tissue in the middle.
+  // Centres the lattice on the tissue's bounding box.
   const glm::dvec3 first = (box.low + box.high) * 0.5 - glm::dvec3(cells) * (spacing_mm * 0.5);
   lattice.fine_from_voxel = {glm::dmat3(grid.spacing.x, 0, 0, 0, grid.spacing.y, 0, 0, 0, grid.spacing.z), -first};
   lattice.fine_from_voxel.linear /= lattice.step;
@@ -77,7 +78,8 @@ void refine(SampleLattice& lattice, const LatticeNetSettings& settings) {
   });
 }
 
-// Eight cells of one size become one where they lie in one region, and none that touches them is smaller.
+// Joins eight cells of one size into one cell where they lie in one region and all cells that touch them have the same
+// size.
 void coarsen(SampleLattice& lattice, int size) {
   std::vector<glm::ivec3> deep;
   for_each_cell_of(lattice, 2 * size, [&](const glm::ivec3& corner) {
@@ -98,10 +100,10 @@ void coarsen(SampleLattice& lattice, int size) {
   for (const glm::ivec3& corner : deep) resize_cell(lattice, corner, 2 * size, 2 * size);
 }
 
-// How full of tissue each sample's surroundings are, and of which bones.
+// The volumes of tissue and of each bone in the cube around each sample.
 struct Filling {
-  std::vector<float> tissue;                          // mm3 per sample
-  std::vector<std::pair<std::uint64_t, float>> bone;  // (sample << 16 | region, mm3), sorted by the first
+  std::vector<float> tissue;                          // mm3 of any tissue, one per sample
+  std::vector<std::pair<std::uint64_t, float>> bone;  // (sample << 16 | region, mm3), sorted by that key
 };
 
 void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
@@ -113,7 +115,8 @@ void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
   parts.resize(kept);
 }
 
-// Voxels larger than half a step are counted in pieces.
+// Sums up the volumes of tissue around the samples whose coordinates are multiples of `stride`. Splits voxels larger
+// than half the distance between these samples into smaller boxes, each of which is counted at its own centre.
 Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int stride) {
   Filling filling;
   filling.tissue.assign(lattice.label.size(), 0);
@@ -150,13 +153,14 @@ int smallest_around(const SampleLattice& lattice, const glm::ivec3& p) {
 bool is_multiple(const glm::ivec3& p, int size) { return ((p.x | p.y | p.z) & (size - 1)) == 0; }
 
 struct Candidate {
-  float share;  // of the sample's surroundings that the bone fills
+  float share;  // share of the cube around the sample that the bone fills, [0, 1]
   float volume;
   std::int64_t at;
   std::uint16_t region;
 };
 
-// Every bone gets as many samples as it has volume, those that it fills most; samples of two bones never share a cell.
+// Gives each bone the samples of which it fills the largest share, so many that their volume matches the bone's.
+// Samples of two bones never share a cell.
 void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   std::map<std::uint16_t, std::vector<Candidate>> by_bone;
   for (const Candidate& candidate : all) by_bone[candidate.region].push_back(candidate);
@@ -176,7 +180,8 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   }
   std::sort(seeds.begin(), seeds.end(), fuller);
   std::sort(wanted.begin(), wanted.end(), fuller);
-  wanted.insert(wanted.begin(), seeds.begin(), seeds.end());  // no bone goes without for another's sake
+  wanted.insert(wanted.begin(), seeds.begin(),
+                seeds.end());  // every bone first gets one sample, so that no bone is left out
   std::unordered_map<std::int64_t, std::uint16_t> bone_of_cell;
   for (const Candidate& candidate : wanted) {
     const glm::ivec3 p(candidate.at % lattice.size.x, candidate.at / lattice.size.x % lattice.size.y,
@@ -209,7 +214,8 @@ int SampleLattice::edge_length(const glm::ivec3& p, int axis) const {
   if (p[axis] + 1 >= size[axis]) return 0;
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const std::int64_t strides[3] = {1, size.x, std::int64_t{size.x} * size.y};
-  // Cells on both sides, along the other two axes; at the lattice's border one side.
+  // Index steps to the cells on either side of the edge along the other two axes; both are the same cell at the
+  // lattice's border.
   const std::int64_t here = index(p), u_low = p[u] > 0 ? strides[u] : 0, v_low = p[v] > 0 ? strides[v] : 0;
   const std::int64_t u_high = p[u] + 1 < size[u] ? 0 : strides[u], v_high = p[v] + 1 < size[v] ? 0 : strides[v];
   const int smallest = std::min({cell_size[here - u_low - v_low], cell_size[here - u_low - v_high],
@@ -245,7 +251,8 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
   refine(lattice, settings);
   lattice.label.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z, kAir);
 
-  // Where cells of two sizes meet their common samples are the smaller ones'.
+  // Computes the volumes around samples: first with the usual spacing, then with the half spacing near joints. Samples
+  // where cells of both sizes meet use the half spacing.
   std::vector<Candidate> bones;
   for (const int stride : {lattice.usual, 1}) {
     if (stride < lattice.usual && std::count(lattice.cell_size.begin(), lattice.cell_size.end(), stride) == 0) break;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A lattice of samples over a body, each with its region: what a surface net is drawn over. Cells are as large as asked
-// for, half as large around joints, and twice or four times as large deep inside a region, where nothing needs them
-// small; cells that touch differ by no more than a factor of two. Coordinates are counted in steps of the smallest.
+// A lattice of samples over a body, each with its region: the input of the surface net (surface_net.h). Cells have the
+// requested size, half of it around joints, and two or four times as much deep inside a region, where small cells would
+// gain nothing. Sizes of cells that touch differ by a factor of two at most. Coordinates are counted in steps; a step
+// is the edge of the smallest cells.
 #pragma once
 
 #include <array>
@@ -15,17 +16,17 @@ namespace limber {
 struct SampleLattice {
   struct Cell {
     glm::ivec3 corner;
-    int size;  // steps, a power of two, of which `corner` is a multiple
+    int size;  // edge in steps, a power of two; `corner` is a multiple of it
     bool operator==(const Cell&) const = default;
   };
 
-  glm::ivec3 size{0};                   // places for samples
-  double step = 0;                      // mm
-  double spacing_mm = 0;                // of samples, as it became, but for joints and deep inside
-  int usual = 1;                        // size of cells of that spacing
-  std::vector<std::uint8_t> cell_size;  // #samples: of the cell in which lies the smallest that begins there
-  std::vector<std::uint16_t> label;     // #samples: a region; kAir where no sample is as well
-  AffineTransform world_from_lattice;   // mm, turned only
+  glm::ivec3 size{0};                   // number of sample positions along each axis
+  double step = 0;                      // edge of the smallest cells, mm
+  double spacing_mm = 0;                // distance between samples, except around joints and deep inside, mm
+  int usual = 1;                        // size in steps of cells with that distance between samples
+  std::vector<std::uint8_t> cell_size;  // size in steps of the cell around each smallest cell, by its lowest corner
+  std::vector<std::uint16_t> label;     // #samples: the sample's region; kAir also for positions without a sample
+  AffineTransform world_from_lattice;   // in mm; rotates and translates only
   AffineTransform fine_from_voxel;
 
   std::int64_t index(const glm::ivec3& p) const {
@@ -37,17 +38,17 @@ struct SampleLattice {
     return {smallest & ~(s - 1), s};
   }
 
-  // Whether p has a sample: a corner of a cell.
+  // Returns whether there is a sample at p: there is one if p is a corner of a cell.
   bool has_sample(const glm::ivec3& p) const;
-  // The cells around sample p, one for each octant; a large one comes several times.
+  // Returns the cells around sample p, one for each octant; a large cell may occur in several octants.
   std::array<Cell, 8> cells_around(const glm::ivec3& p) const;
-  // Length of the shortest edge along `axis` that begins at p, 0 if none does.
+  // Returns the length in steps of the shortest edge along `axis` that begins at p, 0 if there is none.
   int edge_length(const glm::ivec3& p, int axis) const;
-  // The cells around that edge, counter-clockwise seen from its end.
+  // Returns the cells around the edge along `axis` that begins at p, counter-clockwise seen from the edge's end.
   std::array<Cell, 4> cells_around_edge(const glm::ivec3& p, int axis) const;
 };
 
-// Where, in a lattice's lists, the smallest cell stands that a voxel's centre lies in.
+// Returns, for a voxel, the index of the smallest cell around its centre in the lattice's arrays.
 class SmallestCells {
  public:
   SmallestCells(const SampleLattice& lattice, const Grid& grid);
@@ -56,11 +57,11 @@ class SmallestCells {
   }
 
  private:
-  std::vector<std::int64_t> along_[3];  // by the voxel's place along each axis
+  std::vector<std::int64_t> along_[3];  // [axis][i]: what coordinate i of a voxel along the axis adds to the index
 };
 
-// Samples spaced as the settings say over the voxels and a border of air around them; tissue where voxels fill half of
-// the cube of one spacing around them. A body must have voxels.
+// Places samples, spaced as the settings say, over the voxels and a border of air around them. A sample is tissue if
+// voxels fill half of the cube around the sample whose edge is the spacing. The body must have voxels.
 SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings);
 
 }  // namespace limber

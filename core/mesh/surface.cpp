@@ -8,7 +8,8 @@ namespace limber {
 
 namespace {
 
-// Cells with a border of air two wide, so that neither the blur nor a cube asks beyond.
+// The share of tissue in each cell, with a border of air two cells wide, so that neither the blur nor a cube reads
+// beyond the array.
 struct Field {
   static constexpr int kBorder = 2;
   glm::ivec3 size;
@@ -42,7 +43,8 @@ void blur(Field& field) {
   }
 }
 
-// The mean of the crossings of the cube's edges, from its lowest corner; nothing where all corners lie on one side.
+// Computes the mean of the points where the surface crosses the cube's edges, relative to the cube's lowest corner.
+// Returns false if all corners lie on one side of the surface.
 bool crossing(const Field& field, const glm::ivec3& cube, glm::dvec3& place) {
   float share[8];
   int inside = 0;
@@ -76,7 +78,8 @@ TriangleMesh surface_of(const Occupancy& body) {
   const AffineTransform to_world = world_from_voxel(body.grid);
   const bool mirrored = glm::determinant(to_world.linear) < 0;
 
-  // Vertices of two layers of cubes at a time: quads join a layer with the one below.
+  // Stores the vertices of two layers of cubes only, since every quad joins vertices of one layer or of two successive
+  // layers.
   const std::int64_t layer = std::int64_t{field.size.x} * field.size.y;
   std::vector<int> below(layer, -1), here(layer, -1);
   const auto quad = [&](int a, int b, int c, int d, bool outwards) {
@@ -94,7 +97,8 @@ TriangleMesh surface_of(const Occupancy& body) {
         here[at] = static_cast<int>(mesh.V.size());
         mesh.V.push_back(to_world * (place + glm::dvec3(cube - Field::kBorder)));
 
-        // The three edges that leave the cube's lowest corner, each with the four cubes around it.
+        // Adds the quads of the three edges that start at the cube's lowest corner. Each quad joins the vertices of the
+        // four cubes around its edge.
         const bool inside = field.inside(cube);
         const std::int64_t row = field.size.x;
         if (inside != field.inside(cube + glm::ivec3(1, 0, 0)))

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of a body as triangles, where the share of tissue in a cell passes one half [Gibson, Constrained elastic
-// surface nets, MICCAI 1998]: one vertex in every cube of eight cell centres that are not all inside, at the mean of
-// the places where the cube's edges are crossed; a quad around every crossed edge. Beyond the grid is air, so the
-// surface is closed: as many triangles pass each edge one way as the other. Shares that are all nothing or all are
-// blurred once
-// ([1 2 1] / 4 along each axis), or voxels would show as steps.
+// Builds the surface of a body as triangles, where the share of tissue in a cell passes one half [Gibson, Constrained
+// elastic surface nets, MICCAI 1998]. Every cube of eight cell centres of which some are inside and some outside gets
+// one vertex, at the mean of the points where the surface crosses the cube's edges. A quad surrounds every edge that
+// the surface crosses. Everything beyond the grid counts as air, so the surface is closed: as many triangles pass each
+// edge in one direction as in the other. If every share is 0 or 1, the shares are blurred once ([1 2 1] / 4 along each
+// axis), since voxels would show as steps otherwise.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,14 @@
 namespace limber {
 
 struct TriangleMesh {
-  std::vector<glm::dvec3> V;  // #V places, world, mm
-  std::vector<glm::ivec3> F;  // #F corners, counter-clockwise seen from outside
+  std::vector<glm::dvec3> V;  // #V positions, world, mm
+  std::vector<glm::ivec3> F;  // #F triangles, counter-clockwise seen from outside
 };
 
 TriangleMesh surface_of(const Occupancy& body);
 
-// #V unit normals out of the body, by the areas around each vertex.
+// Returns #V unit normals that point out of the body: the mean normal of the triangles around each vertex, weighted by
+// area.
 std::vector<glm::dvec3> vertex_normals(const TriangleMesh& mesh);
 
 }  // namespace limber

@@ -9,11 +9,14 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr double kMargin = 0.1;      // of a cell, face or edge: points keep this far from its ends
-constexpr double kPushShare = 0.04;  // of a cell, outwards, for each time that its point was pushed
+// Least distance of a point from the ends of its cell, face or edge, as a share of their size.
+constexpr double kMargin = 0.1;
+// Distance by which one push moves a point outwards, as a share of the size of its cell or edge.
+constexpr double kPushShare = 0.04;
 
-// Where along an edge, in [0, 1], one region ends and the other begins. Between tissue and air: where the outermost
-// tissue ends; between two tissues: where the fewest places are on the wrong side.
+// Returns the position along an edge, in [0, 1], where one region ends and the other begins. Between tissue and air
+// this is where the outermost tissue ends. Between two tissues, this is the position with the fewest samples on the
+// wrong side.
 double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axis, int length, std::uint16_t first,
                     std::uint16_t second) {
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length / voxel_at.voxel_along(axis))), 4, 64);
@@ -32,7 +35,7 @@ double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axi
     return double(best) / steps;
   }
   for (int k = 0; k < steps; ++k) wrong += seen[k] == first;
-  for (int k = 0; k <= steps; ++k) {  // `first` ends before place k
+  for (int k = 0; k <= steps; ++k) {  // region `first` ends before sample k
     if (wrong < least_wrong) least_wrong = wrong, best = k;
     if (k < steps) wrong += (seen[k] == second) - (seen[k] == first);
   }
@@ -67,8 +70,8 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   find_air();
 }
 
-// body(from, at, axis, length, first, second): the edges of the lattice that are not air at both ends, with the place
-// of their first sample among all and the regions of both.
+// Calls body(from, at, axis, length, first, second) for each lattice edge with tissue at one end or both. `at` is the
+// index of its first sample; `first` and `second` are the regions at its ends.
 template <class Body>
 void SurfaceNet::for_each_edge(const Body& body) const {
   const std::int64_t strides[3] = {1, lattice_.size.x, std::int64_t{lattice_.size.x} * lattice_.size.y};
@@ -81,7 +84,8 @@ void SurfaceNet::for_each_edge(const Body& body) const {
         for (int axis = 0; axis < 3; ++axis) {
           const std::int64_t stride = strides[axis];
           const std::uint16_t first = lattice_.label[at];
-          // Most places are air; those of larger cells are deep inside.
+          // Skips edges in air early, since most samples are air. Cells near air are never larger than the usual size,
+          // so no edge that begins there is longer.
           if (first == kAir) {
             const int reach = std::min(lattice_.usual, lattice_.size[axis] - 1 - from[axis]);
             bool is_air = true;
@@ -138,9 +142,11 @@ void SurfaceNet::number_cells() {
   }
 }
 
-// The face between the cells of a slot around an edge and the next one: that of the smaller cell, of `size`.
+// Returns the key in face_node_ of a face at a lattice edge: the face between the cell in `slot` and the cell in the
+// next slot around the edge. It is a face of the smaller of the two cells, whose edge is `size`.
 std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot, int size) const {
-  // Slots lie at (-,-), (+,-), (+,+), (-,+) of the other two axes: the faces between them at -v, +u, +v, -u.
+  // Slots 0 to 3 lie at (-,-), (+,-), (+,+), (-,+) along the other two axes u and v; the faces after them lie at -v,
+  // +u, +v, -u.
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   glm::ivec3 corner = from;
   if (slot == 0) corner[v] -= size;
@@ -154,7 +160,7 @@ glm::ivec3 SurfaceNet::sample_at(std::int64_t index) const {
 }
 
 void SurfaceNet::number_faces() {
-  if (lattice_.usual == 1) return;  // the surface passes cells of one size only
+  if (lattice_.usual == 1) return;  // the surface passes through cells of one size only
   for (Edge& edge : edges_) {
     const auto around = lattice_.cells_around_edge(edge.from, edge.axis);
     for (int slot = 0; slot < 4; ++slot) {
@@ -213,7 +219,8 @@ void SurfaceNet::place(const Pushes& pushes) {
     node.place[edge.axis] =
         std::clamp(edge.from[edge.axis] + share * edge.length, node.low[edge.axis], node.high[edge.axis]);
     for (int slot = 0; slot < 4; ++slot) {
-      if (edge.cell[slot] != edge.cell[(slot + 3) % 4]) meet(edge.cell[slot], edge);  // a coarse cell has two slots
+      if (edge.cell[slot] != edge.cell[(slot + 3) % 4])
+        meet(edge.cell[slot], edge);  // a larger cell fills two slots, but counts once
       if (edge.face[slot] >= 0) meet(edge.face[slot], edge);
     }
   }
@@ -228,7 +235,8 @@ void SurfaceNet::place(const Pushes& pushes) {
   }
 }
 
-// Where the surface passes the face of a cell, nothing where it does not.
+// Returns where the surface crosses the face between two cells: on the line between the two cells' vertices, or at the
+// face's own node if the cells differ in size. Returns nothing if the surface does not cross the face.
 std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner,
                                                      int axis) const {
   if (cell.size != other.size) {
@@ -241,8 +249,9 @@ std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cel
   return a + (b - a) * ((corner[axis] - a[axis]) / (b[axis] - a[axis]));
 }
 
-// On a face the borders run from its middle to the points of its edges: the region is that of the rim, seen from the
-// middle.
+// Returns the region at a position on a face. The borders between regions run across the face from its middle to the
+// points on its edges. So the region is that of the face's rim where the ray from the middle through the position meets
+// it.
 std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner,
                                          int axis, int size) const {
   const glm::dvec3 along = place - middle;
@@ -255,9 +264,9 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
   }
   glm::ivec3 from = corner;
   if (along[rim_axis] > 0) from[rim_axis] += size;
-  const int w = 3 - axis - rim_axis;  // the rim's own direction
+  const int w = 3 - axis - rim_axis;  // the axis along that side of the rim
   const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
-  const int length = size > 1 ? lattice_.edge_length(from, w) : 1;  // of the rim, or of its halves
+  const int length = size > 1 ? lattice_.edge_length(from, w) : 1;  // length of that side, or of half of it
   if (length < size && at >= from[w] + length) from[w] += length;
   const int node = edge_node_[w][lattice_.index(from)];
   if (node < 0 || at < nodes_[node].place[w]) return lattice_.at(from);
@@ -268,7 +277,8 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
 std::uint16_t SurfaceNet::region_at(const glm::dvec3& place) const {
   const Cell cell = lattice_.cell(smallest_at(place));
   if (node_of(cell) < 0) return lattice_.at(cell.corner);
-  // From the cell's vertex through the place to a face.
+  // Finds the face where the ray from the cell's vertex through the position leaves the cell. The region there is the
+  // region at the position.
   const glm::dvec3& from = nodes_[node_of(cell)].place;
   const glm::dvec3 along = place - from;
   double reach = 1e300;

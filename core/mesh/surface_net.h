@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface between the regions of a lattice of samples, as triangles that cannot cut themselves: a dual surface net
-// [Gibson, MICCAI 1998], made free of intersections by fans [Ju & Udeshi, Intersection-free contouring on an octree
-// grid, Pacific Graphics 2006]; and the tets of the lattice on both of its sides.
+// Builds the surface between the regions of a lattice of samples, as triangles that cannot cross each other: a dual
+// surface net [Gibson, MICCAI 1998], made free of intersections by fans [Ju & Udeshi, Intersection-free contouring on
+// an octree grid, Pacific Graphics 2006]. Also builds the tets of the lattice on both sides of the surface.
 //
-// A cell with samples of two regions gets one vertex strictly inside it; around every lattice edge between two regions
-// a face joins the vertices of the cells there, as a fan around a point of the edge. Inside a cell all triangles are
-// cones from its vertex, so none can cross another wherever the vertices lie. Where cells of two sizes meet the fan
-// also passes a point of the face between them, so that the surface has no crack.
+// A cell with samples of two regions gets one vertex strictly inside it. For every lattice edge between two regions, a
+// fan of triangles around a point of the edge joins the vertices of the cells around it. Inside a cell all triangles
+// meet at its vertex and form cones, so none can cross another wherever the vertices lie. Where cells of two sizes
+// meet, the fan also passes a point of the face between them, so that the surface has no crack.
 //
-// The tets stand around every lattice edge, between its two ends and the vertices of each two cells that follow each
-// other there; the vertex of a cell of one region is its middle. Away from the surface that is the body-centred cubic
-// lattice [as in Labelle & Shewchuk, Isosurface stuffing, SIGGRAPH 2007]. Where the edge passes the surface, one tet
-// stands on each side of its point. All are positive wherever the vertices lie in their cells, so this cannot fail.
+// Around every lattice edge, each two neighbouring cells give one tet: it joins the edge's two ends to the vertices of
+// these cells. The vertex of a cell with only one region is its centre. Away from the surface these tets are those of
+// the body-centred cubic lattice [as in Labelle & Shewchuk, Isosurface stuffing, SIGGRAPH 2007]. Where the surface
+// crosses the edge, the tet is split in two at the crossing point. Every tet is positively oriented wherever the
+// vertices lie in their cells, so this cannot fail.
 #pragma once
 
 #include <optional>
@@ -22,62 +23,67 @@
 
 namespace limber {
 
-// Regions of the voxels at places of a lattice, air beyond the grid.
+// Looks up the regions of voxels at lattice coordinates. Everything beyond the grid is air.
 class VoxelLookup {
  public:
   VoxelLookup(const VoxelRegions& voxels, const SampleLattice& lattice);
-  // At `count` places in the middle of equal parts of the way from `from` along an axis.
+  // Splits the line of `length` that begins at `from` along `axis` into `count` equal intervals, and writes the region
+  // at the centre of each.
   void along(const glm::dvec3& from, int axis, int length, int count, std::uint16_t* regions) const;
-  double voxel_along(int axis) const { return scale_[axis]; }  // fine steps
+  double voxel_along(int axis) const { return scale_[axis]; }  // voxel size along `axis`, lattice steps
 
  private:
   const VoxelRegions& voxels_;
   glm::dvec3 offset_, scale_;
 };
 
-// How often each point was pushed outwards.
+// How many times each point of the net was pushed outwards. `cell` has one entry for the point in each cell;
+// `edge[axis]` has one for the point on the lattice edge that begins at each sample.
 struct Pushes {
-  std::vector<std::uint8_t> cell,
-      edge[3];  // the point in each cell, and that of the edge along each axis from each sample
+  std::vector<std::uint8_t> cell, edge[3];
   explicit Pushes(std::size_t samples);
 };
 
-// Coordinates are counted in steps of the lattice.
+// The surface net. Coordinates are counted in steps of the lattice.
 class SurfaceNet {
  public:
   using Cell = SampleLattice::Cell;
   struct Node {
-    glm::dvec3 place, low, high;  // with the box in which it may lie
+    glm::dvec3 place, low, high;  // the position, and the corners of the box in which the node may move
   };
-  struct Edge {  // between two regions
+  struct Edge {  // a lattice edge between two regions
     glm::ivec3 from;
     int axis, length, node;
     std::uint16_t first, second;
-    float border;  // share of it where one region ends and the other begins
-    int cell[4];   // the nodes of the cells around it, counter-clockwise seen from its end; a larger one comes twice
-    int face[4];   // that of the face between each and the next, -1 where both are of one size
+    float border;  // position along the edge, in [0, 1], where region `first` ends
+    int cell[4];   // nodes of the cells around the edge, counter-clockwise seen from its end; large cells occur twice
+    int face[4];   // node of the face between cells i and i + 1; -1: both have the same size
   };
 
-  // Points are nowhere until they are placed.
+  // Numbers the nodes. Node positions are valid only after a call of place().
   SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at);
-  // Edges' points where the border is and as far out as they were pushed, the others in between.
+  // Moves the points on lattice edges to the border between the regions, and outwards by the number of pushes. Then
+  // moves the points of cells and faces to the mean of the edge points around them.
   void place(const Pushes& pushes);
 
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Edge>& edges() const { return edges_; }
-  int node_of(const Cell& cell) const { return cell_node_[lattice_.index(cell.corner)]; }  // -1 of a cell of one region
+  int node_of(const Cell& cell) const {
+    return cell_node_[lattice_.index(cell.corner)];
+  }  // -1: the cell has one region only
 
-  // The region of a place; whether it is air, which is sooner known; and whether its cell holds any.
+  // Returns the region at a position.
   std::uint16_t region_at(const glm::dvec3& place) const;
+  // Returns whether a position is in air, which takes less time than region_at.
   bool is_air(const glm::dvec3& place) const {
     const Holds holds = holds_[lattice_.index(smallest_at(place))];
     return holds == Holds::both ? region_at(place) == RegionSurface::kAir : holds == Holds::air;
   }
-  bool is_near_air(std::int64_t smallest) const {
-    return holds_[smallest] != Holds::tissue;
-  }  // by where the smallest cell stands
+  // Returns whether there is air in the cell that contains a given smallest cell.
+  //   smallest  index of the smallest cell's lowest corner
+  bool is_near_air(std::int64_t smallest) const { return holds_[smallest] != Holds::tissue; }
 
-  // triangle(a, b, c, edge): nodes of each around an edge, facing the sample further along the axis.
+  // Calls triangle(a, b, c, edge) for each triangle around each lattice edge. Its front faces the edge's far end.
   template <class Triangle>
   void for_each_triangle(const Triangle& triangle) const {
     for (const Edge& edge : edges_)
@@ -93,7 +99,7 @@ class SurfaceNet {
       }
   }
 
-  // World, mm; the nodes of the net first.
+  // Returns the tets, world, mm. Their first nodes are those of the net.
   TetMesh tets() const;
 
  private:
@@ -116,13 +122,14 @@ class SurfaceNet {
                                int size) const;
 
   const SampleLattice& lattice_;
-  std::vector<Node> nodes_;  // of edges, then of cells, then of faces
+  std::vector<Node> nodes_;  // nodes on lattice edges, then those in cells, then those on faces
   std::vector<Edge> edges_;
-  std::vector<Cell> cells_;  // those with samples of two regions
+  std::vector<Cell> cells_;  // cells with samples of two regions
   std::vector<std::int32_t> cell_node_, edge_node_[3];
-  std::vector<Holds> holds_;  // of the cell in which lies the smallest that begins at each sample
-  std::unordered_map<std::int64_t, int>
-      face_node_;  // 3 index of the face's lowest sample + axis; the face of the smaller cell
+  std::vector<Holds> holds_;  // #samples: contents of the cell around each smallest cell, by its lowest corner
+  // The node of each face between cells of different sizes, by 3 * (index of the lowest sample of the smaller face) +
+  // axis.
+  std::unordered_map<std::int64_t, int> face_node_;
 };
 
 }  // namespace limber

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 constexpr int kLeaf = 8;
-constexpr double kSameSide = 0.5;  // cosine of the largest angle between matching normals
+constexpr double kSameSide = 0.5;  // smallest cosine of the angle between matching normals
 const glm::ivec3 kFaces[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 }  // namespace
 
@@ -35,7 +35,7 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
           float* cells = layer + std::int64_t{grid.size.x} * (y / factor.y);
           for (int x = 0; x < fine.size.x; ++x) cells[x / factor.x] += labels[row[x]] != 0;
         }
-      // Cells at the far border hold fewer voxels.
+      // Divides by the number of voxels in each cell; cells at the grid's far border contain fewer voxels.
       for (int y = 0; y < grid.size.y; ++y)
         for (int x = 0; x < grid.size.x; ++x) {
           const glm::ivec3 held = glm::min(factor, fine.size - glm::ivec3(x, y, cz) * factor);
@@ -48,7 +48,8 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
 
 namespace {
 
-// Cells in a row along x that are all filled or all not; pieces of them, told by their first run.
+// A run of adjacent cells along x that are all filled or all empty. Following `piece` from run to run ends at the first
+// run of the connected component (union-find).
 struct Run {
   int begin = 0, end = 0;
   bool filled = false;
@@ -65,7 +66,7 @@ std::int32_t piece_of(std::vector<Run>& runs, std::int32_t i) {
 void close_body(Occupancy& body) {
   const glm::ivec3 size = body.grid.size;
   std::vector<Run> runs;
-  std::vector<std::int32_t> first;  // run of each row
+  std::vector<std::int32_t> first;  // index of the first run of each row
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y) {
       const float* row = &body.share[body.grid.index({0, y, z})];
@@ -96,7 +97,7 @@ void close_body(Occupancy& body) {
   }
 
   std::vector<std::int64_t> cells(runs.size(), 0);
-  std::vector<std::uint8_t> open(runs.size(), 0);  // reaches the border
+  std::vector<std::uint8_t> open(runs.size(), 0);  // whether each component reaches the grid's border
   for (std::int64_t row = 0; row < rows; ++row) {
     const std::int64_t y = row % size.y, z = row / size.y;
     const bool edge = y == 0 || y + 1 == size.y || z == 0 || z + 1 == size.z;
@@ -141,7 +142,7 @@ std::vector<SurfacePoint> surface_points(const Occupancy& occupancy) {
   const Grid& grid = occupancy.grid;
   const glm::ivec3 size = grid.size;
   const auto share = [&](glm::ivec3 cell) {
-    cell = glm::clamp(cell, glm::ivec3(0), size - 1);  // beyond the border goes on what lies at it
+    cell = glm::clamp(cell, glm::ivec3(0), size - 1);  // cells beyond the border repeat the outermost cells
     return occupancy.share[grid.index(cell)];
   };
   const AffineTransform to_world = world_from_voxel(grid);
@@ -163,7 +164,7 @@ std::vector<SurfacePoint> surface_points(const Occupancy& occupancy) {
             const float there = share(next);
             if (there >= 0.5f) continue;
             if (!has_normal) {
-              // The gradient of the share under a 5^3 tent.
+              // Computes the negative gradient of the share, smoothed by a tent filter of 5 x 5 x 5 cells.
               for (int k = -2; k <= 2; ++k)
                 for (int j = -2; j <= 2; ++j)
                   for (int i = -2; i <= 2; ++i) {

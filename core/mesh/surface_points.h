@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surface of some tissue of a label volume as points with outward normals, and the nearest of such points. The
-// volume is first reduced to cells of about one size that know which share of them the tissue fills, so points lie
-// between voxel centres where that share passes one half, whatever the voxels' shape. Where tissue is cut off by the
-// border of the grid there is no surface.
+// Samples the surface of selected tissue in a label volume as points with outward normals, and finds the nearest of
+// such points. The volume is first reduced to cells of about equal size, each with the share that the tissue fills.
+// Points lie between cell centres where that share passes one half, so that they do not depend on the voxels' shape.
+// Where the border of the grid cuts tissue off there is no surface.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace limber {
 
-// Cells of a reduced grid with the share of each that is filled, 0 .. 1.
+// The cells of a reduced grid, each with the share of its volume that tissue fills, in [0, 1].
 struct Occupancy {
   Grid grid;
   std::vector<float> share;
@@ -21,37 +21,40 @@ struct Occupancy {
   bool filled(const glm::ivec3& cell) const { return grid.contains(cell) && share[grid.index(cell)] >= 0.5f; }
 };
 
-//   labels   a byte per label, not 0 for those that count
-//   spacing  mm that a cell should measure along each axis at least; cells are whole numbers of voxels
+// Reduces a volume to larger cells, each with the share of its volume that tissue fills.
+//   labels   one byte per label, not 0 for labels that count as tissue
+//   spacing  size of a cell along each axis, mm; rounded to a whole number of voxels, at least one
 Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double spacing);
 
-// Air that no way leads to from outside counts as filled; specks apart from the largest connected piece do not.
+// Fills air that tissue encloses, and removes specks: connected components of tissue with less than 1/50 of the cells
+// of the largest component.
 void close_body(Occupancy& body);
 
-// The same in cells of about `spacing` mm, whole numbers of its own; what the last ones lack is taken for empty.
+// Returns the same body in larger cells of about `spacing` mm, each a whole number of cells of `fine`. Where the last
+// cells extend beyond the grid of `fine`, they count as empty there.
 Occupancy coarsened(const Occupancy& fine, double spacing);
 
 struct SurfacePoint {
-  glm::dvec3 place{0}, normal{0};  // world, mm; unit, out of the tissue
+  glm::dvec3 place{0}, normal{0};  // position, world, mm; unit normal, pointing out of the tissue
 };
 
 std::vector<SurfacePoint> surface_points(const Occupancy& occupancy);
 
-// One point per cube of `step` mm, the first of each.
+// Keeps the first point in each cube of a grid with cubes of `step` mm, and returns these points.
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double step);
 
-// Nearest points in a k-d tree; ties go to the smaller number.
+// Finds nearest points by a k-d tree. Of points at the same distance, it returns the one with the smaller index.
 class PointTree {
  public:
   explicit PointTree(const std::vector<SurfacePoint>& points);
-  // The nearest point no farther than `reach` whose normal lies within 60 degrees of `normal` (any, for zero); -1 for
-  // none.
+  // Returns the index of the nearest point that is closer than `reach` mm and whose normal lies within 60 degrees of
+  // `normal` (any normal if `normal` is zero); -1: none.
   int nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const;
 
  private:
   struct Node {
     SurfacePoint point;
-    std::int32_t number = 0;  // among those given
+    std::int32_t number = 0;  // index into the points given to the constructor
   };
   struct Search {
     glm::dvec3 place, normal;
@@ -60,7 +63,7 @@ class PointTree {
   };
   void build(int begin, int end);
   void look_in(int begin, int end, Search& search) const;
-  std::vector<Node> nodes_;  // a range's middle parts it across `axis_`
+  std::vector<Node> nodes_;  // each range of nodes is split at its middle node, along the axis in `axis_`
   std::vector<std::uint8_t> axis_;
 };
 

@@ -13,14 +13,15 @@ namespace limber {
 namespace {
 
 struct Face {
-  int middle, high;  // of its corners, by number
+  int middle, high;  // the face's middle and largest node
   int tet, face;
 };
 
-// Faces grouped by their smallest corner, then sorted: equal ones stand together.
+// The faces of all tets, grouped by their smallest node and sorted within each group, so that equal faces follow each
+// other.
 struct FaceTable {
   std::vector<Face> faces;
-  std::vector<int> first;  // of each corner's group, #V + 1
+  std::vector<int> first;  // #V + 1: where the group of each smallest node begins in `faces`
 };
 
 FaceTable table_of(const Eigen::MatrixX4i& T) {
@@ -102,7 +103,7 @@ double smallest_dihedral(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& te
   double smallest = std::numbers::pi;
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j) {
-      // Outward normals meet at pi less the angle between the faces.
+      // The angle between outward normals is pi minus the angle between the faces.
       const double angle = std::atan2(normal[i].cross(normal[j]).norm(), -normal[i].dot(normal[j]));
       smallest = std::min(smallest, angle);
     }

@@ -17,13 +17,13 @@ namespace {
 using Row = std::array<int, 3>;
 
 struct Polyhedra {
-  std::vector<double> points;  // xyz
+  std::vector<double> points;  // x, y, z of each point
   std::vector<Row> triangles;
 };
 
-// What the child sends: this, then points (xyz) and tets.
+// The header of the message that the child process sends. The points (x, y, z) and tets follow.
 struct Head {
-  int problem;  // TetGen's number for what it found wrong, 0 = nothing
+  int problem;  // TetGen's error number, 0: none
   int points, tets;
 };
 
@@ -37,7 +37,8 @@ std::string name_of_problem(int code) {
   }
 }
 
-// Points and triangles in TetGen's own structure. It deletes what its counts say, also where memory ends halfway.
+// Copies points and triangles into TetGen's own structure. Its destructor deletes as many facets as numberoffacets
+// says, so that count grows with each facet, in case memory runs out halfway.
 void fill(tetgenio& in, const Polyhedra& input) {
   in.pointlist = new REAL[input.points.size()];
   in.numberofpoints = static_cast<int>(input.points.size() / 3);
@@ -77,7 +78,7 @@ bool tetgen_in_child(const Polyhedra& input, const char* switches, const Send& s
 
 struct Answer {
   std::vector<double> points;
-  Eigen::MatrixX4i T;  // positively oriented
+  Eigen::MatrixX4i T;  // node indices of each tet, positively oriented
   std::string failure;
 };
 
@@ -129,13 +130,15 @@ Row sorted(Row row) {
   return row;
 }
 
-// Whether b is a turned by none, one or two corners; the same triangle otherwise faces the other way.
+// Returns whether two triangles with the same corners have the same orientation: b then is a, rotated by zero, one or
+// two corners.
 bool same_way(const Row& a, const Row& b) {
   const auto start = std::find(b.begin(), b.end(), a[0]) - b.begin();
   return b[(start + 1) % 3] == a[1];
 }
 
-// The region of every tet, by the triangles around it. Fails where a triangle is missing or two disagree.
+// Finds the region of every tet from the triangles around it. Returns why that failed (for example: a triangle is
+// missing, or two triangles disagree), or an empty string.
 std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& triangles,
                          const std::vector<std::array<std::uint16_t, 2>>& sides, std::vector<std::uint16_t>& region) {
   std::unordered_map<Row, int, RowHash> triangle_of;
@@ -148,7 +151,8 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
   std::vector<int> found(triangles.size(), 0);
   std::vector<std::int32_t> known(T.rows(), -1);
   std::vector<int> front;
-  // Across its own faces first, so that every wall is known; then from tet to tet where there is none.
+  // First gives each tet the region from the triangles on its own faces, so that all walls are known. Then spreads
+  // regions from tet to tet through faces that are not walls.
   std::vector<std::array<bool, 4>> wall(T.rows(), {false, false, false, false});
   for (int tet = 0; tet < T.rows(); ++tet)
     for (int face = 0; face < 4; ++face) {
@@ -205,8 +209,9 @@ Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const Tetrah
   if (!finite(surface.V)) return {std::nullopt, "the surface has places that are no numbers"};
   Polyhedra input{xyz_of(surface.V), {}};
   for (const auto& f : surface.F.rowwise()) input.triangles.push_back({f[0], f[1], f[2]});
-  // p a surface's inside, q 2/0 a circumsphere of at most two shortest edges and no bound on angles, Y nothing new on
-  // the surface, M coplanar triangles stay apart, J nodes keep their numbers, Q no words.
+  // TetGen's switches: p = fill a surface; q2/0 = circumspheres of at most twice the shortest edge, no bound on angles;
+  // Y = add nothing on the surface; M = do not merge coplanar triangles; J = keep the nodes' numbers; Q = print
+  // nothing.
   Answer answer = run_tetgen(input, "pq2/0YMJQ", limits, progress);
   if (!answer.failure.empty()) return {std::nullopt, std::move(answer.failure)};
   if (!starts_with(answer.points, input.points)) return {std::nullopt, "it moved nodes of the surface"};
@@ -215,7 +220,8 @@ Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const Tetrah
   if (std::string failure = find_regions(answer.T, input.triangles, surface.sides, region); !failure.empty())
     return {std::nullopt, std::move(failure)};
 
-  // Pockets of air go, and nodes that only they have; the surface's stay all, at the front.
+  // Removes the tets in pockets of air, and the nodes that belong to no other tets. All nodes of the surface stay, and
+  // come first.
   std::vector<int> new_number(answer.points.size() / 3, -1);
   int nodes = static_cast<int>(surface.V.rows());
   for (int i = 0; i < nodes; ++i) new_number[i] = i;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tetrahedra inside a surface: the door of TetGen [Si, TetGen, a Delaunay-based quality
-// tetrahedral mesh generator, ACM TOMS 2015].
+// Fills a surface with tetrahedra by TetGen [Si, TetGen, a Delaunay-based quality tetrahedral mesh generator, ACM TOMS
+// 2015]. No other file calls TetGen.
 //
-// TetGen ends the process, crashes or never comes back on surfaces that it does not like. It therefore runs in a child
-// process with limits; whatever happens there is an answer with a reason, never more. Its answer is believed only after
-// a check: the surface's nodes and triangles are all there, unmoved and uncut, and every tet lies on one side of them.
+// On surfaces that TetGen cannot handle, it ends the process, crashes or never returns. It therefore runs in a child
+// process with limits, and any failure there is returned as a reason. Its mesh is used only after a check: the
+// surface's nodes and triangles are all present, unmoved and uncut, and every tet lies in one region.
 #pragma once
 
 #include <array>
@@ -20,31 +20,32 @@
 
 namespace limber {
 
-// Triangles between regions. Each region is closed: whichever way one walks, crossing a triangle changes the region
-// from one of its sides to the other. Triangles meet only in common edges and corners.
+// The triangles between regions. Each region is closed: it can be left only through a triangle, which leads from the
+// region on one of its sides to the region on the other. Triangles meet only at edges and corners that they share.
 struct RegionSurface {
   static constexpr std::uint16_t kAir = 0xffff;
 
-  Eigen::MatrixX3d V;                               // #V places, world, mm
-  Eigen::MatrixX3i F;                               // #F corners
-  std::vector<std::array<std::uint16_t, 2>> sides;  // #F regions (of TetMesh, or kAir): in front, where the normal of
-                                                    // counter-clockwise corners points, and behind
+  Eigen::MatrixX3d V;  // #V positions, world, mm
+  Eigen::MatrixX3i F;  // #F triangles
+  // #F by 2 regions (as in TetMesh, or kAir): the one in front of each triangle, where its corners are
+  // counter-clockwise, and the one behind.
+  std::vector<std::array<std::uint16_t, 2>> sides;
 };
 
 struct TetrahedralizeLimits {
-  double seconds = 30;                   // of processor time, and by the clock four times as much
-  double seconds_per_triangle = 0.0005;  // added to them; what it takes is a tenth of this
+  double seconds = 30;                   // limit on processor time; the limit by the clock is four times as long
+  double seconds_per_triangle = 0.0005;  // added to `seconds` for each triangle; TetGen needs a tenth of this
   std::size_t memory_bytes = std::size_t{4} << 30;
-  std::function<void()> at_start = {};  // called in the child before TetGen: where tests crash and hang it
+  std::function<void()> at_start = {};  // called in the child before TetGen; lets tests crash and hang the child
 };
 
 struct Tetrahedralized {
   std::optional<TetMesh> mesh;
-  std::string failure;  // why there is none, for a user to read; empty when there is one
+  std::string failure;  // tells the user why there is no mesh; empty if there is one
 };
 
-// The regions inside the surface, with nodes of their own so that no tet's circumsphere is larger than twice its
-// shortest edge (as far as the surface allows). The first #V nodes are the surface's.
+// Fills the regions inside the surface with tets. Adds nodes so that, as far as the surface allows, the radius of each
+// tet's circumsphere is at most twice the tet's shortest edge. The first #V nodes are the surface's.
 //   throws Cancelled
 Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits = {},
                                       const Progress& progress = no_progress());

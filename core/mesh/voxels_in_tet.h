@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The voxels whose centres lie in a tet, row by row. A centre on a face counts, also when rounding puts it a hair
-// outside.
+// Walks over the voxels whose centres lie in a tet, row by row. A centre on a face counts as inside, even where
+// rounding puts it slightly (1e-7 voxel) outside.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,11 @@
 
 namespace limber {
 
-inline constexpr double kHair = 1e-7;  // voxels
+inline constexpr double kHair = 1e-7;  // tolerance at a tet's faces, voxels
 
-// body(first, last): voxels of one row along x, both ends inside the tet and the grid.
-//   corner  of a positively oriented tet, voxel coordinates
+// Calls body(first, last) with the first and last voxel of each row along x that lie inside the tet and the grid.
+//   corner                   corners of a positively oriented tet, voxel coordinates
+//   first_slice, last_slice  range of z
 template <class Body>
 void for_each_row_in_tet(const glm::dvec3 (&corner)[4], const Grid& grid, int first_slice, int last_slice,
                          const Body& body) {
@@ -29,7 +30,7 @@ void for_each_row_in_tet(const glm::dvec3 (&corner)[4], const Grid& grid, int fi
     for (int y = std::max(0, int(std::ceil(low.y - kHair)));
          y <= std::min(grid.size.y - 1, int(std::floor(high.y + kHair))); ++y) {
       double from = 0, to = grid.size.x - 1.0;
-      for (int i = 0; i < 4; ++i) {  // outwards . (p - a) <= a hair
+      for (int i = 0; i < 4; ++i) {  // points p inside: outwards . (p - a) <= kHair * |outwards|
         const glm::dvec3& a = corner[kTetFaces[i][0]];
         const double rest = outwards[i].y * (y - a.y) + outwards[i].z * (z - a.z) - outwards[i].x * a.x -
                             kHair * glm::length(outwards[i]);

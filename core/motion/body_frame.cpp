@@ -17,7 +17,7 @@ glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b) {
   const double sine = glm::length(axis);
   if (sine > 1e-12) return glm::angleAxis(std::atan2(sine, glm::dot(a, b)), axis / sine);
   if (glm::dot(a, b) > 0) return {1, 0, 0, 0};
-  // A half turn about any axis across.
+  // Opposite directions: a half turn about any axis perpendicular to `a`.
   const glm::dvec3 across = glm::cross(a, std::abs(a.z) < 0.9 * glm::length(a) ? kUp : glm::dvec3(1, 0, 0));
   return glm::angleAxis(std::numbers::pi, glm::normalize(across));
 }
@@ -124,7 +124,8 @@ glm::dvec3 direction_of(const Skeleton& skeleton, int joint) {
 
 namespace {
 
-// From the right side to the left: of the hips, of the shoulders.
+// Returns the vector from the right joint of `part` to the left one. Thighs give the line through the hips, upper arms
+// the line through the shoulders.
 std::optional<glm::dvec3> across(const Skeleton& skeleton, BodyPart part) {
   const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
   return left && right && glm::length(*left - *right) > 1e-9 ? std::optional(*left - *right) : std::nullopt;
@@ -156,8 +157,10 @@ std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part) {
 
 namespace {
 
-// How far the limbs are from standing, radians over limbs, seen from the body's own axes: legs below, feet forward,
-// arms aside or hanging, limbs straight, both sides alike. Nothing for a skeleton that is no body.
+// Measures how far a skeleton is from standing: the mean angle by which its limbs exceed a tolerance, radians. A
+// standing body has its legs below it, its feet forward, its arms spread or hanging, straight limbs, and both sides
+// alike. Angles are measured in the body's own axes. Returns nothing for a skeleton that has no trunk or no pair of
+// thighs.
 std::optional<double> unlike_standing(const Skeleton& skeleton) {
   const auto axes = body_axes(skeleton, BodyPart::Thigh);
   if (!axes) return std::nullopt;
@@ -177,13 +180,13 @@ std::optional<double> unlike_standing(const Skeleton& skeleton) {
     if (left && right) add(angle_between(*left * glm::dvec3(-1, 1, 1), *right), 0.1);
     const bool is_leg = part == BodyPart::Thigh || part == BodyPart::Shank, is_foot = part == BodyPart::Foot;
     for (const auto& direction : {left, right})
-      // A foot points forward, and forward is -y: the axes are left, back and up.
+      // In the body's axes (left, back, up), a foot points forward along -y.
       if (direction && (is_leg || is_foot))
         add(angle_between(*direction, is_leg ? -kUp : glm::dvec3(0, -1, 0)), is_leg ? 0.35 : 0.7);
   }
   for (BodySide side : kSides) {
     const auto upper = limb(BodyPart::UpperArm, side), fore = limb(BodyPart::Forearm, side);
-    // Anything from hanging to spread to the side.
+    // An upper arm may point anywhere between hanging down and spread to the side.
     const double outward = side == BodySide::Left ? 1 : -1;
     if (upper) add(std::max(0.0, angle_between(*upper, glm::normalize(glm::dvec3(outward, 0, -1)))), 0.9);
     if (upper && fore) add(angle_between(*upper, *fore), 0.5);
@@ -196,7 +199,8 @@ std::optional<double> unlike_standing(const Skeleton& skeleton) {
 int standing_frame(const Motion& motion, Skeleton skeleton) {
   place_joints(skeleton, motion, -1);
   const auto rest = unlike_standing(skeleton);
-  // No body is known better by a frame than by its rest; a body whose limbs are some 10 degrees off still stands.
+  // Without legs, no frame can show whether the body stands, so the rest pose is used. The rest pose also counts as
+  // standing when its limbs exceed their tolerances by less than 0.2 radians (11 degrees) on average.
   if (!rest && (body_axes(skeleton, BodyPart::UpperArm) || !trunk_line(skeleton))) return -1;
   if (rest && *rest < 0.2) return -1;
   double best = rest.value_or(1e9);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What retargeting knows of a body: a rig at rest, or a motion at a frame, by body parts (joint_names), in LPS; where
-// it faces, and at which frame of a motion it stands most nearly upright with hanging or spread arms.
+// Describes a body for retargeting: the joint positions of a rig at rest, or of a motion at one frame, found by body
+// part (joint_names.h), in LPS axes. Also computes the axes of the body, and the frame of a motion at which the body
+// stands most nearly upright with hanging or spread arms.
 #pragma once
 
 #include <algorithm>
@@ -21,15 +22,18 @@ inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-// The shortest turn that takes direction a to direction b; neither need be of unit length.
+// Returns the shortest rotation that takes direction a to direction b; neither needs unit length.
 glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b);
 
-// Right-handed axes: the third along `main`, the first as near to `side` as it can be.
+// Returns a right-handed orthonormal frame whose third axis points along `main` and whose first axis is as near to
+// `side` as possible. Returns nothing when the two vectors are almost parallel, or one of them is too short.
 std::optional<glm::dmat3> axes_of(const glm::dvec3& main, const glm::dvec3& side);
 
 struct Skeleton {
   std::vector<int> parents;
-  std::vector<glm::dvec3> place, tip;  // of each joint; the tip is where it points without better knowledge
+  // For each joint, its position and its tip. The tip is the end of the joint's bone. It gives the bone's direction
+  // where no other joint does.
+  std::vector<glm::dvec3> place, tip;
   std::map<JointRole, int> joint;
   std::vector<std::optional<JointRole>> role;
 
@@ -40,23 +44,25 @@ struct Skeleton {
 };
 
 Skeleton skeleton_of(const Armature& armature);
-Skeleton skeleton_of(const Motion& motion);  // at rest
+Skeleton skeleton_of(const Motion& motion);  // the skeleton in the motion's rest pose
 
-// Places only; tips are the mean of the children, of their children where those stand on the joint itself, or the End
-// Site.
+// Sets the positions and tips of the joints at a frame. A joint's tip is the mean position of its children, or its End
+// Site. (A child at the joint's own position is replaced by the child's own tip.)
 //   frame  -1: the rest pose
 void place_joints(Skeleton& skeleton, const Motion& motion, int frame);
 
-// From the joint to where its limb goes on; not of unit length, zero when unknown.
+// Returns the vector from the joint to the next joint or the tip of its limb. The vector is not normalized; it is zero
+// when the direction is unknown.
 glm::dvec3 direction_of(const Skeleton& skeleton, int joint);
 
-// From the hips up to the neck.
+// Returns the vector from the hips up to the neck.
 std::optional<glm::dvec3> trunk_line(const Skeleton& skeleton);
 
-// Axes of the body by `part`'s two sides and the trunk.
+// Returns the body's axes (left, back, up), found from the left and right joint of `part` and from the trunk line.
 std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part);
 
-// The moment that offsets are taken from: -1 for the rest pose.
+// Returns the frame at which the body is nearest to standing; -1: its rest pose. Retargeting measures its rest offsets
+// at this frame.
 int standing_frame(const Motion& motion, Skeleton skeleton);
 
 }  // namespace limber

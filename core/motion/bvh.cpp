@@ -16,7 +16,8 @@ namespace limber {
 namespace {
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 constexpr int kMostJoints = 4096;
-// Far beyond any place or angle, and safe to square in single precision.
+// Upper limit of a number's magnitude, in the file's units or degrees. It is beyond any real position or angle, and its
+// square still fits single precision.
 constexpr double kLargest = 1e15;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
@@ -28,7 +29,7 @@ bool same_word(std::string_view a, std::string_view lower_case) {
                     [](char x, char y) { return lower(x) == y; });
 }
 
-// The text and a place in it. Words end at blanks and braces; a brace is a word of its own.
+// Reads words and numbers from the text. Words end at blanks and braces; a brace is a word of its own.
 class Reader {
  public:
   Reader(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {
@@ -36,14 +37,14 @@ class Reader {
   }
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const {
-    // Counted only now, so that reading need not count.
+    // Lines are counted only when an error message needs the line number, so that reading stays fast.
     int line = 1;
     for (size_t i = 0; i < std::min(word_, text_.size()); ++i)
       if (text_[i] == '\n' || (text_[i] == '\r' && (i + 1 == text_.size() || text_[i + 1] != '\n'))) ++line;
     throw Error(what, where_ + ", line " + std::to_string(line), what_to_do);
   }
 
-  // Empty at the end.
+  // Returns the next word, empty at the end of the text.
   std::string_view word() {
     while (place_ < text_.size() && is_blank(text_[place_])) ++place_;
     word_ = place_;
@@ -59,7 +60,7 @@ class Reader {
     return next;
   }
 
-  // What stands on this line before its end or a brace.
+  // Returns the rest of this line, up to its end or a brace, without blanks on either side.
   std::string_view rest_of_line() {
     size_t end = place_;
     while (end < text_.size() && !is_line_end(text_[end]) && !is_brace(text_[end])) ++end;
@@ -77,7 +78,7 @@ class Reader {
     return value_of(digits, of);
   }
 
-  // Appends the numbers of the next line that holds any; false at the end of the text.
+  // Appends the numbers of the next line that is not blank. Returns false at the end of the text.
   bool line_of_numbers(std::vector<float>& values) {
     while (place_ < text_.size() && is_blank(text_[place_])) ++place_;
     if (place_ == text_.size()) return false;
@@ -102,7 +103,7 @@ class Reader {
     if (*begin == '+') ++begin;
     double value = 0;
     const auto [stop, error] = std::from_chars(begin, end, value);
-    // Too small to tell from zero is zero.
+    // A number too small for a double reads as zero.
     const size_t exponent = digits.find_first_of("eE");
     if (error == std::errc::result_out_of_range && stop == end && exponent != digits.npos &&
         digits[exponent + 1] == '-')
@@ -126,7 +127,7 @@ class Reader {
   size_t place_ = 0, word_ = 0;
 };
 
-// ---- HIERARCHY
+// ---- reading the HIERARCHY section
 
 BvhChannel channel_of(Reader& in) {
   static constexpr std::array<std::string_view, 6> kNames = {"xposition", "yposition", "zposition",
@@ -172,7 +173,7 @@ void read_end_site(Reader& in, BvhJoint& joint) {
   }
 }
 
-// Names become unique; what changed is told once.
+// Makes joint names unique, and adds one warning that counts the renamed joints.
 void make_names_unique(Motion& motion) {
   std::unordered_map<std::string, int> used;
   for (const BvhJoint& joint : motion.joints) used.emplace(joint.name, 1);
@@ -196,7 +197,7 @@ void make_names_unique(Motion& motion) {
                               ")");
 }
 
-// Everything up to MOTION or the end; true when MOTION was met.
+// Reads everything up to the word MOTION or the end of the text; returns true when MOTION follows.
 bool read_hierarchy(Reader& in, Motion& motion) {
   if (!same_word(in.word(), "hierarchy")) in.refuse("the file does not begin with HIERARCHY", "use a BVH file");
   std::vector<int> open;
@@ -235,9 +236,9 @@ bool read_hierarchy(Reader& in, Motion& motion) {
   }
 }
 
-// ---- MOTION
+// ---- reading the MOTION section
 
-// The number after "Frames:" or "Frame Time:", however the colon and the blanks stand.
+// Reads the number after "Frames:" or "Frame Time:", with or without blanks before the colon.
 double headed_number(Reader& in, std::string_view first, std::string_view second, const char* title) {
   std::string heading;
   while (heading.size() < 20 && !heading.ends_with(':')) {
@@ -330,7 +331,8 @@ std::string joint_heading(const BvhJoint& joint, const std::string& indent) {
   return text + "\n";
 }
 
-// The order in which a text nests: each followed by all that hangs on it, siblings as they came.
+// Returns the indices of the items in depth-first order: each item is followed by all its descendants, and siblings
+// keep their order.
 template <class Items>
 std::vector<int> depth_first(const Items& items) {
   const int count = static_cast<int>(items.size());
@@ -351,7 +353,7 @@ std::string bvh_text(const Motion& motion) {
   const std::vector<int> order = depth_first(motion.joints);
   std::string text = "HIERARCHY\n";
   std::vector<int> open;
-  // Deeper than anyone looks, the text stops moving right: a chain of thousands would be mostly blanks.
+  // The indentation stops at 32 levels, since otherwise a chain of thousands of joints would be mostly blanks.
   auto indentation = [&] { return std::string(2 * std::min<size_t>(open.size(), 32), ' '); };
   auto close_until = [&](int parent) {
     while (!open.empty() && open.back() != parent) {
@@ -415,7 +417,7 @@ std::vector<RigidTransform> forward_kinematics(const Motion& motion, int frame) 
   return world;
 }
 
-// ---- rigs
+// ---- conversion to and from rigs
 
 Armature armature_of(const Motion& motion) {
   const std::vector<RigidTransform> rest = forward_kinematics(motion, -1);
@@ -430,7 +432,7 @@ Armature armature_of(const Motion& motion) {
     const BvhJoint& joint = motion.joints[j];
     const glm::dvec3 head = rest[j].translation;
     glm::dvec3 tail = children[j] ? sum[j] / double(children[j]) : head + joint.end_site.value_or(glm::dvec3(0));
-    // Without a direction of its own a bone goes on as its parent came, a third as far.
+    // A bone that has neither children nor an End Site continues in its parent's direction, at a third of the length.
     if (tail == head && joint.parent >= 0) tail = head + joint.offset / 3.0;
     if (tail == head) tail = head + glm::dvec3(0, 1, 0);
     armature.bones.push_back({joint.name, joint.parent, lps_from_bvh(head), lps_from_bvh(tail)});

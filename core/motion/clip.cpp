@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-// The keys on either side of a frame, and how far it is from the first to the second: [0, 1].
+// The keys before and after a frame, and the frame's relative position between them: 0 at the first, 1 at the second.
 template <class Value>
 struct Between {
   const std::pair<const int, Value>*before, *after;
@@ -85,7 +85,8 @@ Pose ClipOnRig::at(int frame) const {
   const Keys& keys = clip_->keys;
   if (keys.empty()) return pose;
 
-  std::map<int, Pose> bases;  // few: bones are mostly keyed together
+  // The motion's pose at each frame that has a key. These are few, since most bones have keys at the same frames.
+  std::map<int, Pose> bases;
   const auto base = [&](int at) -> const Pose& {
     const auto found = bases.find(at);
     return found != bases.end() ? found->second : bases.emplace(at, base_at(at)).first->second;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A clip: a motion that moves the rig, and the keys set on top of it.
+// A clip is a motion that moves the rig, and the keyframes set on top of it.
 //
-// Time is counted in frames of the clip, `rate` of them in a second. The motion's frame `first` stands at frame
-// `start`; before and after what is used of it the body holds still. Where there is no motion, keys start from rest.
+// Time is counted in frames of the clip, with `rate` frames in a second. The motion's frame `first` plays at the clip's
+// frame `start`; before and after the used part of the motion the body holds still. If the clip has no motion, keys
+// start from the rest pose.
 //
-// Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]: at a key's frame the bone stands as the key says;
-// between two keys the motion goes on, turned by what the keys differ from it, going over from one to the next by
-// slerp; before the first and after the last that turn stays. Without a motion this is the slerp of the keys
-// themselves.
+// Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]. At a key's frame the bone has the key's rotation.
+// Between two keys the motion continues, rotated by the difference between key and motion. This difference is
+// interpolated by slerp from one key to the next. It stays constant before the first key and after the last. Without a
+// motion the result is the slerp of the keys themselves.
 #pragma once
 
 #include <memory>
@@ -28,32 +29,33 @@ struct Marker {
 
 struct Clip {
   std::string name;                      // unique among the clips
-  std::shared_ptr<const Motion> motion;  // null: keys alone
-  double rate = 30;                      // frames in a second
+  std::shared_ptr<const Motion> motion;  // null: the clip has only keys
+  double rate = 30;                      // frames per second
   int start = 0;
-  int first = 0, last = 0;  // of the motion, both used
-  RetargetMap map;          // without sources: by names
+  int first = 0, last = 0;  // range of the motion's frames that is used, both included
+  RetargetMap map;          // when it lists no sources, bones and joints are matched by name
   RetargetSettings retarget;
-  int range_start = 0, range_end = 250;  // what plays, both included
+  int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
-  std::vector<Marker> markers;  // by frame
+  std::vector<Marker> markers;  // sorted by frame
 
-  bool operator==(const Clip&) const = default;     // with the same motion: its pointer, not its contents
-  int end() const { return start + last - first; }  // the last frame of the motion
+  bool operator==(const Clip&) const = default;     // compares the motion's pointer, not its contents
+  int end() const { return start + last - first; }  // the clip's frame at which the motion ends
 };
 
-// The whole motion from frame `start` on, at its own rate. An infinite or absurd rate becomes 30.
+// Makes a clip that plays the whole motion from frame `start` on, at the motion's own rate. A rate outside
+// [0.01, 10000] becomes 30.
 Clip clip_of(std::shared_ptr<const Motion> motion, std::string name, int start = 0);
 
-// `wanted`, or with a number behind it when a clip has that name.
+// Returns `wanted`. Appends a number to it when a clip has that name already.
 std::string unique_clip_name(const std::vector<std::shared_ptr<const Clip>>& clips, const std::string& wanted);
 
-// A clip on a rig, prepared once, asked for many frames.
+// A clip applied to a rig: prepared once, then evaluated at many frames.
 class ClipOnRig {
  public:
-  // Where nothing of the motion matches the rig, problem() says so, and the motion is left out. What the map names and
-  // either lacks is left out too.
-  //   before  of which the preparation is taken over where nothing that it depends on has changed
+  // If the motion cannot move the rig, problem() says why and the clip plays without the motion. Entries of the
+  // retarget map whose joint or bone does not exist are ignored.
+  //   before  an earlier ClipOnRig, whose preparation is reused if nothing that it depends on has changed; may be null
   ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Armature> armature,
             const ClipOnRig* before = nullptr);
 
@@ -64,11 +66,11 @@ class ClipOnRig {
   const std::string& problem() const { return problem_; }
 
  private:
-  Pose base_at(int frame) const;  // without keys
+  Pose base_at(int frame) const;  // the motion's pose, without the keys
 
   std::shared_ptr<const Clip> clip_;
   std::shared_ptr<const Armature> armature_;
-  std::shared_ptr<const Retarget> retarget_;  // of the clip's motion and the armature
+  std::shared_ptr<const Retarget> retarget_;  // null: the clip has no motion, or there is a problem
   std::string problem_;
 };
 

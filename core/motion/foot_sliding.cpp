@@ -10,33 +10,41 @@
 namespace limber {
 
 namespace {
-constexpr double kStanding = 200, kStill = 20;  // mm/s: slower feet stand; slower ones are alike
-constexpr double kLifted = 60;                  // mm above its lowest place
-constexpr double kInTheAir = 0.02;              // what a foot that is lifted counts for the height
-constexpr double kOfToes = 0.2;                 // what toes count beside an ankle
-// What giving costs, beside a slide of 1 mm/s of a still foot = 1 / kStill^2.
-constexpr double kGiven = 1e-6;   // for each mm^2 and second
-constexpr double kGiving = 1e-7;  // for each (mm/s)^2 and second
+// Speeds of a foot, mm/s. A foot slower than kStanding counts as standing. Below about kStill, a lower speed no longer
+// raises the foot's weight.
+constexpr double kStanding = 200, kStill = 20;
+// Height of a foot above its lowest position, mm. A foot that is higher counts less. A foot at twice this height is
+// ignored.
+constexpr double kLifted = 60;
+constexpr double kInTheAir = 0.02;  // weight of a lifted foot when the body's height is computed; a standing foot has 1
+constexpr double kOfToes = 0.2;     // weight of the toes' sliding; an ankle's has 1
+// Costs of a correction. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per second.
+constexpr double kGiven = 1e-6;   // cost of a correction's size, per mm^2 and second
+constexpr double kGiving = 1e-7;  // cost of a correction's rate of change, per (mm/s)^2 and second
 constexpr int kMostRounds = 40;
-// A point that in a stance slides further than its source is urged to slide less there: it counts for more, round by
-// round.
-constexpr double kShortestStance = 0.1;                  // s
-constexpr double kMaySlide = 1.01;                       // of what the source slides
-constexpr double kMayExceed[] = {0.25, 0.6};             // mm beyond: ankle, toes
-constexpr double kMayExceedMoving = 3;                   // times as much where the foot moves or is up a little
-constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;  // factors of one round
-// What a missed millimetre along the ground, and upward, counts beside turns: the less, the more.
+// A stance is a span of frames in which an ankle or the toes of the source stand. Where the body's point slides further
+// than its source during a stance, its weight (its "urge") grows from round to round.
+constexpr double kShortestStance = 0.1;       // seconds; a shorter stance is ignored
+constexpr double kMaySlide = 1.01;            // allowed slide, as a multiple of the source's
+constexpr double kMayExceed[] = {0.25, 0.6};  // mm of slide allowed beyond kMaySlide: ankle, toes
+constexpr double kMayExceedMoving = 3;        // factor on kMayExceed for stances of a foot that moves or lifts a little
+constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;  // limits of the factor by which one round changes an urge
+// Regularization of the rotations of thigh and shank, horizontally (kMayMiss) and vertically (kMayRise), as a share of
+// the leg's squared length. The larger the share, the more the ankle may miss its target.
 constexpr double kMayMiss = 1e-4, kMayRise = 0.04;
 
-// What gives, along one axis of the ground: travel, then of each leg its swing and its foot's turn.
+// The number of unknowns per frame along one horizontal axis: the body's travel, then for each of two legs the
+// displacement of the ankle and of the toes. Each is in mm.
 constexpr int kUnknowns = 5;
 using Block = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-using Sides = Eigen::Matrix<double, kUnknowns, 2>;  // x, y
+using Sides = Eigen::Matrix<double, kUnknowns, 2>;  // columns: x, y
 int swing_of(std::size_t leg) { return 1 + 2 * static_cast<int>(leg); }
 int turn_of(std::size_t leg) { return 2 + 2 * static_cast<int>(leg); }
 
-// Frames follow one another: sum of (u[f] - u[f-1])' link[f] (u[f] - u[f-1]) + 2 (u[f] - u[f-1])' pull[f] + u[f]'
-// hold[f] u[f], solved for its least by blocks, forward and back.
+// A quadratic energy in which each frame's term depends only on this frame and the one before. It is the sum over
+// frames f of
+//   (u[f] - u[f-1])' link[f] (u[f] - u[f-1]) + 2 (u[f] - u[f-1])' pull[f] + u[f]' hold[f] u[f]
+// least() minimizes it by block elimination: a pass forward through the frames, and a pass back.
 struct Chain {
   std::vector<Block> link;
   std::vector<Sides> pull;
@@ -66,7 +74,8 @@ struct Chain {
   }
 };
 
-// How much of what it may turn each takes by moving the ankle, or the toes, aside.
+// Return the rotation that a leg needs to move its ankle by `aside`, or a foot to move its toes by `aside`, as a share
+// of the largest allowed rotation. A share above 1 is not allowed.
 double share_of_leg(const FootTrack& leg, std::size_t frame, const glm::dvec2& aside) {
   return turns_of_leg(leg.knee[frame] - leg.hip[frame], leg.body[FootTrack::Ankle][frame] - leg.knee[frame], aside)
              .most() /
@@ -88,12 +97,13 @@ std::vector<double> lowest_places(const FootTrack& leg) {
   return lowest;
 }
 
-// Frames [begin, end) in which a point of the source stands.
+// A span of frames [begin, end) during which a point (ankle or toes) of the source stands.
 struct Stance {
   std::size_t leg;
   int point;
   std::size_t begin, end;
-  double slides, may_exceed;  // mm: of the source, and what the body may slide beyond kMaySlide of it
+  // How far the source's point slides, and how far the body's point may slide beyond kMaySlide times that, mm.
+  double slides, may_exceed;
 };
 
 template <typename PlaceAt>
@@ -105,7 +115,8 @@ double slide_in(std::size_t begin, std::size_t end, PlaceAt place_at) {
   return farthest;
 }
 
-// All, and once more the stiller and lower parts of them, of which less is allowed.
+// Returns all stances. Those in which the foot stays below half the speed and half the height are listed a second time,
+// with a smaller allowed slide.
 std::vector<Stance> stances_of(const std::vector<FootTrack>& legs, const std::vector<std::vector<double>>& ground,
                                double frame_time) {
   std::vector<Stance> stances;
@@ -129,10 +140,9 @@ std::vector<Stance> stances_of(const std::vector<FootTrack>& legs, const std::ve
   return stances;
 }
 
-using Urges =
-    std::vector<std::array<std::vector<double>, 2>>;  // by leg, point and frame: how many times as much it counts
+using Urges = std::vector<std::array<std::vector<double>, 2>>;  // weight factors by leg, point and frame
 
-// Lays into the chain what the points slide, and what giving fast costs.
+// Sets the terms of the energy for the sliding of ankles and toes, and for the rate of change of the corrections.
 void link_slides(const std::vector<FootTrack>& legs, const std::vector<std::vector<double>>& ground, const Urges& urges,
                  double frame_time, Chain& chain) {
   for (std::size_t f = 1; f < chain.link.size(); ++f) {
@@ -159,7 +169,8 @@ void link_slides(const std::vector<FootTrack>& legs, const std::vector<std::vect
   }
 }
 
-// Solves the chain. What turns further than it may is cut, and held harder the next time; false if any was.
+// Minimizes the energy. A correction beyond its limit is cut to the limit, and its cost is raised for the next round.
+// Returns false if any correction was cut.
 bool solve_within_limits(const std::vector<FootTrack>& legs, double frame_time, Chain& chain, FootMending& mending) {
   const std::vector<Sides> given = chain.least();
   bool all_may = true;
@@ -183,7 +194,8 @@ bool solve_within_limits(const std::vector<FootTrack>& legs, double frame_time, 
   return all_may;
 }
 
-// The worst excess of all stances as a share of what they may; each is urged by its own.
+// Returns the largest excess slide of all stances, as a multiple of the allowed excess, and adapts each stance's
+// weights to its own excess.
 double urge_stances(const std::vector<FootTrack>& legs, const std::vector<Stance>& stances, const FootMending& mending,
                     Urges& urges) {
   double worst = 0;

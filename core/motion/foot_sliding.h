@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the feet of a body that follows another's motion from sliding further than that one's feet do.
+// Keeps the feet of a retargeted body from sliding further than the feet of its source.
 //
-// Legs of other proportions take steps of other lengths and bend to other heights, so a body that travels as its
-// source's hips do slides and floats. Three things may give: the body's travel, thighs and shanks that turn a little,
-// and feet that do. Over the whole take they are the least squares of
+// Legs of other proportions take steps of other lengths and bend to other heights. A body that travels exactly as the
+// hips of its source would therefore slide and float. Three things are corrected: the body's travel, the thighs and
+// shanks, which turn a little, and the feet, which turn a little too. The corrections minimize, over the whole motion,
 //   sum over frames, legs, points p (ankle, toes):  stands_p |slide_p|^2 / (speed_p^2 + still^2)^(3/2)
-// with slide_p what the point moves more than its source, plus little for what gives and for how fast it does. So of a
-// foot that rolls the stiller point holds, and what two feet that stand want differently is taken up by their legs
-// before, between and after. Where a bone would turn more than it may, its leg or foot is held harder and all is solved
-// again. Vertically low feet are as high above where they rest as the source's above their lowest place.
+// where slide_p is the difference between the motion of the point and that of the source's point; a small cost is added
+// for each correction and for its rate of change. As a result, a rolling foot keeps its slower point in place. Where
+// two standing feet disagree, the legs make up for it, before, during and after. Where a bone would turn beyond its
+// limit, its cost is raised and the whole problem is solved again. Vertically, a low foot is as high above its rest
+// height as the source's foot is above its lowest position.
 #pragma once
 
 #include <algorithm>
@@ -19,33 +20,36 @@
 
 namespace limber {
 
-// Of one leg, by frame: mm, z up, the source's scaled to the body.
+// The positions of one leg's joints at every frame, mm, z up. The source's positions are scaled to the body's size.
 struct FootTrack {
   enum Point { Ankle, Toes };
-  std::array<std::vector<glm::dvec3>, 2> source,
-      body;                           // of the body before it is mended; without toes the second are empty
-  double rest_height = 0;             // of the body's ankle
-  std::vector<glm::dvec3> hip, knee;  // of the body; without a shank the knee is the ankle
-  double most_turn = 0;               // radians that thigh, shank and foot may be turned
+  // Positions of ankle and toes: those of the source, and those of the body before the correction. The entry for the
+  // toes is empty when the leg has no toes.
+  std::array<std::vector<glm::dvec3>, 2> source, body;
+  double rest_height = 0;             // height of the body's ankle in the rest pose, mm
+  std::vector<glm::dvec3> hip, knee;  // positions of the body's joints, mm; a leg without a shank has its ankle as knee
+  double most_turn = 0;               // largest rotation of thigh, shank and foot, radians
   bool has_toes() const { return !source[Toes].empty(); }
 };
 
 struct FootMending {
-  std::vector<glm::dvec3> travel;  // by frame: added to the body's place
-  std::vector<std::vector<glm::dvec2>> ankle_aside,
-      toes_aside;  // by leg and frame: mm that the ankle is moved by the leg, and the toes by the foot beside it
+  std::vector<glm::dvec3> travel;  // shift of the body's position at each frame, mm
+  // Displacements along the ground for each leg and frame, mm. The leg moves the ankle; the foot then moves the toes
+  // further.
+  std::vector<std::vector<glm::dvec2>> ankle_aside, toes_aside;
 };
 
-// Rotation vectors in the world: small turns of thigh and shank that move the ankle aside along the ground and, where
-// the knee is bent, keep its height; of all that do so the least.
+// The smallest rotations of thigh and shank that move the ankle along the ground and, where the knee is bent, keep the
+// ankle's height. They are rotation vectors in world axes, radians.
 struct TurnsOfLeg {
   glm::dvec3 thigh, shank;
   double most() const { return std::max(glm::length(thigh), glm::length(shank)); }
 };
-//   thigh, shank  from hip to knee and on to the ankle
+//   thigh, shank  vectors from hip to knee and from knee to ankle, mm
 TurnsOfLeg turns_of_leg(const glm::dvec3& thigh, const glm::dvec3& shank, const glm::dvec2& ankle_aside);
 
-// At most two legs. `along_ground`: otherwise only heights are mended. Nothing gives at frame 0.
+// Computes the corrections for one or two legs. Without `along_ground` only the body's height is corrected. At frame 0
+// nothing is corrected along the ground.
 FootMending mend_sliding(const std::vector<FootTrack>& legs, double frame_time, bool along_ground);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses that bones shall take at frames. By the bones' names, so that a change of the rig loses only what it removed; a
-// bone that has no key is not touched.
+// Keyframes: the rotations that bones take at given frames. They are stored by bone name, so that a change of the rig
+// loses only the keys of removed bones. A bone without a key keeps its motion.
 #pragma once
 
 #include <map>
@@ -13,8 +13,9 @@
 namespace limber {
 
 struct Keys {
-  std::map<std::string, std::map<int, glm::dquat>> bones;  // rotation by frame; no bone without one
-  std::map<int, glm::dvec3> root;                          // of the body: root_translation by frame, mm
+  // For each bone name, the rotation at each keyed frame. Each listed bone has at least one key.
+  std::map<std::string, std::map<int, glm::dquat>> bones;
+  std::map<int, glm::dvec3> root;  // root_translation of the body by frame, mm
 
   bool operator==(const Keys&) const = default;
   bool empty() const { return bones.empty() && root.empty(); }
@@ -22,14 +23,14 @@ struct Keys {
 
 std::set<int> frames_of(const Keys& keys);
 
-// The pose's rotations of `bones` at that frame, and the body's place with a root bone among them.
+// Stores the pose's rotations of `bones` at that frame, and the body's position if a root bone is among them.
 void insert_key(Keys& keys, const Armature& armature, const Pose& pose, const std::vector<int>& bones, int frame);
-// What these bones have at that frame goes; false when they had nothing.
+// Deletes the keys of these bones at that frame; returns false when there were none.
 bool delete_key(Keys& keys, const Armature& armature, const std::vector<int>& bones, int frame);
 
-// All that stands at these frames. A key that arrives where another one stays takes its place.
+// Delete, move or copy all keys at the given frames. A key moved onto a frame that has a key replaces it.
 void delete_keys(Keys& keys, const std::set<int>& frames);
-//   frame_of  where what stands at a frame goes; frames that are not in it stay
+//   frame_of  maps the old frame of a key to its new frame; keys at frames that are not listed stay
 void move_keys(Keys& keys, const std::map<int, int>& frame_of);
 void copy_keys(Keys& keys, const std::map<int, int>& frame_of);
 

@@ -10,8 +10,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kNear = std::numbers::pi / 6;  // T, A and hanging arms are 45 degrees apart
-constexpr double kSole = 0.4;                   // radians by which an ankle stands above the toes
+// A limb within this angle of the named stance is left as it is: 30 degrees. The arms of a T-pose, of an A-pose and
+// hanging arms differ by 45 degrees.
+constexpr double kNear = std::numbers::pi / 6;
+// Slope of the line from the ankle down to the toes of a foot that stands flat, radians.
+constexpr double kSole = 0.4;
 
 bool is_finger(BodyPart part) {
   return part == BodyPart::Index || part == BodyPart::Middle || part == BodyPart::Ring || part == BodyPart::Little;
@@ -78,7 +81,8 @@ Straightened straightened(const Motion& motion, RestStance stance, int frame) {
   place_joints(skeleton, motion, frame);
   const glm::dmat3 body = axes_of_body(skeleton);
   const auto world = forward_kinematics(motion, frame);
-  std::vector<glm::dquat> turn(motion.joints.size(), glm::dquat(1, 0, 0, 0));  // file axes
+  // Rotation of each joint, in the file's axes.
+  std::vector<glm::dquat> turn(motion.joints.size(), glm::dquat(1, 0, 0, 0));
   for (int j = 0; j < std::ssize(turn); ++j) {
     BvhJoint& joint = result.motion.joints[j];
     const auto turned = [&](int by, const glm::dvec3& offset) {
@@ -93,7 +97,8 @@ Straightened straightened(const Motion& motion, RestStance stance, int frame) {
     const auto named = skeleton.role[j] ? direction_in(stance, *skeleton.role[j]) : std::nullopt;
     if (named && glm::length(here) > 1e-9) {
       const glm::dvec3 there = body * *named;
-      // Feet are of all heights.
+      // Feet have twice the tolerance, since the height of the ankle above the sole, and so a foot's slope, differs
+      // between skeletons.
       const bool near = angle_between(here, there) < (skeleton.role[j]->part == BodyPart::Foot ? 2 * kNear : kNear);
       turn[j] = near ? glm::dquat(1, 0, 0, 0) : shortest_turn(bvh_from_lps(here), bvh_from_lps(there));
       if (!near) result.turned.push_back(j);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a rest pose stands for, said by its name where the joints do not tell. Rotations of a take count from how the
-// actor stood at zero; exporters write that moment with joints along any axis, and few skeletons have the fingers that
-// tell where a palm faces. A name says both, as the T-pose does to which characters are laid before motion is carried
-// over.
+// The kinds of rest pose (stances) that a user can name where the joints do not show it. The rotations of a motion are
+// relative to the pose in which the actor had all angles zero. Exporters write this pose with joints along any axis,
+// and few skeletons have the fingers that show where a palm faces. The named stance gives the directions of the limbs
+// and of the palms:
 //   T-pose       arms to the sides, palms down
 //   A-pose       arms half way down, thumbs forward
-//   anatomical   arms hanging, palms forward; a body on its back lies so too
+//   anatomical   arms hanging, palms forward; also a body that lies on its back
 // In all of them legs and trunk are straight and feet point forward.
 #pragma once
 
@@ -22,25 +22,29 @@ enum class RestStance : std::uint8_t { AsItLies, TPose, APose, Anatomical };
 constexpr RestStance kRestStances[] = {RestStance::AsItLies, RestStance::TPose, RestStance::APose,
                                        RestStance::Anatomical};
 
-const char* word_of(RestStance stance);  // of files and the command line: "file", "T", "A", "anatomical"
-// Any case; "supine" is anatomical too. Throws Error for what is none.
+const char* word_of(RestStance stance);  // in files and on the command line: "file", "T", "A", "anatomical"
+// Returns the stance that a word means, in upper or lower case; "supine" also means the anatomical stance. Throws Error
+// for any other word.
 RestStance stance_of_word(const std::string& word, const std::string& where);
 
-// Unit, in the body's axes: left, back, up. Nothing where the stance does not say.
+// Returns the unit direction of a body part in this stance, in the body's axes (left, back, up). Returns nothing where
+// the stance does not define the direction.
 std::optional<glm::dvec3> direction_in(RestStance stance, const JointRole& role);
-// Across the palm from the index to the little finger, of a hand that points along `hand`; likewise.
+// Returns the unit direction across the palm, from the index to the little finger, in the body's axes; nothing where
+// the stance does not define it.
+//   hand  the direction in which the hand points, in the body's axes
 std::optional<glm::dvec3> palm_in(RestStance stance, BodySide side, const glm::dvec3& hand);
 
-// The body's axes, upright where its joints do not tell.
+// Returns the body's axes (left, back, up) from its hips or shoulders; the world's axes where it has neither.
 glm::dmat3 axes_of_body(const Skeleton& skeleton);
 
-// Limbs that lie more than 30 degrees off the stance are turned into it, with what hangs from them: only OFFSETs
-// change. What is nearer is right as it is, since no T-pose is perfect.
-//   frame  at which the motion stands so; -1: its rest
+// A motion in which limbs more than 30 degrees off the stance (feet: 60) were turned into the stance, together with
+// their descendants. Only OFFSETs change. Limbs nearer to the stance stay as they are, since no T-pose is perfect.
 struct Straightened {
   Motion motion;
-  std::vector<int> turned;  // joints
+  std::vector<int> turned;  // indices of the joints that were turned
 };
+//   frame  the frame at which the motion is in this stance; -1: its rest pose
 Straightened straightened(const Motion& motion, RestStance stance, int frame);
 
 }  // namespace limber

@@ -16,7 +16,8 @@ namespace limber {
 
 namespace {
 constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
-constexpr double kMostTurn = 0.034;  // radians by which a leg or foot leaves its source's direction lest a foot slides
+// Largest rotation, radians, of a thigh, shank or foot away from its source, in order to keep the foot from sliding.
+constexpr double kMostTurn = 0.034;
 
 bool hangs_from(const Armature& armature, int bone, int ancestor) {
   while (bone > ancestor) bone = armature.bones[bone].parent;
@@ -28,7 +29,7 @@ glm::dquat turn_by(const glm::dvec3& rotation) {
   return angle > 1e-12 ? glm::angleAxis(angle, rotation / angle) : glm::dquat(1, 0, 0, 0);
 }
 
-// The turn, at most kMostTurn, after which the end of `way` stands aside in the plane of the ground.
+// Returns the rotation, of at most kMostTurn, that moves the end of the vector `way` horizontally by `aside`.
 glm::dquat turn_aside(const glm::dvec3& way, const glm::dvec2& aside) {
   const glm::dvec2 flat = glm::dvec2(way) + aside;
   const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
@@ -41,13 +42,15 @@ bool is_trunk(BodyPart part) {
   return part == BodyPart::Pelvis || part == BodyPart::Spine || part == BodyPart::Neck || part == BodyPart::Head;
 }
 
-// ---- how the rig's bones lie at that moment
+// ---- rotations of the rig's bones at the reference frame
 
 class Alignment {
  public:
-  // Turns per rig bone, from rest to how the source stands; only those of matched bones are meant.
-  //   stances   what is said of both
-  //   rebuilt   joints of the source whose fingers tell nothing any more
+  // Computes for each rig bone the rotation from its rest pose to the pose of the source. Only the rotations of matched
+  // bones are used.
+  //   stances   the stances that the user named for rig and source
+  //   rebuilt   joints of the source that were turned into the named stance, so that their fingers no longer show where
+  //             the palm faces
   Alignment(const Skeleton& rig, const Skeleton& source, const std::vector<int>& joint_of_bone, bool source_at_rest,
             const RestStances& stances, const std::vector<int>& rebuilt)
       : rig_(rig),
@@ -68,8 +71,9 @@ class Alignment {
   const std::vector<glm::dquat>& turns() const { return turn_; }
 
  private:
-  // Of the whole body. An upright rest pose turns only about the vertical: leaning differs between skeletons by where
-  // their joints are, not by how they stand.
+  // Returns the rotation of the whole body from the rig to the source. If the source is in an upright rest pose, this
+  // is only a rotation about the vertical: how far its trunk leans depends on where the skeleton has its joints, not on
+  // how the body stands.
   std::optional<glm::dquat> body_turn(BodyPart part, bool source_at_rest) const {
     const auto from = body_axes(rig_, part), to = body_axes(source_, part);
     if (!from || !to) return std::nullopt;
@@ -98,7 +102,8 @@ class Alignment {
     if (glm::length(here) < 1e-9 || glm::length(there) < 1e-9) return above(bone);
     if (role && role->part == BodyPart::Foot) {
       auto pitch = [](const glm::dvec3& d) { return std::atan2(d.z, std::hypot(d.x, d.y)); };
-      // Both flat on the ground, however high their ankles are; a foot that is lifted gives its direction.
+      // Two feet flat on the ground differ only in their heading, however high their ankles are. A lifted foot is
+      // turned to the full direction of the source's foot.
       if (std::abs(pitch(here) - pitch(there)) < 0.6 && std::abs(pitch(there)) < 1 && std::abs(pitch(here)) < 1)
         return heading_turn(here, there);
     }
@@ -115,7 +120,7 @@ class Alignment {
     return glm::normalize(glm::slerp(*hips_, *shoulders_, double(role.index + 1) / bones));
   }
 
-  // The palm faces as the source's does; half of the twist that takes is the forearm's.
+  // Turns the hand so that its palm faces the same way as the source's palm. The forearm takes half of the twist.
   void turn_palm(BodySide side) {
     const auto hand = rig_.joint.find({BodyPart::Hand, side});
     if (hand == rig_.joint.end() || joint_[hand->second] < 0) return;
@@ -136,7 +141,7 @@ class Alignment {
                                           2 * std::numbers::pi);
       turn_[forearm] = glm::normalize(glm::angleAxis(twist / 2, along) * turn_[forearm]);
     }
-    // What hangs from the hand comes along, then finds its own direction again.
+    // The hand's descendants first follow the hand, then get their own directions again.
     for (size_t below = bone + 1; below < joint_.size(); ++below) {
       if (!hangs_from(static_cast<int>(below), bone)) continue;
       turn_[below] = joint_[below] >= 0 ? turn_of(static_cast<int>(below)) : above(static_cast<int>(below));
@@ -148,8 +153,9 @@ class Alignment {
     return bone == ancestor;
   }
 
-  // Across the hand, thumb side to little finger: by what both skeletons have, the knuckles, else the thumb; else by
-  // these where there are any, and by what is said where there are none.
+  // Returns the line across the palm, from the thumb's side to the little finger, of the rig and of the source. If both
+  // skeletons have knuckles, or both have a thumb, these give the lines of both. Otherwise each line comes from the
+  // skeleton's own fingers, or else from the stance that the user named.
   std::pair<std::optional<glm::dvec3>, std::optional<glm::dvec3>> palm_lines(BodySide side, int hand,
                                                                              int source_hand) const {
     const auto& role = source_.role[source_hand];
@@ -195,8 +201,9 @@ class Alignment {
 
 // ---- matching
 
-// Which hand a hand without a side is, by how its fingers lie: along, index to little and the way the fingers curl are
-// right-handed in a right hand. Right when nothing tells.
+// Returns whether a rig of a single hand is a left or a right hand, judged by its fingers. Three directions form a
+// right-handed system in a right hand: along the hand, from index to little finger, and of the fingers' curl. Returns
+// Right when the fingers do not tell.
 BodySide side_of_single(const Skeleton& rig) {
   auto of = [&](BodyPart finger, int segment) { return rig.place_of(finger, BodySide::Middle, segment); };
   const auto index = of(BodyPart::Index, 1), little = of(BodyPart::Little, 1), knuckle = of(BodyPart::Middle, 1),
@@ -217,8 +224,8 @@ std::vector<int> chain_of(const Skeleton& skeleton, BodyPart part) {
   }
 }
 
-// Bones of a chain take the joints of the same names where there are any, else joints spread evenly with the last on
-// the last.
+// Matches the bones of a chain, such as the spine, to the joints of the same names. If no names agree, spreads the
+// matches evenly along the chain, with the last bone at the last joint.
 void match_chain(const std::vector<int>& bones, const std::vector<int>& joints, const Armature& armature,
                  const Motion& motion, const std::function<void(int, int)>& match) {
   bool any = false;
@@ -250,7 +257,8 @@ double leg_length(const Skeleton& skeleton, BodyPart upper, BodyPart lower, Body
   return count ? sum / count : 0;
 }
 
-// mm of the rig per unit of the source: by the legs, else the arms, else the trunk.
+// Returns the scale from source to rig, mm per unit of the source. It is the ratio of the leg lengths, else of the arm
+// lengths, else of the trunk lengths.
 double scale_between(const Skeleton& rig, const Skeleton& source) {
   auto length = [](const Skeleton& skeleton, int way) {
     if (way == 0) return leg_length(skeleton, BodyPart::Thigh, BodyPart::Shank, BodyPart::Foot);
@@ -265,7 +273,8 @@ double scale_between(const Skeleton& rig, const Skeleton& source) {
   return 1;
 }
 
-// What takes each matched bone from its joint's turn to its own, from the moment when the source stands as a rig rests.
+// Returns the rest offset of each matched bone: its rotation relative to the rotation of its joint. The offset is
+// measured at frame `standing`, at which the source's pose corresponds to the rest pose of the rig.
 std::vector<glm::dquat> offsets_between(const Motion& motion, const Skeleton& rig, Skeleton source,
                                         const std::vector<int>& joint_of_bone, int standing, const RestStances& stances,
                                         const std::vector<int>& rebuilt) {
@@ -300,7 +309,8 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
   for (BodyPart chain : {BodyPart::Spine, BodyPart::Neck})
     match_chain(chain_of(rig, chain), chain_of(source, chain), armature, motion, match);
 
-  // A rig of one limb without sides takes the motion of the side that it is.
+  // A rig of a single limb may have no sides in its names. It then takes the motion of the left or of the right limb,
+  // whichever its shape resembles.
   const bool one_limb = std::none_of(rig.joint.begin(), rig.joint.end(),
                                      [](const auto& entry) { return entry.first.side != BodySide::Middle; });
   const bool sided_source = std::any_of(source.joint.begin(), source.joint.end(),
@@ -311,14 +321,14 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
     JointRole wanted = role;
     if (one_limb && sided_source && role.part >= BodyPart::Clavicle) wanted.side = only_side;
     auto found = source.joint.find(wanted);
-    // A metacarpal without one of its own goes with the hand, where the rig has no hand to carry it.
+    // A metacarpal bone without a matching joint follows the hand's joint if the rig has no hand bone as its parent.
     if (found == source.joint.end() && role.index == 0 && role.part > BodyPart::Thumb &&
         !rig.joint.contains({BodyPart::Hand, role.side}))
       found = source.joint.find({BodyPart::Hand, wanted.side});
     if (found != source.joint.end()) match(bone, found->second);
   }
 
-  // What means nothing known still matches by its spelling.
+  // Bones and joints whose names mean no known body part are matched where they have the same name.
   std::map<std::string, int> by_name;
   for (size_t j = 0; j < motion.joints.size(); ++j)
     if (!source.role[j]) by_name.emplace(plain_name(motion.joints[j].name), static_cast<int>(j));
@@ -353,9 +363,9 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     joint_of_bone_[require_bone(armature, bone)] = joint->second;
   }
 
-  // Offsets, at the moment when the source stands.
+  // The rest offsets are measured at the frame at which the source stands.
   Skeleton rig = skeleton_of(armature), source = skeleton_of(motion);
-  // A bone whose name says nothing is what its joint is.
+  // A bone whose name means no known body part takes the body part of its joint.
   for (size_t b = 0; b < joint_of_bone_.size(); ++b) {
     const auto role = joint_of_bone_[b] >= 0 ? source.role[joint_of_bone_[b]] : std::nullopt;
     if (rig.role[b] || !role) continue;
@@ -389,8 +399,8 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   if (first != joint_of_bone_.end())
     lead_ = *first, start_ = forward_kinematics(*motion_, from_rest ? -1 : 0)[lead_].translation;
 
-  // Bones of the trunk that lie between matched ones: nearest below by walking up, nearest above by what walks up to
-  // them.
+  // This finds the matched bones around the unmatched bones of the trunk. From each matched bone it goes from parent to
+  // parent until the next matched bone; the unmatched bones on the way lie between these two.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
     if (joint_of_bone_[top] < 0 || !rig.role[top] || !is_trunk(rig.role[top]->part)) continue;
     std::vector<int> gap;
@@ -438,10 +448,10 @@ Pose Retarget::at(int frame) const {
   return settings_.mirror ? flipped(pose, *armature_) : pose;
 }
 
-// -1 where it has none.
+// Returns the leg's foot bone for the ankle, and its toes bone for the toes (-1: the leg has no toes).
 int Retarget::bone_of(const Leg& leg, int point) { return point == FootTrack::Toes ? leg.toes : leg.foot; }
 
-// Only what the feet hang on is moved: of many-jointed takes a few joints.
+// Evaluates only the joints and bones that the feet depend on, which are few even in motions of many joints.
 std::vector<FootTrack> Retarget::foot_tracks() const {
   std::vector<bool> bone_matters(armature_->bones.size(), false), joint_matters(motion_->joints.size(), false);
   const auto matters = [&](int bone) {
@@ -503,8 +513,8 @@ std::vector<FootTrack> Retarget::foot_tracks() const {
   return feet;
 }
 
-// Turns thigh and shank until the ankle stands aside in the plane of the ground, and the foot, which else keeps its
-// direction, until its toes stand aside further.
+// Turns thigh and shank so that the ankle moves along the ground by `ankle_aside`. The foot keeps its direction, except
+// that it turns to move its toes by a further `toes_aside`.
 void Retarget::move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_aside,
                          const glm::dvec2& toes_aside) const {
   const auto posed = posed_from_rest(*armature_, pose);
@@ -520,7 +530,7 @@ void Retarget::move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_asi
                    shank = leg.shank == leg.foot ? thigh : turn_by(may * turns.shank);
   const glm::dquat foot =
       leg.toes < 0 ? glm::dquat(1, 0, 0, 0) : turn_aside(place(leg.toes) - place(leg.foot), toes_aside);
-  // What hangs from a bone is carried by its turn, and turns back.
+  // A bone turns together with its parent, so the shank and the foot first undo the rotation of the bone above.
   turned_before(leg.thigh, thigh);
   if (leg.shank != leg.foot) turned_before(leg.shank, glm::conjugate(thigh) * shank);
   turned_before(leg.foot, glm::conjugate(shank) * foot);

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Motion of one skeleton carried over to another.
+// Retargets the motion of one skeleton to another.
 //
-// Each matched bone turns in the world exactly as its source joint turns:
+// Each matched bone has the same rotation in the world as its source joint, up to a constant offset:
 //   posed_from_rest(bone, frame) = source(joint, frame) * rest_offset(bone)
-// with `source` the joint's global rotation in LPS axes. The offset is fixed once, from a moment when the source stands
-// as a rig rests: its rest pose where that is a standing one, else the frame nearest to standing. At that moment
-//   - arms, thighs, shanks and fingers get the source's *directions* (so arms hang when the actor's hang, whatever pose
-//     either skeleton rests in), each by the shortest turn from where the bone above carries it; palms get its facing;
-//   - feet keep their pitch to the ground and get its heading; pelvis, spine, neck, head and collars, whose bones run
-//     differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
-// What the source's joints do not tell then may be said (rest_pose_kind.h): limbs that lie otherwise than said are laid
-// so first, and palms that have no fingers face as said. The body faces where the actor faces. Bones of the trunk
-// between matched ones share the bend; all others follow the bone they hang from. Lengths stay the rig's; travel is
-// scaled by the legs' lengths. In a motion of the rig itself each joint is its bone.
+// with `source` the joint's global rotation in LPS axes. The offset is computed once, at a reference frame at which the
+// source's pose corresponds to the rig's rest pose: the source's rest pose if it stands there, else the frame at which
+// it is nearest to standing. At this frame
+//   - arms, thighs, shanks and fingers get the source's *directions*, so arms hang when the actor's hang, whatever pose
+//     either skeleton rests in. Each bone takes the shortest turn from its direction under its turned parent. Palms
+//     face as the source's palms;
+//   - feet keep their pitch to the ground and get the source's heading; pelvis, spine, neck, head and collars, whose
+//     bones run differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
+// Where the source's joints do not show its stance, the user can name it (rest_pose_kind.h). Limbs that differ from the
+// stance are then turned into it first, and it decides where palms without fingers face. The body faces where the actor
+// faces. Unmatched trunk bones between matched ones share the bend; all other unmatched bones follow their parent. The
+// rig keeps its bone lengths, and travel is scaled by the lengths of the legs. If the motion was made for this rig
+// itself, each bone takes its joint's rotation directly.
 #pragma once
 
 #include <map>
@@ -28,7 +31,8 @@
 
 namespace limber {
 
-// What both rest in. The source: at zero angles, or in its first frame where that is the reference.
+// The stances (kinds of rest pose) of source and rig, as the user named them. The source's stance is its pose at the
+// reference frame.
 struct RestStances {
   RestStance source = RestStance::AsItLies, rig = RestStance::AsItLies;
 
@@ -38,74 +42,83 @@ struct RestStances {
 struct RetargetMap {
   struct Source {
     std::string joint;
-    std::optional<glm::dquat> rest_offset;  // as above; without one it is found
+    // The bone's rotation relative to its joint (see the top of this file). Empty: it is computed from the two
+    // skeletons.
+    std::optional<glm::dquat> rest_offset;
 
     bool operator==(const Source&) const = default;
   };
-  std::map<std::string, Source> sources;  // by rig bone; bones that are not named follow
+  std::map<std::string, Source> sources;  // by name of the rig bone; bones that are not listed follow their parents
   RestStances stances;
 
   bool operator==(const RetargetMap&) const = default;
-  // The bone's source joint, empty when it has none.
+  // Returns the name of the bone's source joint, empty when it has none.
   std::string joint_of(const std::string& bone) const;
 };
 
-// By what the names mean (core/rig/joint_names.h). Throws Error when nothing matches.
+// Matches bones and joints by the body parts that their names mean (core/rig/joint_names.h). Throws Error when nothing
+// matches.
 RetargetMap match_by_names(const Motion& motion, const Armature& armature);
 
-// What of the map both have.
+// Returns a copy of the map without the entries whose joint or bone does not exist.
 RetargetMap known_part(const RetargetMap& map, const Motion& motion, const Armature& armature);
 
-// {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null,
-//  "@rests": {"motion": "file" | "T" | "A" | "anatomical", "rig": likewise}}
-// Throws Error for a joint or bone that is not there, a bone named twice, or a map that matches nothing.
+// Read and write a map as JSON:
+//   {"source joint": "rig bone" | ["rig bone", ...] | {"bone": name, "rest_offset_wxyz": [4]} | null,
+//    "@rests": {"motion": "file" | "T" | "A" | "anatomical", "rig": "file" | "T" | "A" | "anatomical"}}
+// Throws Error for a joint or bone that does not exist, a bone named twice, or a map that matches nothing.
 RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Armature& armature);
 RetargetMap parse_retarget_map(const std::string& text, const std::string& where, const Motion& motion,
                                const Armature& armature);
 void write_retarget_map(const RetargetMap& map, const Path& path);
 
-// How the body goes with the source's hips.
+// How the body moves with the source's hips.
 enum class Travel {
-  Locked,   // stays where it rests
-  InPlace,  // goes up and down, so that its feet on the ground stand as high as at rest, and nowhere else
-  Free,     // up and down likewise; and as the source does since frame 0, so that its feet slide no further than the
-            // source's: thighs, shanks and feet turn by up to 1.95 degrees for it (foot_sliding.h)
+  Locked,   // the body stays where it rests
+  InPlace,  // the body moves only up and down, so that feet on the ground are as high as at rest
+  // The body also moves along the ground, as far as the source has since frame 0. Thighs, shanks and feet turn by up to
+  // 1.95 degrees, so that feet slide no further than the source's (foot_sliding.h).
+  Free,
 };
 
-// The moment at which the source stands as the rig rests.
+// How to choose the reference frame, at which the pose of the source corresponds to the rest pose of the rig.
 enum class Reference { Found, RestPose, FirstFrame };
 
 struct RetargetSettings {
   Travel travel = Travel::Locked;
-  bool mirror = false;  // left and right change places
-  double scale = 0;     // of the travel: mm for a unit of the file; 0: by the legs' lengths
+  bool mirror = false;  // swaps left and right
+  double scale = 0;     // mm of travel per unit of the file; 0: computed from the lengths of the legs
   Reference reference = Reference::Found;
 
   bool operator==(const RetargetSettings&) const = default;
 };
 
-// Prepared once, asked for many frames. Invariant: `motion` and `armature` outlive it.
+// A motion retargeted to a rig: prepared once, then evaluated at many frames. Invariant: `motion` and `armature`
+// outlive it.
 class Retarget {
  public:
   // Throws Error when the motion has no frames.
   Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map,
            const RetargetSettings& settings = {});
 
-  Pose at(int frame) const;                                                 // throws Error for a frame the motion lacks
-  int joint_of(int bone) const { return joint_of_bone_[bone]; }             // -1 where unmatched
-  double scale() const { return scale_; }                                   // mm per file unit
-  RetargetMap map() const;                                                  // with the offsets that are in use
-  const std::vector<int>& turned_joints() const { return turned_joints_; }  // that lay otherwise than is said
+  Pose at(int frame) const;                                      // throws Error for a frame the motion lacks
+  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // -1: the bone has no joint
+  double scale() const { return scale_; }                        // mm per unit of the file
+  RetargetMap map() const;                                       // the map in use, with all its rest offsets
+  // Returns the source's joints that were turned into the named stance.
+  const std::vector<int>& turned_joints() const { return turned_joints_; }
 
  private:
-  // Where the source's joints are so; without what the feet add to the travel.
+  // Returns the pose for the source's joints at a frame, without the correction of the feet.
+  //   source  global transforms of the source's joints, in the file's axes and units
   Pose carried_over(const std::vector<RigidTransform>& source) const;
-  //   carried  how the bone above has turned from rest, in the world; likewise what is returned
+  // Returns the rotation of the bone from its rest pose, in world axes.
+  //   carried  the parent bone's rotation from its rest pose, in world axes
   glm::dquat turned(int bone, const std::vector<RigidTransform>& source, const glm::dquat& carried) const;
   glm::dvec3 travelled(const std::vector<RigidTransform>& source) const;
   struct Leg {
-    int thigh, shank, foot;  // bones; without a shank it is the foot
-    int toes;                // -1 where none are matched
+    int thigh, shank, foot;  // bone indices; a leg without a shank has its foot as shank
+    int toes;                // bone index; -1: no toes are matched
   };
   static int bone_of(const Leg& leg, int point);
   std::vector<FootTrack> foot_tracks() const;
@@ -115,20 +128,21 @@ class Retarget {
   const Armature* armature_;
   RetargetSettings settings_;
   RestStances stances_;
-  std::shared_ptr<const Motion> straight_;  // what motion_ is, where limbs had to be turned
+  // The motion in which limbs were turned into the named stance; motion_ then points to it. Null: no limb was turned.
+  std::shared_ptr<const Motion> straight_;
   std::vector<int> turned_joints_;
   std::vector<int> joint_of_bone_;
-  std::vector<glm::dquat> rest_offset_;  // per bone
+  std::vector<glm::dquat> rest_offset_;  // for each bone
   struct Between {
-    int below = -1, above = -1;  // matched bones of the trunk
-    double share = 0;            // of the turn from below to above
+    int below = -1, above = -1;  // indices of the nearest matched trunk bones on either side
+    double share = 0;            // [0, 1]: 0 takes the rotation of `below`, 1 that of `above`
   };
-  std::vector<Between> between_;  // per bone; below = -1 where it follows its parent
+  std::vector<Between> between_;  // for each bone; below = -1: the bone is matched, or follows its parent
   double scale_ = 1;
-  int lead_ = -1;          // the joint that the body travels with
-  glm::dvec3 start_{0};    // where it is at frame 0, in the file's axes
-  std::vector<Leg> legs_;  // with feet that are matched
-  FootMending feet_;       // where the body travels
+  int lead_ = -1;          // the joint whose movement is the body's travel; -1: none
+  glm::dvec3 start_{0};    // that joint's position in the start pose, in the file's axes
+  std::vector<Leg> legs_;  // legs whose feet are matched
+  FootMending feet_;       // corrections of the feet; empty when there are none
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How sure it is that a joint moves a bone, by their names: for a user to look over a map.
+// Rates how certain the match of a bone and a joint is, judged by their names, so that a user can check a retarget map.
 #pragma once
 
 #include "core/motion/retarget.h"
@@ -7,17 +7,17 @@
 namespace limber {
 
 enum class MatchKind {
-  None,      // nothing moves the bone
-  ByHand,    // the names do not say it
-  Chain,     // both of the spine, or of the neck, told apart by their places
-  SamePart,  // other names for the same part of the body
+  None,      // the bone has no joint
+  ByHand,    // the names do not match; a user chose the joint
+  Chain,     // both are in the spine, or both in the neck, and they were matched by their order
+  SamePart,  // different names for the same body part
   SameName,
 };
 
-// By bone of the armature. `map` as Retarget takes it.
+// Returns the kind of match of each bone of the armature.
 std::vector<MatchKind> match_kinds(const Motion& motion, const Armature& armature, const RetargetMap& map);
 
-// [0, 1]
+// Returns how certain a match of this kind is, [0, 1].
 double confidence(MatchKind kind);
 
 }  // namespace limber

@@ -26,7 +26,7 @@ glm::dquat rest_offset_of(const Json& value, const std::string& where) {
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }
 
-// No joint of a motion, unless one is called so.
+// JSON key under which a retarget map stores the rest stances. If a joint has this name, the key means the joint.
 constexpr const char* kRests = "@rests";
 
 RestStances stances_of(const Json& value, const std::string& where) {
@@ -106,7 +106,7 @@ RetargetMap read_retarget_map(const Path& path, const Motion& motion, const Arma
 }
 
 void write_retarget_map(const RetargetMap& map, const Path& path) {
-  // A joint that moves several bones lists them; their offsets are found again.
+  // If a joint moves several bones, only their names are written. Their rest offsets are computed again on reading.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [bone, source] : map.sources) {
     nlohmann::ordered_json value = bone;

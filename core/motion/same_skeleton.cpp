@@ -11,10 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kAlike = 1e-3;    // of the rig's size
-constexpr double kInPlace = 0.01;  // mm
+constexpr double kAlike = 1e-3;    // largest distance between joint and bone, as a share of the rig's size
+constexpr double kInPlace = 0.01;  // mm: smaller differences of size and position count as none
 
-// The joints' places at rest, by bone; nothing where names or parents differ.
+// Returns the joints' rest positions in the order of the bones; nothing where names or parents differ.
 std::optional<std::vector<glm::dvec3>> places_by_bone(const Motion& motion, const Armature& armature) {
   std::map<std::string, int> joints;
   for (std::size_t j = 0; j < motion.joints.size(); ++j) joints.emplace(motion.joints[j].name, static_cast<int>(j));
@@ -39,7 +39,8 @@ std::size_t farthest(const std::vector<glm::dvec3>& places, const auto& distance
   return best;
 }
 
-// Axes along the line between two places and towards a third.
+// Returns axes whose third one points from position a to b, and whose first one is as near as possible to the direction
+// from a to c.
 std::optional<glm::dmat3> axes_by(const std::vector<glm::dvec3>& places, std::size_t a, std::size_t b, std::size_t c) {
   return axes_of(places[b] - places[a], places[c] - places[a]);
 }

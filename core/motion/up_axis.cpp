@@ -10,10 +10,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kClear = 0.8;    // cosine to an axis of a body that stands along it: 37 degrees
-constexpr int kMostFrames = 200;  // that are looked at
+constexpr double kClear = 0.8;    // cosine of 37 degrees: a body within this angle of an axis stands along it
+constexpr int kMostFrames = 200;  // a long motion is sampled at 200 to 400 frames
+// Shares of the examined frames. The z axis is up if the body stands along z in at least kMany of them and along y in
+// fewer than kFew.
 constexpr double kMany = 0.5, kFew = 0.1;
-constexpr double kFlat = 0.2;  // of the way along the ground: less than what a walk's hips go up and down
+// Largest vertical motion of the root of a travelling body, as a share of the distance along the ground.
+constexpr double kFlat = 0.2;
 
 std::optional<glm::dvec3> mean_of(const Skeleton& skeleton, BodyPart part) {
   glm::dvec3 sum(0);
@@ -29,7 +32,7 @@ std::optional<glm::dvec3> first_of(const Skeleton& skeleton, std::initializer_li
   return std::nullopt;
 }
 
-// From what is lowest in a standing body to what is highest, in the file's axes.
+// Returns the unit direction from the lowest recognized body part to the highest, in the file's axes.
 std::optional<glm::dvec3> body_line(const Skeleton& skeleton) {
   const auto top = first_of(skeleton, {BodyPart::Head, BodyPart::Neck, BodyPart::UpperArm, BodyPart::Clavicle});
   const auto end = first_of(skeleton, {BodyPart::Foot, BodyPart::Shank, BodyPart::Thigh, BodyPart::Pelvis});
@@ -52,12 +55,13 @@ std::optional<UpAxis> axis_over_frames(const Motion& motion, Skeleton& skeleton)
     along_y += axis == UpAxis::Y;
     along_z += axis == UpAxis::Z;
   }
-  // Somebody who gets up from lying along z stands in some of the frames.
+  // An actor who lies along z and gets up stands along y in some of the frames, so a few frames along y mean that y is
+  // up.
   if (along_z >= kMany * looked_at && along_y < kFew * looked_at && looked_at) return UpAxis::Z;
   return along_y > 0 && along_y >= kFew * looked_at ? std::optional(UpAxis::Y) : std::nullopt;
 }
 
-// The ground is where the root goes far along.
+// Returns the axis along which the root moves little while it travels far along the others.
 std::optional<UpAxis> axis_by_travel(const Motion& motion) {
   glm::dvec3 low(1e300), high(-1e300);
   const int step = std::max(1, motion.frame_count / kMostFrames);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which axis of a BVH file points up. The format does not say: most files have y up, those of Blender and of many
-// capture systems z. A body tells by itself: its head is above its feet, or its neck above its hips. What the frames
-// show counts before the rest pose, since a skeleton that rests along z may be turned upright by its root in every
-// frame. Where names say nothing, a take that travels does so along the ground.
+// Finds which axis of a BVH file points up. The format does not say: most files have y up, those of Blender and of many
+// capture systems have z up. The body decides: its head is above its feet, or its neck above its hips. The poses in the
+// frames take precedence over the rest pose, since the root of a skeleton that rests along z may turn it upright in
+// every frame. If the joint names are unknown, the direction of travel decides, since a body travels along the ground.
 #pragma once
 
 #include <string>
@@ -20,10 +20,11 @@ struct UpGuess {
   bool operator==(const UpGuess&) const = default;
 };
 
-// Y where nothing tells.
+// Guesses the up axis; returns Y when nothing decides.
 UpGuess up_axis_of(const Motion& motion);
 
-// Half a sentence: "its head is above its feet along z over the frames"; empty where nothing told.
+// Returns the reason for the guess as half a sentence ("over its frames the head is above the feet along z"), empty if
+// there is none.
 std::string reason_of(const UpGuess& guess);
 
 }  // namespace limber

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which tissue voxels one dab of a brush touches, and how far each lies from the dab's centre.
+// Finds the tissue voxels that one dab of a brush touches, and the distance of each from the dab's centre.
 //
-// Euclidean: the ball. Geodesic: the shortest way inside the tissue, so that a dab never crosses air: between two
-// fingers nothing changes on the other side, however near it is. What is seen from the centre in a straight line of
-// tissue has its straight distance; visibility spreads outwards row by row, 64 voxels at a time: a voxel is seen when
-// those that surround its line of sight one step nearer are, and where these differ the line is walked. Behind corners
-// a front goes on from voxel to voxel through faces, each remembering the corner its way last came round (as
-// geodesic_front.h, but here the way from the corner is walked, since gaps may be as thin as a voxel). Near a seam of
-// the tissue the front alone finds ways, and none crosses it: a dab on a hand does not reach the hip that it lies on.
+// With Euclidean distance, a dab touches the voxels of a ball. With geodesic distance, it touches the voxels to which
+// the shortest path inside tissue is at most the radius. So a dab never crosses air: on one finger it does not change
+// the finger beside it, however near that is.
 //
-// All memory is kept between dabs and follows the ball, not the volume (but for four bytes a brick).
+// A voxel is in sight (seen) when a straight line through tissue connects it to the dab's centre; its distance is the
+// length of that line. Sight is computed outwards row by row, 64 voxels at a time: a voxel is seen when the voxels
+// around its line of sight, one step nearer to the centre, are all seen. Where only some of them are, the line is
+// walked. To voxels out of sight, a front of shortest paths spreads from voxel to voxel through faces. Each voxel
+// stores the last corner around which its path turns (as in geodesic_front.h, but here the line from that corner is
+// walked, because gaps may be as thin as a voxel). Near a seam all paths are found by the front, and none crosses the
+// seam: a dab on a hand does not reach the hip on which the hand lies.
+//
+// Memory is reused by the next dab. It grows with the ball and not with the volume (except four bytes per brick).
 #pragma once
 
 #include <array>
@@ -25,59 +29,60 @@ namespace limber {
 enum class BrushDistance { Euclidean, Geodesic };
 
 enum class BrushDepth {
-  Surface,  // voxels that have air beside them
-  ToDepth,  // and those whose centre lies at most `depth_mm` from the centre of an air voxel
+  Surface,  // only voxels that share a face with air
+  ToDepth,  // these, and voxels whose centre lies at most `depth_mm` from the centre of an air voxel
   Through,
 };
 
-// What a dab may change. Ways lead through other tissue all the same.
+// Selects the voxels that a dab may change. Geodesic paths may also lead through voxels that it may not change.
 struct BrushFilter {
-  LabelSet labels;  // empty: every tissue
+  LabelSet labels;  // tissues that may change; empty: all
   struct Box {
-    glm::dvec3 low, high;  // voxel coordinates, as in ClipBox: voxels whose centres lie inside may change
+    glm::dvec3 low, high;  // voxel coordinates, as in ClipBox; only voxels whose centre lies inside may change
   };
   struct Plane {
-    glm::dvec3 point, normal;  // world, mm: what lies on the side that the normal points to may not change
+    glm::dvec3 point, normal;  // world, mm; voxels on the side to which the normal points may not change
   };
   std::optional<Box> box;
   std::optional<Plane> plane;
   BrushDepth depth = BrushDepth::Through;
   double depth_mm = 10;
-  // Asked at most once for each voxel that a dab comes near; empty: every voxel.
+  // Returns whether a voxel may change; `place` is its index in the tissue list. Called at most once per voxel and only
+  // for voxels near a dab. Empty: every voxel may change.
   std::function<bool(std::int64_t place, const glm::ivec3& voxel)> allows;
 };
 
-// Voxels touched, brick by brick; arrays of equal length.
+// The voxels that a dab touches, brick by brick. The arrays at, cell and distance have one entry per voxel.
 struct Reached {
   struct Brick {
-    std::int32_t brick;       // as in TissueVoxels::bricks()
-    std::int32_t begin, end;  // of the arrays
+    std::int32_t brick;       // index in TissueVoxels::bricks()
+    std::int32_t begin, end;  // the brick's entries in the arrays: begin .. end - 1
   };
-  std::vector<Brick> bricks;        // each once, in order, none empty
-  std::vector<std::uint16_t> at;    // in the brick's chunk, growing
-  std::vector<std::uint16_t> cell;  // in the brick: x + 8 y + 64 z
-  std::vector<float> distance;      // mm, at most the radius
+  std::vector<Brick> bricks;        // only bricks with touched voxels, sorted by index
+  std::vector<std::uint16_t> at;    // the voxel's index in its brick's chunk of weights, rising
+  std::vector<std::uint16_t> cell;  // the voxel's position in its brick: x + 8 y + 64 z
+  std::vector<float> distance;      // distance from the dab's centre, mm, at most the radius
 
   std::int64_t size() const { return std::ssize(at); }
 };
 
 class BrushReach {
  public:
-  // References are kept.
+  // Keeps references to `volume` and `tissue`, which must outlive the object.
   BrushReach(const LabelVolume& volume, const TissueVoxels& tissue, BrushFilter filter = {});
 
-  // Valid until the next dab. Nothing where no tissue is within reach.
-  //   centre  world, mm; geodesic ways start from the tissue voxel nearest to it, which must be within two voxels
+  // Returns the voxels that a dab touches; none when it reaches no tissue. The result is valid until the next dab.
+  //   centre  world, mm; geodesic paths start from the nearest tissue voxel, which must be within two voxels
   //   radius  mm, positive
   const Reached& dab(const glm::dvec3& centre, double radius, BrushDistance distance);
 
   std::int64_t memory_bytes() const;
 
  private:
-  using Mask = std::array<std::uint64_t, 8>;  // of a brick, as TissueVoxels::Brick::mask
+  using Mask = std::array<std::uint64_t, 8>;  // a bit per voxel of a brick, as in TissueVoxels::Brick::mask
   struct Corner {
-    float before;       // mm from the centre
-    glm::i16vec3 cell;  // of the window
+    float before;       // length of the path from the dab's centre to the corner, mm
+    glm::i16vec3 cell;  // the corner's voxel, counted from low_
   };
   struct Front {
     float distance;
@@ -85,7 +90,7 @@ class BrushReach {
     glm::i16vec3 cell;
   };
   struct Span {
-    std::int32_t first, last;  // x; none where last < first
+    std::int32_t first, last;  // range of x, both included; empty when last < first
   };
 
   bool find_start();
@@ -127,30 +132,33 @@ class BrushReach {
   bool filtered_;
   AffineTransform voxel_from_world_;
 
-  // The dab in voxel coordinates; cells count from low_.
+  // The dab in voxel coordinates. Its window is the box of size_ voxels from voxel low_ on; window voxels (cells) are
+  // counted from low_.
   glm::dvec3 centre_{0};
   double radius_ = 0;
   glm::ivec3 low_{0}, size_{0}, start_{0};
-  std::array<std::vector<float>, 3> squared_;  // of each coordinate, mm2 from the centre
-  std::vector<Span> ball_, grown_ball_;        // a row
-  std::vector<int> bricks_;                    // with tissue in the window
-  const Seams* seams_ = nullptr;               // where one is near the window; ways do not cross it
+  std::array<std::vector<float>, 3> squared_;  // squared distance from the centre along each axis, mm2, by position
+  std::vector<Span> ball_, grown_ball_;  // the ball's span in each row of the window; grown_ball_: of a larger ball
+  std::vector<int> bricks_;              // bricks with tissue in the window
+  const Seams* seams_ = nullptr;         // the tissue's seams when one is near the window, else null
 
-  // Rows of bits of the window, word by word; bit 0 is x = x0_, a multiple of eight.
+  // Rows of bits of the window, words_ words per row. Bit 0 of a row is at x = x0_, a multiple of eight. The rows mark
+  // the voxels that are tissue, in sight (seen) and out of sight (far).
   int x0_ = 0, words_ = 0;
   std::vector<std::uint64_t> tissue_rows_, seen_rows_, far_rows_;
-  // One half of the window, bit |x - start|.
+  // Rows of bits of one half of the window; a voxel's bit has the position |x - start_.x|.
   int half_words_ = 0;
   std::vector<std::uint64_t> half_tissue_, half_seen_, certain_, possible_;
-  // Voxels that are not seen, in the order of far_rows_.
-  std::vector<std::int32_t> far_rank_;  // of the first of each word
+  // Values of the voxels out of sight, in the order of the bits of far_rows_. A voxel's index in this order is its
+  // rank.
+  std::vector<std::int32_t> far_rank_;  // rank of the first voxel of each word of far_rows_
   std::vector<float> far_distance_;
   std::vector<Corner> far_corner_;
   std::vector<std::vector<Front>> bucket_;
   float per_bucket_ = 0;
   std::size_t this_bucket_ = 0;
 
-  std::vector<std::int32_t> allowed_of_;  // #bricks, place in allowed_ or -1
+  std::vector<std::int32_t> allowed_of_;  // #bricks: index in allowed_; -1: not computed yet
   std::vector<Mask> allowed_;
   Reached reached_;
 };

@@ -3,7 +3,7 @@
 
 namespace limber {
 
-// Each made by a source of core/paint/brushes.
+// Each function returns the table's row for one brush and is defined in a source file of core/paint/brushes.
 BrushRule add_brush();
 BrushRule subtract_brush();
 BrushRule set_brush();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What each brush does with a voxel, as one table: strokes, the editor's operators, menus and tool strip read it. A new
-// brush is one source in core/paint/brushes and its line of kBrushes in brush_rule.cpp.
+// The table of brushes, which says what each brush does to a voxel. Strokes, the editor's operators, menus and tool
+// strip use the table. A new brush needs one source file in core/paint/brushes and a line of kBrushes in
+// brush_rule.cpp.
 //
-// A plain brush looks at nothing but the painted bones' weight. A brush that looks around draws weights to a target of
-// its own making. A brush may also change a voxel in a way of its own.
+// A plain brush computes a voxel's new weight only from its old weight of the painted bones. A brush that looks around
+// computes a target from other voxels and moves the voxel's weights towards it. A brush may also change a voxel in its
+// own way. The cover of a voxel is the dab's strength at that voxel, [0, 1].
 #pragma once
 
 #include <functional>
@@ -22,65 +24,69 @@
 
 namespace limber {
 
-// Places in the table. A brush that nothing but the table knows needs no name here.
+// Indices of brushes in the table, for brushes that other code refers to. `w` is the weight of the painted bones, and
+// `cover` the dab's strength at the voxel, [0, 1].
 enum class BrushKind {
   Add,           // w + cover
   Subtract,      // w - cover
-  Set,           // w to `value` by cover
-  Multiply,      // w to w * value by cover
-  Smooth,        // to the mean around, by a Gauss curve as wide as 0.45 radii
-  Sharpen,       // away from it
-  Average,       // to the mean over the dab
-  Smear,         // weights are dragged along the stroke; always accumulates
-  JointCapsule,  // what two bones share at their joint blends over `blend_mm` along them
+  Set,           // w + (value - w) * cover
+  Multiply,      // w + (w * value - w) * cover
+  Smooth,        // blends to the mean around the voxel, weighted by a Gaussian 0.45 radii wide
+  Sharpen,       // moves weights away from the mean that Smooth blends to
+  Average,       // blends to the mean over all voxels of the dab
+  Smear,         // drags weights along the stroke; its dabs always accumulate
+  JointCapsule,  // divides the weight of two bones smoothly between them, over `blend_mm` at their joint
 };
 
 struct Brush {
   BrushKind kind = BrushKind::Add;
   double radius = 10;   // mm
-  double strength = 1;  // [0, 1]: cover at the centre
-  double value = 1;     // Set: [0, 1]; Multiply: 0 and more
+  double strength = 1;  // [0, 1]: cover at the dab's centre
+  double value = 1;     // Set: new weight, [0, 1]; Multiply: factor, 0 or more
   Falloff falloff;
-  double spacing = 0.25;    // between dabs, as a share of the radius
-  bool accumulate = false;  // else a stroke never goes beyond what one dab at its full cover does
+  double spacing = 0.25;    // distance between successive dabs, as a share of the radius
+  bool accumulate = false;  // false: a stroke changes a voxel by its largest cover of all dabs, once
   BrushDistance distance = BrushDistance::Geodesic;
-  bool all_bones = true;  // brushes that look around: all bones of a voxel, not only the painted
-  double blend_mm = 20;   // JointCapsule: where the child's weight goes from 0 to 1 (smoothstep), centred on the joint
-  glm::dvec3 reference{0};  // world at rest, mm: a place of the user's, for brushes that take something from there
+  bool all_bones = true;  // brushes that look around change all bones of a voxel; false: only the painted bones
+  // For JointCapsule: length, centred on the joint, over which the child bone's share rises from 0 to 1 (smoothstep).
+  double blend_mm = 20;
+  glm::dvec3 reference{0};  // world at rest, mm; the user sets this position, from which some brushes copy
 };
 
-// What a brush works on. References stay as long as the stroke.
+// The data that a brush works on. References are valid until the stroke ends.
 struct BrushView {
   const WeightedBody& body;
   const Brush& brush;
-  SmoothWeights& smooth;              // shared by both sides of the body; spread for one dab after the other
-  std::optional<MirrorPlane> mirror;  // of the side that mirrors the stroke; none on the stroke's own
-  std::function<InfluenceView(int brick)> weights;  // that a dab starts from
+  SmoothWeights& smooth;              // shared by both sides of the body; holds the smooth weights of one dab
+  std::optional<MirrorPlane> mirror;  // set for the side that mirrors the stroke; none for the stroke's own side
+  std::function<InfluenceView(int brick)> weights;  // returns the weights of a brick before the dab
 };
 
-// One dab.
+// The parameters of one dab.
 struct DabView {
   const Reached& reached;
   glm::dvec3 centre;  // world, mm
-  glm::dvec3 way;     // from the last dab; 0 for the first
-  float strength;     // [0, 1]
+  glm::dvec3 way;     // movement from the last dab's centre, mm; 0 for the first dab
+  float strength;     // cover at the centre, [0, 1]
 };
 
-// A voxel that a dab covers.
+// A voxel that a dab touches.
 struct VoxelView {
   glm::ivec3 voxel;
-  int brick, cell;       // as in Reached
-  const Influence& own;  // that it starts from
+  int brick, cell;       // as in Reached::Brick::brick and Reached::cell
+  const Influence& own;  // the voxel's influence before the dab
 };
 
-// What a brush keeps of one side of the body while a stroke goes on.
+// The data that a brush keeps for one side of the body during a stroke.
 class BrushSide {
  public:
   virtual ~BrushSide() = default;
   virtual void begin_dab(const DabView&) {}
-  // What the voxel's weights are drawn to, in any unit. False: nothing changes. Called from several threads.
+  // Computes the target: the weights towards which the voxel's weights move. Only their ratios matter. Returns false
+  // when the voxel stays unchanged. Called from several threads.
   virtual bool target_at(const VoxelView&, WeightSum& /*target*/) const { return false; }
-  // Changes a voxel in a way of its own; nothing: it is drawn to the target.
+  // Changes a voxel in the brush's own way. Returns nothing when the brush has none: then the voxel is moved towards
+  // the target.
   virtual std::optional<WeightChange> change(const WeightRules&, Influence&, const glm::ivec3& /*voxel*/,
                                              double /*cover*/) const {
     return std::nullopt;
@@ -88,26 +94,27 @@ class BrushSide {
 };
 
 struct BrushRule {
-  BrushKind kind = {};      // its place in the table
-  std::string id;           // "add": its operator is "skin.brush_add"
-  std::string name;         // "Add"
-  std::string description;  // what it does
+  BrushKind kind = {};      // the brush's index in the table
+  std::string id;           // as in "add"; the brush's operator is then "skin.brush_add"
+  std::string name;         // as in "Add"
+  std::string description;  // hint for the user
   bool takes_value = false;
   bool looks_around = false;
-  bool accumulates = false;  // always
-  bool one_bone = false;     // paints the active bone alone
+  bool accumulates = false;  // dabs always accumulate, whatever Brush::accumulate says
+  bool one_bone = false;     // paints only the active bone
 
-  // Plain brushes, else null: the weight that comes out of one under a cover of [0, 1], where `full` is the whole; and
-  // the same of whole numbers, in 1/65535.
+  // For plain brushes, else null: both functions return a voxel's new weight under a cover. Weights are in 1/65535, and
+  // `full` is the weight that counts as 1. `paint` takes the cover in [0, 1], `paint_whole` in 1/65535.
   double (*paint)(double before, double cover, double full, const Brush& brush) = nullptr;
   int (*paint_whole)(int before, int covered, const Brush& brush) = nullptr;
-  // The others. Throws Error where the brush has nothing to paint there.
+  // For other brushes, else null: creates the brush's data for one side of the body. Throws Error when the brush has
+  // nothing to paint there.
   std::unique_ptr<BrushSide> (*side)(const BrushView& view, std::span<const int> bones) = nullptr;
 };
 
-// By BrushKind.
+// Returns the table, indexed by BrushKind.
 std::span<const BrushRule> brush_rules();
 const BrushRule& rule_of(BrushKind kind);
-const BrushRule* find_brush(std::string_view id);  // null for none
+const BrushRule* find_brush(std::string_view id);  // null when no brush has this id
 
 }  // namespace limber

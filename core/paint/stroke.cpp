@@ -18,13 +18,13 @@ namespace limber {
 namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
-// Bricks done by one thread at a time. Dabs of fewer are not worth waking another for.
+// Number of bricks that a thread paints at a time. For fewer bricks, another thread takes longer to wake than it saves.
 constexpr std::int64_t kBricksAtOnce = 16;
 
 using Target = WeightSum;
-using Words = std::array<std::uint64_t, 2>;  // of an influence
+using Words = std::array<std::uint64_t, 2>;  // the 16 bytes of an Influence
 
-// As two numbers: arrays are compared by a call.
+// Compares two influences as pairs of 64-bit numbers, because comparing arrays would be a function call.
 bool equal(const Influence& a, const Influence& b) {
   const Words first = std::bit_cast<Words>(a), second = std::bit_cast<Words>(b);
   return first[0] == second[0] && first[1] == second[1];
@@ -64,33 +64,34 @@ class Stroke::Work {
   int dab_count = 0;
 
  private:
-  // A brick that the stroke came to.
+  // A brick that the stroke has touched.
   struct Brick {
     int brick = 0;
-    SkinWeights::Influences now;  // as it is now, where shown_ has it as it was; else empty
-    // #chunk: the most any dab has covered each voxel so far, in 1/65535, for either side; empty where dabs accumulate.
+    SkinWeights::Influences now;  // weights that were painted since the last weights(); empty: none
+    // Largest cover of each voxel by any dab so far, in 1/65535. The two lists are for the stroke's side and the
+    // mirrored side of the body. Empty when dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
-    bool shown = false;  // shown_ has it
+    bool shown = false;  // shown_ contains changed weights of this brick
     bool waits = false;
-    std::array<std::uint64_t, 8> waiting{};  // a bit per voxel that is covered more than when it was painted last
-    std::vector<std::uint64_t> blocked;      // a bit per voxel that a lock kept from changing; empty until there is one
+    std::array<std::uint64_t, 8> waiting{};  // a bit per voxel, set when its cover has risen since it was last painted
+    std::vector<std::uint64_t> blocked;  // a bit per voxel, set when a locked bone kept it from changing; empty: none
   };
-  // What is painted on one side of the body.
+  // The painted bones and the brush's data for one side of the body.
   struct Side {
     std::vector<int> bones;
     std::unique_ptr<BrushSide> brush;  // null for plain brushes
   };
-  // Where a brick's waiting voxels are painted.
+  // Working memory for painting the voxels of a brick whose cover has risen.
   struct Canvas {
     std::array<Influence, kBrick * kBrick * kBrick> made;
     std::array<std::uint16_t, kBrick * kBrick * kBrick> at, weight;
   };
   struct Blocked {
     std::vector<std::pair<int, std::int64_t>> by;
-    Brick* brick = nullptr;  // of the voxel at hand, and its place there
+    Brick* brick = nullptr;  // brick of the voxel that is being painted; its index there is `at`
     int at = 0;
-    void add(int bone);  // once for each voxel of a stroke
+    void add(int bone);  // counts the voxel for this locked bone, once per stroke
   };
 
   BrushFilter filter_of(const WeightedBody& body, const StrokeSettings& settings) const;
@@ -106,7 +107,7 @@ class Stroke::Work {
   void cover_plainly(const Reached& reached, const Reached::Brick& part, float strength);
   void paint_waiting();
   void paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked);
-  // A weight under a plain brush.
+  // Returns a weight, in 1/65535, after a plain brush has painted it with a cover.
   std::uint16_t painted(int before, int covered) const {
     return static_cast<std::uint16_t>(rule_.paint_whole(before, covered, brush_));
   }
@@ -125,7 +126,8 @@ class Stroke::Work {
     return side.brush->target_at(voxel, target);
   }
 
-  // Of the weights that this dab starts from.
+  // Returns the weights of a brick from which a dab starts: the current ones when dabs accumulate, else the original
+  // ones.
   InfluenceView source(int brick) const { return accumulate_ ? view(brick) : weights_->chunk(brick); }
   const WeightedBody body_;
   std::shared_ptr<const SkinWeights> weights_;
@@ -137,16 +139,16 @@ class Stroke::Work {
   SmoothWeights smooth_;
   std::array<Side, 2> sides_;
   std::optional<MirrorPlane> mirror_;
-  bool same_bones_ = false;  // on both sides: one cover is enough
+  bool same_bones_ = false;  // both sides paint the same bones, so they share one list of covers
   BoneSet locked_;
   Normalize normalize_;
   bool ready_ = false;
-  std::vector<std::int64_t> blocked_;  // #bones
+  std::vector<std::int64_t> blocked_;  // #bones: voxels that a lock of this bone kept from changing
 
-  std::vector<std::int32_t> slot_of_;  // #bricks, -1: not touched
+  std::vector<std::int32_t> slot_of_;  // #bricks: index in bricks_; -1: not touched by the stroke
   std::vector<Brick> bricks_;
-  SkinWeights shown_;            // what weights() gave last
-  std::vector<Influence> next_;  // of a dab that looks around and accumulates
+  SkinWeights shown_;            // the weights that the last weights() returned
+  std::vector<Influence> next_;  // results of one dab, for a brush that looks around and accumulates
   std::optional<glm::dvec3> last_point_, last_dab_;
   double last_pressure_ = 1, since_dab_ = 0;
 };
@@ -166,7 +168,7 @@ void Stroke::Work::Blocked::add(int bone) {
   by.emplace_back(bone, 1);
 }
 
-// Setting up
+// ---- Construction
 
 BrushFilter Stroke::Work::filter_of(const WeightedBody& body, const StrokeSettings& settings) const {
   BrushFilter filter = settings.filter;
@@ -220,7 +222,8 @@ Stroke::Work::Side Stroke::Work::side_of(std::vector<int> bones, const std::opti
   return side;
 }
 
-// A bone without relatives that are free leaves its weight to the one with the most weight where the stroke begins.
+// Selects the bone that receives the weight taken from the painted bone when all bones related to the painted one are
+// locked. It is the unlocked bone with the most weight where the stroke begins.
 void Stroke::Work::find_nearby(const Reached& reached) {
   ready_ = true;
   const std::vector<int>& bones = sides_[0].bones;
@@ -239,7 +242,7 @@ void Stroke::Work::find_nearby(const Reached& reached) {
   rules_ = WeightRules(body_.armature, locked_, normalize_, best);
 }
 
-// The path
+// ---- The stroke's path
 
 void Stroke::Work::to(const glm::dvec3& point, double pressure) {
   if (!last_point_) {
@@ -274,7 +277,7 @@ void Stroke::Work::dab(const glm::dvec3& centre, double pressure) {
   ++dab_count;
 }
 
-// One dab
+// ---- One dab
 
 void Stroke::Work::touch(const Reached& reached, int plane) {
   for (const Reached::Brick& part : reached.bricks) {
@@ -295,7 +298,8 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, const glm::dvec3
   const int plane = same_bones_ ? 0 : side;
   touch(reached, plane);
   if (sides_[side].brush) sides_[side].brush->begin_dab({reached, centre, way, static_cast<float>(strength)});
-  // What looks around must not see what this dab does.
+  // A brush that looks around must not read weights that the same dab has changed. So its results are kept in next_ and
+  // stored after the dab.
   const bool keep = rule_.looks_around && accumulate_;
   const bool plain = rule_.paint_whole && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_) &&
                      !relative_to_locks_;
@@ -338,15 +342,16 @@ SkinWeights::Influences& Stroke::Work::unpacked(Brick& brick) const {
 
 void Stroke::Work::put(Brick& brick, int at, const Influence& made) const {
   Influence& now = unpacked(brick)[at];
-  // By halves, as they were written: the whole would have to wait for both.
+  // Writes the two halves separately, as they were computed. A copy of all 16 bytes would have to wait until both
+  // halves are in memory.
   now.bone = made.bone;
   now.weight = made.weight;
   brick.dirty = true;
 }
 
-// By far the most frequent brushes: one bone, and nothing to look at but the voxel itself. What comes out hangs on the
-// most that any dab has covered a voxel, so a dab only notes that, and voxels are painted when they are looked at, once
-// for all dabs.
+// Records the cover of one dab, for plain brushes that paint one bone, by far the most frequent ones. Their result
+// depends only on a voxel's largest cover by any dab. So a voxel is painted later, once for all dabs, when its weights
+// are read.
 void Stroke::Work::cover_plainly(const Reached& reached, const Reached::Brick& part, float strength) {
   Brick& brick = bricks_[slot_of_[part.brick]];
   const int count = part.end - part.begin;
@@ -391,7 +396,7 @@ void Stroke::Work::paint_waiting() {
   count_blocked(blocked_in);
 }
 
-// What no lock keeps is painted together, the rest voxel by voxel.
+// Paints the voxels of a brick whose cover has risen: those without locked bones together, the others one by one.
 void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked) {
   auto& [made, at, weight] = canvas;
   const int bone = sides_[0].bones[0], fallback_bone = rules_.fallback_bone(bone);
@@ -436,7 +441,7 @@ void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked)
   brick.dirty = brick.dirty || changed;
 }
 
-// Where dabs accumulate.
+// Paints the voxels of a brick for one dab of a plain brush whose dabs accumulate.
 void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength,
                                  Blocked& blocked_here) {
   Brick& brick = bricks_[slot_of_[part.brick]];
@@ -506,7 +511,8 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
       if (beside == 0) {
         here();
       } else {
-        // What covers more comes first, so that the two sides stay mirror images.
+        // Both sides of the body paint this voxel. The side with the larger cover is applied first, so that the weights
+        // of the two sides stay mirror images.
         const bool other_has = !around || target_at(sides_[other], {voxel, part.brick, cell, own}, other_target);
         if (beside <= covered) here();
         if (other_has)
@@ -545,7 +551,7 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
       }
       to = before + (group / all * kFullWeight - before) * cover;
     }
-    // Rounded by hand: std::lround is a call.
+    // Rounds by adding 0.5 and truncating, because std::lround is a function call.
     const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
     change =
         side.bones.size() == 1 ? rules_.set(influence, side.bones[0], whole) : rules_.set(influence, side.bones, whole);
@@ -553,7 +559,7 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
   if (!change.changed && change.blocked_by >= 0) blocked_here.add(change.blocked_by);
 }
 
-// What came of it
+// ---- The result
 
 std::vector<int> Stroke::Work::take_dirty() {
   paint_waiting();
@@ -566,7 +572,7 @@ std::vector<int> Stroke::Work::take_dirty() {
   return dirty;
 }
 
-// From the original.
+// Returns whether the weights of a brick differ from the original ones.
 bool Stroke::Work::differs(const Brick& brick) const {
   return brick.now.empty() ? brick.shown : weights_->chunk(brick.brick) != brick.now;
 }
@@ -584,7 +590,7 @@ const SkinWeights& Stroke::Work::weights() {
     brick.shown = differs(brick);
     if (brick.shown) shown_.set_chunk(brick.brick, brick.now);
     else shown_.share_chunk(brick.brick, *weights_);
-    brick.now = SkinWeights::Influences();  // frees its memory, too
+    brick.now = SkinWeights::Influences();  // an assignment, because it also frees the memory
   }
   return shown_;
 }

@@ -11,29 +11,31 @@
 namespace limber::phantom {
 
 namespace {
-constexpr double kSkinThickness = 1.8;  // mm, of an adult's limb with its epidermis
-constexpr double kJointGap = 5;         // mm between two bones that cartilage fills
-constexpr double kMuscleReach = 7;      // mm around a muscle's shape that it fills, packed against its neighbours
-constexpr double kMostFat = 40;         // mm, no flesh has more
-constexpr int kBlock = 8;               // voxels
-constexpr int kMargin = 3;              // voxels of air around the body
+constexpr double kSkinThickness = 1.8;  // skin with epidermis of an adult's limb, mm
+constexpr double kJointGap = 5;         // sum of the distances to two bones below which cartilage fills the gap, mm
+constexpr double kMuscleReach = 7;      // upper limit on the distance of a muscle's tissue from the muscle's shape, mm
+constexpr double kMostFat = 40;         // upper bound of Flesh::fat, mm
+constexpr int kBlock = 8;               // edge of a block, voxels
+constexpr int kMargin = 3;              // width of the air around the body, voxels
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;
 constexpr double kFar = 1e30;
-// Shapes are left out of a block by their distance from its centre; loft and ellipsoid distances are not exact.
+// Factor on a block's radius. Shapes further from the block's centre are left out; the factor allows for the distances
+// of lofts and ellipsoids, which are not exact.
 constexpr double kSlack = 1.5;
 
-// The shapes that matter in one block of voxels.
+// The shapes that may hold points of one block of voxels.
 struct Nearby {
-  bool deep = false;  // everywhere below skin and fat
+  bool deep = false;  // true: the whole block lies below skin and fat
   std::vector<int> flesh, bones, inner, muscles, nails;
 };
 
 struct Depth {
-  double surface;  // distance to the skin's outside, negative inside
-  double fat;      // mm
+  double surface;  // signed distance to the skin's outer surface, negative inside, mm
+  double fat;      // thickness of the fat, mm
 };
 
-// Smooth unions along the edges of the tree of flesh, never across them.
+// Computes how deep a point lies below the skin's surface. Each part of the flesh is blended smoothly with its parent
+// part only.
 Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm::dvec3& p, std::vector<double>& at) {
   for (int i : nearby) at[i] = anatomy.flesh[i].solid.distance(p);
   Depth depth{kFar, 0};
@@ -52,7 +54,7 @@ Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm
 Nearby shapes_near(const Anatomy& anatomy, const glm::dvec3& centre, double radius, std::vector<double>& at) {
   const Box block = Box{centre, centre}.grown(radius);
   Nearby nearby;
-  // A blend needs both of its sides; its surface lies within a quarter of its width outside them.
+  // A smooth union needs both of its shapes. Its surface lies outside them by at most a quarter of the blend width.
   double widest = 0;
   for (const Flesh& flesh : anatomy.flesh) widest = std::max(widest, flesh.blend);
   for (int i = 0; i < std::ssize(anatomy.flesh); ++i)
@@ -87,7 +89,8 @@ Label bone_layer(const BonePart& bone, double distance, const glm::dvec3& p) {
   return t > 0 && t < 1 ? kMarrow : kCancellousBone;
 }
 
-// The rule of the head page. `part` becomes 1 + the bone part, 0 outside bones.
+// Returns the label of a point by the rule at the head of anatomy.h. In bone, sets `part` to 1 + index of the bone
+// part.
 Label label_at(const Anatomy& anatomy, const Nearby& nearby, const glm::dvec3& p, std::vector<double>& at,
                std::uint8_t& part) {
   Depth depth{-kFar, 0};
@@ -128,7 +131,7 @@ Grid grid_around(const Anatomy& anatomy, double spacing) {
     throw Error("a phantom cannot be made at this spacing", std::to_string(spacing) + " mm", "choose 0.5 to 10 mm");
   Box box;
   for (const Flesh& flesh : anatomy.flesh) box.add(flesh.solid.box);
-  // Voxel centres at multiples of the spacing, whatever the body's extent.
+  // Voxel centres lie at multiples of the spacing, whatever the extent of the body.
   const glm::ivec3 low = glm::ivec3(glm::floor(box.low / spacing)) - kMargin;
   const glm::ivec3 high = glm::ivec3(glm::ceil(box.high / spacing)) + kMargin;
   Grid grid{high - low + 1, glm::dvec3(spacing), glm::dvec3(low) * spacing, glm::dmat3(1)};
@@ -138,8 +141,8 @@ Grid grid_around(const Anatomy& anatomy, double spacing) {
   return grid;
 }
 
-// Voxels that `choose` gives another label, decided for all of them before any is changed.
-//   choose(voxel index)  label to take, or kLabelCount to keep
+// Gives voxels new labels. All new labels are determined before any voxel is changed.
+//   choose(voxel index)  returns the new label, or kLabelCount to keep the old one
 template <class Choose>
 void relabel(LabelVolume& volume, const Choose& choose) {
   const glm::ivec3 size = volume.grid.size;
@@ -176,7 +179,7 @@ void close_layers(LabelVolume& volume, const std::vector<std::uint8_t>& part) {
   };
   const auto is = [&](Label label) { return [&voxels, label](std::int64_t i) { return voxels[i] == label; }; };
 
-  // Nails lie outside, on skin; all else is closed by skin.
+  // Nail voxels that do not touch air become skin. Then all other tissue that touches air or a nail becomes skin.
   relabel(volume, [&](std::int64_t i) -> Label {
     return voxels[i] == kNail && !touches(i, faces, is(kAir)) ? kSkin : kLabelCount;
   });
@@ -185,7 +188,7 @@ void close_layers(LabelVolume& volume, const std::vector<std::uint8_t>& part) {
     return touches(i, around, is(kAir)) || touches(i, around, is(kNail)) ? kSkin : kLabelCount;
   });
 
-  // Where bones touch the later one gives way.
+  // Where two bones touch, voxels of the bone with the higher number become cartilage.
   const auto is_bone = [&](std::int64_t i) {
     return voxels[i] == kCorticalBone || voxels[i] == kCancellousBone || voxels[i] == kMarrow;
   };
@@ -246,7 +249,7 @@ LabelVolume voxelize(const Anatomy& anatomy, double spacing, Progress& progress)
 
   const glm::ivec3 blocks = (grid.size + kBlock - 1) / kBlock;
   const double radius = 0.5 * kBlock * spacing * std::numbers::sqrt3;
-  // A few layers of blocks at a time, so that progress is told and cancel heard.
+  // Works in layers of blocks, so that progress is reported and cancelling takes effect.
   for (int layer = 0; layer < blocks.z; ++layer) {
     progress.update("phantom", static_cast<double>(layer) / blocks.z);
     parallel_for(std::int64_t{blocks.x} * blocks.y, 4, [&](std::int64_t begin, std::int64_t end) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A body described by shapes, before it is cut into voxels: what its flesh, bones, muscles and organs are, and the one
-// rule that decides which tissue a point belongs to. The rule works at any spacing, and layers thinner than a voxel
-// never drop out: after sampling, tissue that touches air becomes skin, marrow that touches anything but its own bone
-// becomes cortex, and where two bones touch the later one gives way to cartilage.
+// Describes a body by shapes: its flesh, bones, muscles and organs, and the one rule that decides which tissue a point
+// belongs to. voxelize() samples it at any spacing. Layers thinner than a voxel never drop out: after sampling, tissue
+// that touches air becomes skin, marrow or cancellous bone that touches other tissue becomes cortex, and where two
+// bones touch, voxels of the later one in the list become cartilage.
 //
-// A point is, in this order:
-//   air       outside the flesh, a union of parts that each blend only with their parent (so fingers do not fuse)
-//   skin      less than the skin's thickness below the surface; nail in the marked places
+// A point gets the first tissue of this list that applies:
+//   air       outside the flesh, which is a union of parts that blend with their parent only (so fingers do not fuse)
+//   skin      less than the skin's thickness below the surface; nail inside the solids of the nails
 //   bone      inside a bone part: cortex in its outer millimetres, below it cancellous bone or marrow
-//   cartilage between two bones that come close
-//   inner     the first of an ordered list of tendons, vessels, nerves, organs and cavities
-//   muscle    below the fat, the nearest muscle within its reach; fat where none reaches
+//   cartilage between two bones that come close to each other
+//   inner     inside a tendon, vessel, nerve, organ or cavity; the first one of an ordered list
+//   muscle    below the fat, the nearest muscle within its reach; fat where no muscle reaches
 #pragma once
 
 #include <optional>
@@ -87,15 +87,15 @@ enum PhantomLabel : Label {
 
 struct Flesh {
   Solid solid;
-  int parent;    // place in Anatomy::flesh, -1 for the root
-  double blend;  // mm, with the parent
-  double fat;    // mm of fat below its skin
+  int parent;    // index in Anatomy::flesh, -1 for the root
+  double blend;  // width of the smooth union with the parent, mm
+  double fat;    // thickness of the fat below the skin, mm
 };
 
 struct BonePart {
   Solid solid;
-  double cortex;           // mm
-  bool long_bone = false;  // marrow in the shaft a..b, cancellous bone towards its ends; otherwise all cancellous
+  double cortex;           // thickness of the cortical bone, mm
+  bool long_bone = false;  // true: marrow between a and b, cancellous bone beyond; false: cancellous bone everywhere
   glm::dvec3 a{0}, b{0};
 };
 
@@ -106,15 +106,15 @@ struct Region {
 
 struct Anatomy {
   std::vector<Flesh> flesh;
-  std::vector<BonePart> bones;  // 254 or fewer
-  std::vector<Region> inner;    // first match wins
-  std::vector<Region> muscles;  // nearest wins
+  std::vector<BonePart> bones;  // at most 254
+  std::vector<Region> inner;    // tendons, vessels, organs ...; a point belongs to the first one that holds it
+  std::vector<Region> muscles;  // a point belongs to the nearest muscle
   std::vector<Solid> nails;
   Armature armature;
 
   int add_flesh(Solid solid, int parent, double blend, double fat);
   BonePart& add_bone(Solid solid, double cortex);
-  // A bone with a marrow core from a to b.
+  // Adds a bone with a marrow core from a to b.
   BonePart& add_long_bone(Solid solid, double cortex, const glm::dvec3& a, const glm::dvec3& b);
   int add_rig_bone(const std::string& name, int parent, const glm::dvec3& head, const glm::dvec3& tail,
                    const JointLimits& limits = {});
@@ -123,10 +123,11 @@ struct Anatomy {
 JointLimits hinge(const glm::dvec3& axis, double minimum_degrees, double maximum_degrees);
 JointLimits ball(double cone_degrees, double twist_minimum_degrees, double twist_maximum_degrees);
 
-// What every phantom label is.
+// Returns the tissues of the phantom labels that occur in a volume.
 TissueTable phantom_tissues(const LabelVolume& volume);
 
-// Throws Error for a spacing outside [0.5, 10] mm, or one that makes more than kMostVoxels voxels.
+// Samples the anatomy on a grid. Throws Error for a spacing outside [0.5, 10] mm, and for one that makes more than 2^30
+// voxels.
 LabelVolume voxelize(const Anatomy& anatomy, double spacing_mm, Progress& progress);
 
 }  // namespace limber::phantom

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The arm. Joint surfaces are round about the rig's joint centres and axes, and sockets are cut with a gap, so that
-// bones turn past each other without touching through the whole range of each joint.
+// Builds the arm. Joint surfaces are round about the rig's joint centres and axes, and sockets are cut with a gap, so
+// that bones turn past each other without touching over the whole range of each joint. Lengths in mm.
 #include "core/phantom/limbs.h"
 
 namespace limber::phantom {
@@ -9,10 +9,11 @@ namespace {
 using V = glm::dvec3;
 using T = glm::dvec4;  // a point and a radius
 
-constexpr double kElbowZ = -300, kWristZ = -252;  // mm along humerus and forearm
-constexpr V kWristCentre(0, 0, -17);              // in the capitate's head, hand frame
-constexpr double kPronation = 80;                 // degrees from supine: the palm faces the thigh
-constexpr double kGap = 1.6;                      // mm of cartilage in small joints
+// z of the elbow in the humerus's frame, and of the wrist in the forearm's frame.
+constexpr double kElbowZ = -300, kWristZ = -252;
+constexpr V kWristCentre(0, 0, -17);  // centre of the wrist, in the head of the capitate; hand frame
+constexpr double kPronation = 80;     // rotation of the forearm from supine, degrees: the palm faces the thigh
+constexpr double kGap = 1.6;          // thickness of the cartilage in small joints, mm
 
 Cone cone(const Frame& f, const V& a, double radius_a, const V& b, double radius_b) {
   return {f.point(a), f.point(b), radius_a, radius_b};
@@ -24,10 +25,10 @@ Ellipsoid ellipsoid(const Frame& f, const V& centre, const V& radii) { return {f
 
 struct Finger {
   const char* name;
-  V base, head;                   // of the metacarpal, hand frame
-  double spread;                  // degrees towards the thumb
-  std::array<double, 3> lengths;  // of the phalanges, mm
-  double bone, flesh;             // radius of the metacarpal's head, and of the finger there
+  V base, head;                   // ends of the metacarpal, hand frame
+  double spread;                  // angle of the finger towards the thumb, degrees
+  std::array<double, 3> lengths;  // lengths of the phalanges, mm
+  double bone, flesh;             // radius of the metacarpal's head, and of the finger's flesh there
 };
 constexpr Finger kFingers[] = {
     {"Index", {13, 2, -38}, {21, 4, -94}, 9, {42, 25, 19}, 6.8, 9.6},
@@ -35,7 +36,8 @@ constexpr Finger kFingers[] = {
     {"Ring", {-6, 2, -37}, {-14, 4, -90}, -7, {42, 27, 20}, 6.4, 9.3},
     {"Little", {-13, -1, -36}, {-29, -1, -82}, -16, {34, 20, 18}, 5.8, 8.3},
 };
-// Rest bend of knuckle, middle and end joint, and how far each goes from straight [AAOS 1965].
+// Angles of a finger's knuckle, middle and end joint, degrees: the bend at rest, and the largest bend and overextension
+// from straight [AAOS 1965].
 constexpr double kRestBend[] = {14, 20, 10}, kMostBend[] = {90, 100, 80}, kMostBack[] = {30, 0, 0};
 
 class Arm {
@@ -121,7 +123,7 @@ class Arm {
                      {-262, {0, 0}, {20, 28}}},
                     14));
     fore.add(cone(fore_, {24, -16, 6}, 16, {19, -22, -70}, 18), 22)    // brachioradialis
-        .add(cone(fore_, {-24, -2, -20}, 18, {-18, -4, -90}, 19), 22)  // flexors
+        .add(cone(fore_, {-24, -2, -20}, 18, {-18, -4, -90}, 19), 22)  // forearm flexors
         .add(cone(fore_, {-6, 22, 8}, 15, {-4, 25, -40}, 13), 16);     // olecranon
     const int forearm = anatomy_.add_flesh(fore, upper_arm, 22, 3.5);
 
@@ -146,7 +148,7 @@ class Arm {
         .add(cone(upper_, {0, 7, -258}, 8.5, {-27, 5, -292}, 6), 12)  // medial epicondyle
         .add(cone(upper_, {0, 7, -258}, 8.5, {23, 5, -291}, 6), 12)   // lateral epicondyle
         .add(cone(upper_, {17, -3, -6}, 13, {14, 0, -26}, 13), 8);    // greater tubercle
-    // The fossae where the olecranon, the coronoid process and the radial head swing.
+    // Cuts the hollows in which the olecranon, the coronoid process and the radial head move.
     for (int degrees = 50; degrees <= 110; degrees += 15) {
       const double angle = glm::radians(static_cast<double>(degrees));
       humerus.cut(ball_at(upper_, V(-8, 17.5 * std::sin(angle), kElbowZ + 17.5 * std::cos(angle)), 11), 2);
@@ -160,7 +162,7 @@ class Arm {
     humerus
         .add(cone(upper_, {-17, 0, kElbowZ}, 12, {-4, 0, kElbowZ}, 10), 3)    // trochlea
         .add(cone(upper_, {-4, 0, kElbowZ}, 9.5, {14, 0, kElbowZ}, 10.5), 3)  // capitulum
-        .add(ball_at(upper_, V(0), 23), 8);                                   // head
+        .add(ball_at(upper_, V(0), 23), 8);                                   // head of the humerus
     anatomy_.add_long_bone(humerus, 4.2, upper_.point({12, 0, -35}), upper_.point({1, 6, -262}));
   }
 
@@ -192,7 +194,7 @@ class Arm {
   }
 
   void add_hand_bones() {
-    // Eight carpals that ride together, their first row round about the wrist's centre.
+    // The eight carpals are one bone part, since they move together; their first row is round about the wrist's centre.
     Solid carpus;
     carpus
         .add(ellipsoid(hand_, {11, 0, -9}, {8, 8, 9}))          // scaphoid
@@ -206,7 +208,7 @@ class Arm {
     anatomy_.add_bone(carpus, 1.4);
   }
 
-  // One phalanx along -z of `frame`, whose origin is the centre of the head that it turns about.
+  // Adds a phalanx along -z of `frame`. The origin of the frame is the centre of the bone head that it turns about.
   void add_phalanx(const Frame& frame, double length, double head_before, double head, bool last) {
     const double base = 0.98 * head_before, shaft = 0.62 * (last ? head : 0.5 * (head + head_before));
     Solid bone(cone(frame, {0, 0, -(0.6 * head_before + kGap)}, base, {0, 0, -0.30 * length}, shaft * 1.05));
@@ -218,7 +220,7 @@ class Arm {
                            frame.point({0, 0, -0.82 * length}));
   }
 
-  // Pad, nail, and both tendons of a digit whose phalanges start at `joints`.
+  // Adds the flesh, the nail and both tendons of a digit whose phalanges start at `joints`.
   void add_digit_flesh(const std::vector<Frame>& joints, const std::vector<double>& lengths, double flesh,
                        double blend) {
     Solid digit;
@@ -262,7 +264,7 @@ class Arm {
         name + "Metacarpal", hand_bone_, hand_.point(finger.base + V(0, 0, 6)), hand_.point(finger.head),
         mobile ? hinge(hand_.turn_axis(flex), -5, 15) : hinge(hand_.turn_axis(flex), 0, 5));
 
-    // Flesh between the metacarpals.
+    // A muscle fills the space between two metacarpals.
     muscle(kHandMuscles, cone(hand_, finger.base + V(7, -3, -8), 5, finger.head + V(8, -4, 12), 4));
 
     constexpr const char* kPhalanges[] = {"Proximal", "Middle", "Distal"};
@@ -285,7 +287,7 @@ class Arm {
   void add_thumb() {
     const auto& name = plan_.prefix;
     constexpr double kHead = 7, kLengths[] = {45, 33, 27};
-    // Spread to the side, before the palm, and rolled so that its pad faces the fingers.
+    // The thumb is spread to the side, lies in front of the palm, and is rolled so that its pad faces the fingers.
     Frame joint = hand_.at({21, -8, -29}).turned({0, 1, 0}, -36).turned({-1, 0, 0}, 24).turned({0, 0, 1}, -58);
     const V flex(-1, 0, 0);
     Solid metacarpal(cone(joint, {0, 0, -5}, 6.8, {0, 0, -16}, 4.8));
@@ -341,12 +343,12 @@ class Arm {
     muscle(kForearmExtensors, fore_, {{8, 8, -90, 8}, {10, 4, -150, 9}, {11, -6, -210, 5}});
   }
 
-  // Tendons, arteries, veins and nerves.
+  // Adds tendons, arteries, veins and nerves.
   void add_cords() {
     cord(kTendon, {in(upper_, {4, -24, -235}, 4.5), in(upper_, {4, -19, -272}, 3.2), in(fore_, {9, -14, -26}, 3),
                    in(fore_, {9, -8, -45}, 2.6)});
     cord(kTendon, {in(upper_, {0, 23, -205}, 3.5), in(upper_, {-4, 25, -262}, 4), in(fore_, {-8, 24, 8}, 4)});
-    // Through the carpal tunnel to each finger, and over the back of the hand.
+    // Each finger has one tendon through the carpal tunnel and one over the back of the hand.
     for (int i = 0; i < 4; ++i) {
       const Finger& f = kFingers[i];
       const double side = 5 - 3.5 * i;
@@ -358,7 +360,7 @@ class Arm {
             in(hand_, f.head + V(0, 0.62 * f.flesh, 10), 1.3), in(hand_, f.head + V(0, 0.62 * f.flesh, 0), 1.2)});
     }
     cord(kTendon, {in(hand_, {20, 2, 70}, 2), in(hand_, {22, 4, 0}, 1.8),
-                   in(hand_, {27, 0, -34}, 1.5)});                                // abductor of the thumb
+                   in(hand_, {27, 0, -34}, 1.5)});                                // long abductor of the thumb
     cord(kTendon, {in(hand_, {-21, -6, 60}, 2), in(hand_, {-17, -10, -10}, 2)});  // flexor carpi ulnaris
     cord(kArtery, {in(upper_, {-20, -8, -20}, 2.6), in(upper_, {-22, -8, -120}, 2.4), in(upper_, {-16, -16, -230}, 2.3),
                    in(fore_, {0, -20, -18}, 2.2), in(fore_, {0, -12, -40}, 2)});

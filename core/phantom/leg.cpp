@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The leg. As in the arm, joint surfaces are round about the rig's joint centres, with sockets cut around them.
+// Builds the leg. As in the arm, joint surfaces are round about the rig's joint centres, and sockets are cut around
+// them. Lengths in mm.
 #include "core/phantom/limbs.h"
 
 namespace limber::phantom {
@@ -8,9 +9,10 @@ namespace {
 using V = glm::dvec3;
 using T = glm::dvec4;  // a point and a radius
 
-constexpr double kKneeZ = -435, kAnkleZ = -395, kSole = -83;  // mm along thigh and shank; below the ankle
-constexpr double kToeOut = 8;                                 // degrees
-constexpr double kGap = 1.6;                                  // mm of cartilage in small joints
+// z of the knee in the thigh's frame, of the ankle in the shank's, and of the sole in the foot's.
+constexpr double kKneeZ = -435, kAnkleZ = -395, kSole = -83;
+constexpr double kToeOut = 8;  // outward rotation of the foot, degrees
+constexpr double kGap = 1.6;   // thickness of the cartilage in small joints, mm
 
 Cone cone(const Frame& f, const V& a, double radius_a, const V& b, double radius_b) {
   return {f.point(a), f.point(b), radius_a, radius_b};
@@ -21,7 +23,7 @@ Cone ball_at(const Frame& f, const V& centre, double radius) {
 Ellipsoid ellipsoid(const Frame& f, const V& centre, const V& radii) { return {f.at(centre), radii}; }
 
 struct Toe {
-  V base, head, tip;  // of the metatarsal, and of the toe; foot frame
+  V base, head, tip;  // both ends of the metatarsal, and the tip of the toe; foot frame
   double bone, flesh;
 };
 constexpr Toe kToes[] = {
@@ -140,7 +142,7 @@ class Leg {
         .add(cone(thigh_, {-19, 0, kKneeZ}, 21, {19, 0, kKneeZ}, 21), 10)  // condyles
         .add(cone(thigh_, {0, -6, -422}, 21, {0, -7, -425}, 21), 10)
         .add(cone(thigh_, {46, 6, -34}, 16, {50, 8, -8}, 14), 10)  // greater trochanter
-        .add(cone(thigh_, {0, 0, 0}, 14, {42, 4, -34}, 15), 10)    // neck
+        .add(cone(thigh_, {0, 0, 0}, 14, {42, 4, -34}, 15), 10)    // femoral neck
         .add(ball_at(thigh_, V(0), 23.5), 5);
     anatomy_.add_long_bone(femur, 6, thigh_.point({43, 4, -55}), thigh_.point({4, -1, -385}));
     anatomy_.add_bone(Solid(ellipsoid(thigh_, {0, -40, -424}, {21, 9, 22})), 2.5);  // knee cap
@@ -161,7 +163,7 @@ class Leg {
   }
 
   void add_foot_bones() {
-    Solid tarsus(cone(foot_, {-11, 0, 0}, 17, {9, 0, 0}, 17));  // talus, round about the ankle
+    Solid tarsus(cone(foot_, {-11, 0, 0}, 17, {9, 0, 0}, 17));  // the talus, round about the ankle's axis
     tarsus.add(ellipsoid(foot_, {-4, -18, -14}, {16, 24, 14}), 8)
         .add(cone(foot_, {2, 36, -46}, 19, {6, -4, -38}, 15), 8)  // heel
         .add(ellipsoid(foot_, {-10, -44, -24}, {15, 11, 14}), 4)
@@ -178,7 +180,7 @@ class Leg {
           .add(cone(foot_, glm::mix(toe.base, toe.head, 0.75), 0.6 * toe.bone, toe.head, 0.92 * toe.bone), 4);
       anatomy_.add_long_bone(metatarsal, 1.8, foot_.point(glm::mix(toe.base, toe.head, 0.15)),
                              foot_.point(glm::mix(toe.base, toe.head, 0.85)));
-      // Two phalanges: in the small toes the last two are seldom apart.
+      // Each toe has two phalanges, since the last two phalanges of small toes are rarely separate.
       const V along = toe.tip - toe.head;
       const double length = glm::length(along), head = 0.92 * toe.bone, middle = 0.62 * toe.bone;
       const V unit = along / length, joint = toe.head + 0.54 * along;
@@ -232,7 +234,7 @@ class Leg {
                  in(shank_, {-42, 4, -150}, 2), in(shank_, {-28, -12, -380}, 1.8)});
     cord(kNerve, {in(thigh_, {0, 46, 20}, 5), in(thigh_, {4, 30, -120}, 4.6), in(thigh_, {4, 34, -380}, 3.6),
                   in(shank_, {0, 30, -60}, 2.6), in(shank_, {-8, 22, -250}, 2.2), in(shank_, {-20, 24, -375}, 1.8)});
-    for (int side : {-1, 1})  // of the knee
+    for (int side : {-1, 1})  // the collateral ligaments on both sides of the knee
       cord(kLigament, {in(thigh_, {side * 41.0, 2, kKneeZ + 4}, 2.4), in(shank_, {side * 38.0, 4, -52}, 2.4)});
   }
 };

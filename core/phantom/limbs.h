@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The parts that the phantoms are put together from. Each adds its flesh, bones, muscles, tendons, vessels and rig
-// bones to an Anatomy, in a local frame that may be mirrored and turned. Sizes are those of an adult of 1.75 m.
+// Builds the body parts of the phantoms. Each function adds flesh, bones, muscles, tendons, vessels and rig bones of
+// one part to an Anatomy, in a local frame that may be mirrored and turned. Sizes are those of an adult of 1.75 m, in
+// mm.
 #pragma once
 
 #include <string>
@@ -11,38 +12,40 @@
 namespace limber::phantom {
 
 struct LimbPlan {
-  Frame root;            // shoulder or hip centre; x to the side (away from the trunk), y to the back, z up the limb
-  std::string prefix{};  // of rig bone names: "Left", "Right" or ""
+  Frame root;            // at the shoulder or hip centre; x away from the trunk, y to the back, z up along the limb
+  std::string prefix{};  // prefix of the rig bones' names: "Left", "Right" or ""
   int flesh_parent = -1;
   int rig_parent = -1;
-  double bend_degrees = 0;       // of elbow or knee at rest
-  double thinnest_radius = 0.5;  // mm, for vessels, nerves and tendons, so that none is thinner than a voxel
+  double bend_degrees = 0;       // bend of the elbow or knee at rest
+  double thinnest_radius = 0.5;  // least radius of vessels, nerves and tendons, chosen by the voxel size, mm
 };
 
-// From the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.
+// Adds an arm from the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.
 void add_arm(Anatomy& anatomy, const LimbPlan& plan);
-// From the femur to the toes. The foot stands flat in `upright`'s axes, however the leg leans.
+// Adds a leg from the femur to the toes. The foot stands flat in the axes of `upright`, even where the leg leans.
 void add_leg(Anatomy& anatomy, const LimbPlan& plan, const Frame& upright);
-// Pelvis, spine, rib cage, organs, shoulder girdle, neck and head; returns where the limbs join.
+// Where the limbs are attached to the trunk. add_trunk() adds pelvis, spine, rib cage, organs, shoulder girdle, neck
+// and head.
 struct TrunkJoints {
-  int flesh, hips_bone;                // places in the Anatomy's flesh and rig
-  glm::dvec3 left_hip, left_shoulder;  // centres; the right ones lie across x = 0
+  int flesh, hips_bone;                // indices in the Anatomy's flesh and rig
+  glm::dvec3 left_hip, left_shoulder;  // joint centres, mm; those of the right side are mirrored at x = 0
 };
 TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
 
-// The two samples as they stand: a right arm whose shoulder lies at the origin, and a whole body.
+// Return the two phantoms as shapes: a right arm with its shoulder at the origin, and a whole body.
 Anatomy arm_anatomy(double thinnest_radius = 0.5);
 Anatomy body_anatomy(double thinnest_radius = 0.5);
 
-// A motion of the rig's own hierarchy, in BVH axes (Y up) and mm.
+// The rotation of one bone in one frame of a motion. make_motion() returns a motion with the rig's hierarchy, in BVH
+// axes (Y up) and mm.
 struct Turn {
   std::string bone;
-  glm::dvec3 axis;  // world (LPS) at rest
+  glm::dvec3 axis;  // rotation axis at rest, in world axes (LPS)
   double degrees;
 };
 struct MotionFrame {
   std::vector<Turn> turns;
-  glm::dvec3 root_offset{0};  // LPS, mm
+  glm::dvec3 root_offset{0};  // shift of the root, LPS axes, mm
 };
 Motion make_motion(const Armature& armature, const std::vector<MotionFrame>& frames, double frame_time);
 

@@ -9,10 +9,10 @@
 namespace limber::phantom {
 
 namespace {
-// (x, y, z) LPS = (x, -z, y) BVH.
+// Converts a vector from LPS axes (z up) to BVH axes (y up).
 glm::dvec3 bvh_from_lps(const glm::dvec3& p) { return {p.x, p.z, -p.y}; }
 
-// Angles z, x, y in degrees with R = Rz Rx Ry.
+// Returns the Euler angles z, x, y, in degrees, of a rotation R = Rz Rx Ry.
 glm::dvec3 zxy_degrees(const glm::dmat3& r) {
   const double x = std::asin(std::clamp(r[1][2], -1.0, 1.0));
   const double z = std::atan2(-r[1][0], r[1][1]), y = std::atan2(-r[0][2], r[2][2]);

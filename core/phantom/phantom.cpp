@@ -13,13 +13,13 @@ using namespace phantom;
 
 constexpr int kFrames = 60;
 constexpr double kFrameTime = 1.0 / 30;
-constexpr double kArmBend = 25;  // degrees of the elbow at rest, so that its flex axis is defined by the bones alone
-// A relaxed A-pose, in degrees: no limb touches another or the trunk.
+constexpr double kArmBend = 25;  // bend of the elbow at rest, degrees, so that the bones alone define its flex axis
+// Angles of a relaxed A-pose, degrees: no limb touches another one or the trunk.
 constexpr double kArmSpread = 38, kBodyElbowBend = 14, kLegSpread = 6, kKneeBend = 4;
 
 double thinnest(double spacing) { return 0.6 * spacing; }
 
-// 0 at the first and last frame, 1 in between.
+// Returns a smooth rise from 0 at the first frame to 1 in the middle, and back to 0 at the last frame.
 double there_and_back(int frame) { return 0.5 - 0.5 * std::cos(2 * std::numbers::pi * frame / (kFrames - 1)); }
 
 Motion arm_curl(const Armature& armature) {
@@ -35,10 +35,10 @@ Motion arm_curl(const Armature& armature) {
   return make_motion(armature, frames, kFrameTime);
 }
 
-// One stride: the legs half a cycle apart, each arm against its leg.
+// Returns a motion of one stride. The legs are half a cycle apart, and each arm swings against the leg of its side.
 Motion walk(const Armature& armature) {
-  constexpr double kStride = 1300;                  // mm
-  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // a turn about -x swings what hangs down to the front
+  constexpr double kStride = 1300;                  // length of a stride, mm
+  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // rotation axes; about -x, a hanging limb swings to the front
   const auto bump = [](double phase, double centre, double width) {
     const double d = std::remainder(phase - centre, 1.0) / width;
     return std::exp(-d * d);
@@ -54,8 +54,8 @@ Motion walk(const Armature& armature) {
     for (const double side : {1.0, -1.0}) {
       const std::string name = side > 0 ? "Left" : "Right";
       const double phase = cycle + (side > 0 ? 0 : 0.5),
-                   swing = std::cos(2 * std::numbers::pi * phase);  // 0: the heel strikes
-      // Angles near those of gait analysis [Winter 1991]; hip, knee, ankle.
+                   swing = std::cos(2 * std::numbers::pi * phase);  // at phase 0 the heel strikes
+      // The angles of hip, knee and ankle are close to those of gait analysis [Winter 1991].
       turns.push_back({name + "Thigh", forward, 6 + 23 * swing});
       turns.push_back(
           {name + "Shank", axis_of(name + "Shank"), 14 * bump(phase, 0.14, 0.09) + 56 * bump(phase, 0.73, 0.12)});
@@ -77,7 +77,7 @@ Motion walk(const Armature& armature) {
 
 phantom::Anatomy phantom::arm_anatomy(double thinnest_radius) {
   Anatomy anatomy;
-  // A right arm: the left one across x = 0.
+  // add_arm() builds a left arm, which becomes a right arm when it is mirrored.
   add_arm(anatomy, {.root = Frame{}.mirrored_x(), .bend_degrees = kArmBend, .thinnest_radius = thinnest_radius});
   return anatomy;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Procedural anatomy at any spacing: an arm with separate fingers, and a whole body. Each comes with a matching rig
-// (with joint limits), a tissue table and a short motion of its own.
+// Makes procedural sample bodies at any spacing: an arm with separate fingers, and a whole body. Each comes with a
+// matching rig (with joint limits), a tissue table and a short motion.
 #pragma once
 
 #include "core/base/progress.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shapes that the procedural anatomy is modelled from, as signed distances in mm: negative inside, and close
-// enough to a true distance that layers (skin, cortex) cut from it have an even thickness.
+// The shapes of which the procedural anatomy is modelled. Each gives a signed distance in mm, negative inside, that is
+// so close to the true distance that layers (skin, cortex) cut from it have an even thickness.
 //   Cone       a sphere swept from a to b while its radius changes (exact) [Quilez, "Round Cone"]
 //   Ellipsoid  first-order distance, scaled by the gradient
 //   Plate      a triangle thickened by a radius (exact)
-//   Loft       elliptic cross sections at stations along a straight axis, interpolated smoothly; limbs and trunk
-// A Solid applies shapes one after the other: added with a smooth union, or cut away with a smooth difference.
+//   Loft       elliptic cross sections at stations along a straight axis, interpolated smoothly; for limbs and trunk
+// A Solid combines shapes in order: each is added by a smooth union, or cut away by a smooth difference.
 #pragma once
 
 #include <span>
@@ -16,18 +16,19 @@
 
 namespace limber::phantom {
 
-// World from local coordinates, mm. Axes are orthonormal and may mirror, which is how a left limb becomes a right one.
+// The transform from local to world coordinates, mm. Its axes are orthonormal and may mirror, which turns a left limb
+// into a right one.
 struct Frame {
   glm::dvec3 origin{0};
   glm::dmat3 axes{1};
 
   glm::dvec3 point(const glm::dvec3& local) const { return origin + axes * local; }
   glm::dvec3 vector(const glm::dvec3& local) const { return axes * local; }
-  // The world axis of a turn about a local axis: a mirror turns the sense of rotation around.
+  // Returns the world axis of a rotation about a local axis; a mirror reverses the sense of rotation.
   glm::dvec3 turn_axis(const glm::dvec3& local) const { return axes * local * glm::determinant(axes); }
   Frame at(const glm::dvec3& local_origin) const { return {point(local_origin), axes}; }
-  Frame turned(const glm::dvec3& local_axis, double degrees) const;  // about its origin
-  Frame mirrored_x() const;                                          // across the world plane x = 0
+  Frame turned(const glm::dvec3& local_axis, double degrees) const;  // rotates about the frame's origin
+  Frame mirrored_x() const;                                          // mirrors at the world plane x = 0
 };
 
 struct Box {
@@ -56,8 +57,8 @@ struct Plate {
   double radius;
 };
 
-// One cross section: an ellipse (or a superellipse with a higher exponent, squarer) in the frame's xy plane at height
-// z.
+// One cross section of a loft at height z of its frame: an ellipse, or with a higher exponent a more square
+// superellipse.
 struct Station {
   double z;
   glm::dvec2 centre, radii;
@@ -66,8 +67,8 @@ struct Station {
 
 class Loft {
  public:
-  // stations  by falling or rising z, two or more
-  // rounding  radius of the edges of both ends, mm
+  // stations  two or more, in any order
+  // rounding  radius of the edges at both ends, mm
   Loft(const Frame& frame, std::vector<Station> stations, double rounding);
   double distance(const glm::dvec3& p) const;
   Box bounds() const;
@@ -79,7 +80,7 @@ class Loft {
   };
   Frame frame_;
   double low_, high_, rounding_;
-  std::vector<Sample> samples_;  // even in z
+  std::vector<Sample> samples_;  // at equal steps of z
 };
 
 using Shape = std::variant<Cone, Ellipsoid, Plate, Loft>;
@@ -87,24 +88,24 @@ using Shape = std::variant<Cone, Ellipsoid, Plate, Loft>;
 double distance(const Shape& shape, const glm::dvec3& p);
 Box bounds(const Shape& shape);
 
-// Smooth minimum: equals the smaller of a and b where they differ by `blend` or more, and dips below by blend / 4 at
-// most [Quilez, polynomial].
+// Returns a smooth minimum of a and b. It is the smaller one where they differ by `blend` or more, and elsewhere below
+// the smaller one by at most blend / 4 [Quilez, polynomial].
 double smooth_min(double a, double b, double blend);
 
 struct Solid {
   struct Step {
     enum class Kind { Add, Cut } kind;
     Shape shape;
-    double blend;  // mm
+    double blend;  // width of the smooth union or difference, mm
   };
   std::vector<Step> steps;
-  Box box;  // of what was added
+  Box box;  // bounds of the added shapes
 
   Solid() = default;
   explicit Solid(const Shape& shape) { add(shape); }
   Solid& add(const Shape& shape, double blend = 0);
   Solid& cut(const Shape& shape, double blend = 0);
-  // A chain of cones through points with radii.
+  // Adds a chain of cones through points with radii (w).
   Solid& add_tube(const Frame& frame, std::span<const glm::dvec4> points_and_radii, double blend = 0);
   double distance(const glm::dvec3& p) const;
 };

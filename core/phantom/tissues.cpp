@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the phantoms' labels are. Densities after ICRP 89 (2002) and the IT'IS tissue database; Young's moduli in kPa
-// for quasi-static loads: bone after Rho (1998), tendon after Maganaris (1999), cartilage after Athanasiou (1991), skin
-// after Pailler-Mattei (2008), muscle and fat as in finite element models of resting limbs, organs from elastography.
+// The tissue table of the phantoms. Densities are after ICRP 89 (2002) and the IT'IS tissue database. Young's moduli in
+// kPa are for quasi-static loads: bone after Rho (1998), tendon after Maganaris (1999), cartilage after Athanasiou
+// (1991), skin after Pailler-Mattei (2008), muscle and fat as in finite element models of resting limbs, organs from
+// elastography.
 #include "core/phantom/anatomy.h"
 
 namespace limber::phantom {
@@ -13,11 +14,12 @@ struct Row {
   std::uint32_t colour;  // 0xRRGGBB
   TissueKind kind;
   double density, young_modulus, poisson_ratio;
-  int priority;  // hard tissue wins over soft, inner over outer
+  // Where tissues overlap, the higher priority wins: hard tissue over soft, inner tissue over outer.
+  int priority;
 };
 
 using K = TissueKind;
-constexpr std::uint32_t kRed = 0xa9423c;  // muscle, varied a little so that neighbours can be told apart
+constexpr std::uint32_t kRed = 0xa9423c;  // colour of muscle; the other muscles vary it, to be distinct from each other
 
 constexpr Row kRows[] = {
     {kSkin, "skin", 0xe0ac8b, K::Skin, 1.10, 120, 0.48, 10},

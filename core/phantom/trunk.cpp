@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pelvis, spine, rib cage, organs, shoulder girdle, neck and head, in world coordinates: soles at z = 0, middle at
-// x = 0, the belly towards -y. The thoracic vertebrae, ribs and breastbone are one bone part, since they move as one.
+// Builds pelvis, spine, rib cage, organs, shoulder girdle, neck and head in world coordinates, mm: the soles at z = 0,
+// the middle at x = 0, the belly towards -y. The thoracic vertebrae, ribs and breastbone are one bone part, since they
+// move together.
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,7 @@ using T = glm::dvec4;  // a point and a radius
 constexpr V kHip(88, 0, 915), kShoulder(180, 16, 1430);
 constexpr double kSpine[][2] = {{985, 52},  {1020, 44}, {1080, 34}, {1150, 40}, {1250, 60},
                                 {1350, 64}, {1430, 50}, {1500, 34}, {1560, 26}, {1600, 20}};
-// Half width, half depth and middle of the rib cage by height.
+// Cross sections of the rib cage: height z, half width, half depth, and y of the middle, mm.
 constexpr double kCage[][4] = {{1120, 118, 84, 2}, {1170, 128, 92, 2}, {1240, 136, 97, 2}, {1300, 134, 95, 4},
                                {1360, 122, 86, 8}, {1410, 96, 70, 14}, {1445, 62, 50, 20}, {1465, 44, 38, 22}};
 
@@ -146,7 +147,7 @@ class Trunk {
           .add(cone(at(76, -22, 908), 11, at(12, -52, 884), 11), 8)  // pubis
           .add(cone(at(80, 24, 900), 14, at(60, 34, 850), 15), 8)    // ischium
           .add(cone(at(58, 28, 846), 9, at(16, -42, 868), 8), 6)
-          .add(cone(at(38, 70, 1004), 13, at(56, 70, 992), 13), 6);  // to the sacrum
+          .add(cone(at(38, 70, 1004), 13, at(56, 70, 992), 13), 6);  // joint to the sacrum
     }
     pelvis.add(cone({-22, 66, 996}, 22, {22, 66, 996}, 22), 8)
         .add(cone({0, 68, 992}, 24, {0, 96, 935}, 14), 10)
@@ -157,7 +158,7 @@ class Trunk {
     anatomy_.add_bone(pelvis, 3);
   }
 
-  // A vertebra's body, arch and processes. The arch leaves the canal free.
+  // Adds a vertebra's body, arch and processes. The arch leaves the spinal canal free.
   static void add_vertebra(Solid& bone, double z, double height, double width, double depth, double spine_length) {
     const double y = spine_y(z), back = y + depth;
     bone.add(Loft(Frame{V(0, y, z), glm::dmat3(1)},
@@ -195,7 +196,7 @@ class Trunk {
     inner(kDisc, tube(discs));
   }
 
-  // A point of a rib's arc around the cage, 0 at the back, 1 at the front.
+  // Returns a point on a rib's arc around the cage, from t = 0 at the back to 1 at the front.
   static V rib_point(double z, double drop, double t, double side) {
     const double height = z - drop * (1 - std::cos(std::numbers::pi * t)) / 2,
                  angle = std::numbers::pi * (0.10 + 0.78 * t);
@@ -206,7 +207,7 @@ class Trunk {
   void add_rib_cage() {
     Solid cage;
     for (int i = 0; i < 12; ++i) add_vertebra(cage, 1187 + 25 * i, 19, 21 - 0.45 * i, 14 - 0.2 * i, 20);
-    // The arches hold the thoracic vertebrae together.
+    // Rods between the arches join the thoracic vertebrae to one bone part.
     for (double side : {-1.0, 1.0})
       for (int i = 0; i < 11; ++i) {
         const double z = 1187 + 25 * i;
@@ -220,7 +221,7 @@ class Trunk {
         for (double t = 0.08; t < length; t += 0.07) points.push_back(T(rib_point(z, drop, t, side), 5.2));
         cage.add_tube({}, points, 2);
         if (rib >= 10) continue;
-        // Costal cartilage: to the breastbone, from the eighth on to the rib above.
+        // Costal cartilage connects ribs to the breastbone; the eighth to tenth ribs share one point at its lower end.
         const V end = points.back();
         const double goal = rib < 7 ? 1420 - 23 * rib : 1272;
         const V at_sternum(side * 17, -70 - 36 * (1425 - goal) / 160, goal);
@@ -329,7 +330,7 @@ class Trunk {
           tube({{24, 4, 1218, 12}, {62, -8, 1206, 32}, {66, -24, 1166, 34}, {40, -40, 1132, 24}, {2, -34, 1126, 14}},
                14));
     inner(kLiver, Solid(ellipsoid({-58, -8, 1192}, {70, 72, 56})).add(ellipsoid({4, -34, 1204}, {60, 38, 30}), 20));
-    // The colon frames the small intestine, which lies in loops.
+    // The colon surrounds the small intestine, which lies in loops.
     inner(kColon, tube({{-96, -8, 970, 22},
                         {-104, 4, 1060, 21},
                         {-98, 4, 1108, 20},
@@ -352,7 +353,7 @@ class Trunk {
                             (layer == 0 ? 952 + 27 * row : 1060 - 27 * row) + 5 * std::sin(2.3 * step), 12.5));
         }
     inner(kIntestine, tube(loops, 2));
-    // What is left of the belly between its walls, the diaphragm's dome above it.
+    // Visceral fat fills the rest of the belly; the dome of the diaphragm lies above it.
     Solid cavity(Loft({},
                       {{862, {0, 10}, {62, 52}},
                        {920, {0, 4}, {92, 66}, 2.2},
@@ -370,7 +371,7 @@ class Trunk {
 
   void add_chest() {
     for (double side : {-1.0, 1.0}) {
-      // The left lung makes room for the heart by the order of the list.
+      // The heart comes earlier in the list of organs, so it takes its space from the left lung.
       Solid lung(Loft(Frame{V(side * 68, 0, 0), glm::dmat3(1)},
                       {{1165, {0, 14}, {50, 62}},
                        {1215, {0, 10}, {53, 74}},

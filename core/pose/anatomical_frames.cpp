@@ -16,20 +16,24 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-constexpr double kUprightLean = 7.5 * kDegree;  // from the world's axes
-constexpr double kStraightKnee = 20 * kDegree;  // then legs tell the vertical too,
-constexpr double kLegsInLine = 25 * kDegree;    // if they are so far in line with the trunk
-constexpr double kKneeAside = 5 * kDegree;      // varus and valgus of healthy knees [Hsu 1990]
-constexpr double kElbowAside = 8 * kDegree;     // about half of the carrying angle
+constexpr double kUprightLean = 7.5 * kDegree;  // a body within this angle of the world's axes counts as upright
+// The legs are also used to find the body's upright axis if their knees bend by less than kStraightKnee and they
+// deviate from the trunk by less than kLegsInLine.
+constexpr double kStraightKnee = 20 * kDegree;
+constexpr double kLegsInLine = 25 * kDegree;
+constexpr double kKneeAside = 5 * kDegree;   // largest sideways bend of a healthy knee (varus, valgus) [Hsu 1990]
+constexpr double kElbowAside = 8 * kDegree;  // largest sideways bend of an elbow: about half of the carrying angle
 constexpr double kHyperextension = 15 * kDegree;
-constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};  // of a foot against its knee: tibial torsion [Staheli 1985]
-constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // of a palm against its elbow
-constexpr double kSoleSlope = 23 * kDegree;   // of the ankle above the toes' base or tips, sole on the ground
-constexpr double kToeSlope = 8 * kDegree;     // of the toes' base above their tips
-constexpr double kBackwards = 110 * kDegree;  // of a foot's heading: no leg is turned so far
-constexpr double kSteepFoot = 75 * kDegree;   // no heading is told by a foot that points so far down
-constexpr double kRaisedArm =
-    22.5 * kDegree;  // arms raised further rest with thumbs forward, others with palms forward
+// Range of a foot's heading relative to its knee [Staheli 1985].
+constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};
+constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // range of the forearm's pronation, from palms forward
+constexpr double kSoleSlope = 23 * kDegree;   // slope from the toes up to the ankle, with the sole on the ground
+constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base
+constexpr double kBackwards = 110 * kDegree;  // a foot whose heading exceeds this points backwards, which no leg can do
+constexpr double kSteepFoot = 75 * kDegree;   // a foot that points down more steeply than this has no heading
+// Used where the direction of the palm cannot be found from the hand. An arm raised further than this is taken to rest
+// with the thumb forward, any other arm with the palm forward.
+constexpr double kRaisedArm = 22.5 * kDegree;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
@@ -41,7 +45,8 @@ glm::dvec3 unit(const glm::dvec3& v) {
   return length > 1e-12 ? v / length : glm::dvec3(0);
 }
 
-// The world seen from the body's axes; of a right limb in the mirror, so that every limb is a left one.
+// Converts between world axes and the body's axes. For a right limb the body's axes are mirrored, so that every limb
+// can be treated as a left one.
 struct LimbView {
   glm::dmat3 body{1};
   bool right = false;
@@ -50,7 +55,7 @@ struct LimbView {
     const glm::dvec3 v = glm::transpose(body) * world;
     return {right ? -v.x : v.x, v.y, v.z};
   }
-  // Of an axis of rotation, which a mirror leaves along x and turns round along y and z.
+  // Converts an axis of rotation: mirroring keeps its x component and reverses y and z.
   glm::dvec3 seen_axis(const glm::dvec3& world) const {
     const glm::dvec3 v = glm::transpose(body) * world;
     return right ? glm::dvec3(v.x, -v.y, -v.z) : v;
@@ -64,17 +69,18 @@ struct LimbView {
   }
 };
 
-// From hanging to a direction by the shortest way; to straight up by the side.
+// Returns the shortest rotation from hanging straight down to a direction. To straight up, this is a half turn
+// sideways.
 glm::dquat swing_from_hanging(const glm::dvec3& direction) {
   if (direction == glm::dvec3(0)) return kNoTurn;
   if (direction.z > 1 - 1e-9) return about(kY, kPi);
   return shortest_turn(-kZ, direction);
 }
 
-// How far a limb is turned about itself so that what hangs from it bends towards `bend_heading`, but for `aside`
-// across.
-//   below   direction of the lower part, seen from the limb
-//   wanted  the turn without that
+// Returns the limb's rotation about its own axis, radians: the one nearest to `wanted` for which the lower limb bends
+// towards `bend_heading`, and at most by `aside` to the side.
+//   below   direction of the lower limb, in the limb's axes
+//   wanted  the rotation that a straight joint would get
 double turn_about_itself(const glm::dvec3& below, double bend_heading, double aside, double wanted) {
   const double across = std::hypot(below.x, below.y), bend = std::atan2(across, -below.z);
   if (across <= std::sin(aside) && below.z <= 0) return wanted;
@@ -106,7 +112,7 @@ class Measuring {
     arm(side);
   }
 
-  // Bones that were not measured turn with their parents.
+  // Bones that were not measured take the rotation of their parents.
   void fill() {
     for (std::size_t b = 0; b < done_.size(); ++b) {
       const int parent = armature_.bones[b].parent;
@@ -128,7 +134,7 @@ class Measuring {
   bool is_right(BodySide side) const {
     if (side != BodySide::Middle) return side == BodySide::Right;
     if (const auto hand = is_right_hand(skeleton_)) return *hand;
-    // A limb on its own leans outwards on its way down.
+    // A single limb without a side in its names belongs to the side to which it leans on its way down.
     for (const auto& [above, below] : {std::pair{BodyPart::Thigh, BodyPart::Foot},
                                        {BodyPart::UpperArm, BodyPart::Hand},
                                        {BodyPart::UpperArm, BodyPart::Forearm}}) {
@@ -150,7 +156,8 @@ class Measuring {
     result_.frames[bone].hinge = AnatomicalHinge{sign * axis, at_rest};
   }
 
-  // A hinge's own turn about the limb above it, from the way that the limb was swung; nothing without a hinge.
+  // Returns how far the hinge of `bone` is turned about the limb above it, relative to that limb's frame `swung`.
+  // Returns nothing if the bone has no hinge, or one along the limb.
   std::optional<double> turn_of_hinge(int bone, const glm::dquat& swung, double sign) const {
     if (!hinge_of(bone)) return std::nullopt;
     glm::dvec3 axis = glm::conjugate(swung) * view_.seen_axis(hinge_of(bone)->axis) * sign;
@@ -158,7 +165,8 @@ class Measuring {
     return std::atan2(axis.y, axis.x);
   }
 
-  // The frame of a lower limb, by the bend of its joint. `sign`: of the turn about x that flexes.
+  // Returns the frame of a lower limb (shank or forearm), including the bend at knee or elbow.
+  //   sign  +1 or -1: the sign of the rotation about x that flexes the joint
   glm::dquat bent_frame(int bone, const glm::dquat& above, double sign) {
     const glm::dvec3 below = direction(bone) == glm::dvec3(0) ? -kZ : glm::conjugate(above) * direction(bone);
     if (!hinge_of(bone)) {
@@ -215,11 +223,13 @@ void Measuring::leg(BodySide side) {
   set(*shank, shank_frame);
   if (!foot_bone) return;
   const glm::dvec3 seen = glm::conjugate(shank_frame) * direction(*foot_bone);
-  // A foot that runs to the heel, or of a side that is called by the other's name, keeps its place under the shank.
+  // A foot that points backwards keeps its position relative to the shank: either its bone runs to the heel, or left
+  // and right are swapped in the names.
   if (std::abs(heading_of(seen)) < kBackwards) foot(*foot_bone, shank_frame, heading_of(seen), seen);
 }
 
-// Its pitch is told by the toes where there are any: their slope on the ground is known, and the foot keeps its shape.
+// Sets the frames of foot and toes. The toes, if there are any, determine the foot's pitch in the anatomical position:
+// their slope on the ground is known, and the angle between foot and toes stays as it is at rest.
 void Measuring::foot(int bone, const glm::dquat& shank, double heading, const glm::dvec3& seen) {
   const auto slope = [&](const glm::dvec3& v) { return std::atan2(-v.z, glm::dot(v, about(kZ, heading) * -kY)); };
   double neutral = kSoleSlope;
@@ -239,7 +249,7 @@ void Measuring::foot(int bone, const glm::dquat& shank, double heading, const gl
     set(bone, shank * about(axis, dorsiflexion), about(kZ, kept));
   }
   if (!toes) return;
-  // Toes keep their shape at rest.
+  // The toes keep the angle to the foot that they have at rest.
   set(*toes, shank * at_rest, about(kZ, kept));
   if (hinge_of(*toes)) set_hinge(*toes, shank * about(kZ, heading) * -kX, 0);
 }
@@ -261,7 +271,7 @@ void Measuring::arm(BodySide side) {
   const glm::dquat bent = upper ? bent_frame(*forearm, upper_frame, -1) : swing_from_hanging(direction(*forearm));
   auto& pronation = result_.pronation[side];
   pronation.at_rest = pronation_of_hand(side, bent, raised);
-  // A hinge cannot turn about the limb; then the hand does all of it.
+  // A forearm with a hinge cannot turn about its own length, so the hand takes the whole pronation.
   pronation.forearm_share = hinge_of(*forearm) || *forearm == result_.only_root ? 0
                             : find(BodyPart::Hand, side)                        ? 0.5
                                                                                 : 1;
@@ -269,7 +279,8 @@ void Measuring::arm(BodySide side) {
   hand(side, bent, pronation.at_rest);
 }
 
-// Between -90 and 270 degrees: pronation from palms forward, by where the palm faces.
+// Returns the forearm's pronation, radians, judged by the direction that the palm faces. It is 0 for palms forward, and
+// between -90 and 270 degrees.
 double Measuring::pronation_of_hand(BodySide side, const glm::dquat& forearm, double raised) const {
   const auto across = across_palm(skeleton_, side);
   const auto along = along_hand(skeleton_, side);
@@ -295,7 +306,7 @@ void Measuring::hand(BodySide side, const glm::dquat& forearm, double pronation)
     result_.frames[finger].hinge = hinge;
 }
 
-// Within a few degrees of the world's axes a body is taken to stand along them.
+// Returns the signed world axes that are nearest to the given axes.
 glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
   glm::dmat3 nearest(0);
   for (int column = 0; column < 3; ++column) {
@@ -307,7 +318,8 @@ glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
   return nearest;
 }
 
-// Up along legs that are straight and, seen from the side, both in line with the trunk; zero where they are not.
+// Returns the upward direction along the legs if both legs are straight and, seen from the side, in line with the
+// trunk; else zero.
 glm::dvec3 up_of_legs(const Skeleton& skeleton, const glm::dvec3& trunk, const glm::dvec3& across) {
   const auto from_the_side = [&](const glm::dvec3& v) { return v - unit(across) * glm::dot(v, unit(across)); };
   glm::dvec3 up(0);
@@ -339,7 +351,8 @@ glm::dmat3 upright_axes(const Armature& armature) {
     const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
     if (left && right) across += *left - *right;
   }
-  // Trunks of upright bodies lean back on their way up and legs on their way down; the mean of both stands upright.
+  // In an upright body, the trunk leans back on its way up and the legs lean back on their way down. The mean of their
+  // directions is upright.
   const glm::dvec3 legs = up_of_legs(skeleton, *trunk, across);
   const glm::dvec3 up = legs == glm::dvec3(0) ? *trunk : unit(*trunk) + unit(legs);
   const std::optional<glm::dmat3> axes = axes_of(up, across);

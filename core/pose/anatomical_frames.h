@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far each bone of a rig at rest is from the anatomical position: upright, arms and legs straight, arms hanging,
-// palms and feet forward. Bones are known by their names (rig/joint_names.h); their directions tell the rest.
+// Finds how far each bone of a rig at rest is from the anatomical position: upright, arms and legs straight, arms
+// hanging, palms and feet forward. Bones are recognised by their names (rig/joint_names.h) and measured by their
+// directions.
 //
-// A limb's direction is told by its joints. How it is turned about that direction is told by the joint below it, which
-// bends one way: the plane of a bent knee or elbow. A straight one has no plane; then the limb is taken to have been
-// swung to where it is from the anatomical position by the shortest way, without a turn about itself, and is turned
-// further only as far as the foot's heading or the palm would otherwise be out of what feet and forearms reach.
+// The positions of a limb's joints give its direction. Its rotation about this direction follows from the joint below
+// it, which bends only one way: a bent knee or elbow spans a plane. A straight knee or elbow spans none. The limb is
+// then assumed to have swung from the anatomical position by the shortest way, without a rotation about itself. It is
+// turned further only as far as needed to bring the foot's heading or the palm into the range that feet and forearms
+// reach.
 //
-// Joints with a hinge among the rig's limits bend about that hinge and nothing else; all others are straightened
-// wholly, so that a limb's direction in a pose is exactly the one that its angles say.
+// A joint that is a hinge in the rig's limits bends only about this hinge. All other joints are straightened
+// completely, so that a limb's direction in a pose is exactly the one that its angles give.
 #pragma once
 
 #include <map>
@@ -22,16 +24,18 @@
 
 namespace limber {
 
-// A bone that bends about one axis, as the rig says or because it is a finger's.
+// The hinge of a bone that bends about one axis only: by the rig's limits, or because it is a finger bone.
 struct AnatomicalHinge {
-  glm::dvec3 axis{0};  // unit, world at rest: a positive turn flexes (toes: extends; ankles: dorsiflexion)
-  double at_rest = 0;  // radians of flexion at rest
+  glm::dvec3 axis{0};  // unit vector in the world at rest: a positive turn flexes (toes: extends; ankles: dorsiflexion)
+  double at_rest = 0;  // flexion at rest, radians
 };
 
 struct BoneFrame {
-  // Turns the bone, in the world, from rest to the anatomical position. A bone without a role turns with its parent.
+  // The rotation of the bone, in world axes, from rest to the anatomical position. A bone whose name means no known
+  // body part takes the rotation of its parent.
   glm::dquat anatomical_from_rest{1, 0, 0, 0};
-  // Where the joint's axes lie in the anatomical position, from the body's: a foot turned out bends about its own axis.
+  // The rotation from the body's axes to the joint's axes in the anatomical position. They differ for a foot that is
+  // turned out, since it bends about its own axis.
   glm::dquat joint_axes{1, 0, 0, 0};
   std::optional<AnatomicalHinge> hinge;
 };
@@ -39,15 +43,17 @@ struct BoneFrame {
 struct BodyFrames {
   glm::dmat3 body{1};  // columns: the body's left, back and up in the world
   std::map<JointRole, int> bone;
-  std::vector<BoneFrame> frames;  // #bones
-  bool feet_point_back = false;   // so that left and right may be exchanged
-  int only_root = -1;  // the bone that carries all others, where it is one: its joint would turn the whole rig
-  // By side, as in BodySide: the angle from palms forward at rest, and the part of it that the forearm's bone takes.
+  std::vector<BoneFrame> frames;  // one for each bone of the rig
+  bool feet_point_back = false;   // true: a foot points backwards, so left and right may be swapped in the bones' names
+  int only_root = -1;  // index of the root bone if the rig has only one (its joint turns the whole rig), else -1
+  // The forearm's pronation at rest, radians from palms forward, and the share of a pronation that the forearm bone
+  // takes; the hand takes the rest.
   struct Pronation {
     double at_rest = 0, forearm_share = 0;
   };
   std::map<BodySide, Pronation> pronation;
-  // Which side of the body a limb is of; limbs without a side are told by their shape.
+  // For each side, whether its limbs are right limbs. For limbs without a side in their names (Middle), their shape
+  // decides.
   std::map<BodySide, bool> is_right;
 
   std::optional<int> find(BodyPart part, BodySide side, int index = 0) const;
@@ -55,9 +61,9 @@ struct BodyFrames {
 
 BodyFrames body_frames(const Armature& armature);
 
-// The body's axes from its hips and shoulders, its trunk and its legs. Where they lie within 7.5 degrees of the world's
-// axes they are the world's: joints of a body that stands upright are off by as much. Upright (LPS) where the rig does
-// not tell.
+// Returns the body's axes (left, back, up) in the world, found from its hips, shoulders, trunk and legs. If they are
+// within 7.5 degrees of the world's axes, it returns the world's axes, since the joints of an upright body deviate by
+// as much. Returns the LPS axes if the rig does not show the body's axes.
 glm::dmat3 upright_axes(const Armature& armature);
 
 }  // namespace limber

@@ -17,8 +17,8 @@ using enum BodyJoint;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
-// Square to the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane: turned about
-// it, the blade glides over them [Kapandji, The Physiology of the Joints].
+// The normal of the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane. When the
+// blade turns about this axis, it glides over the ribs [Kapandji, The Physiology of the Joints].
 const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
@@ -28,12 +28,12 @@ constexpr BodyJoint kJoints[] = {Spine, Neck,  Girdle, Shoulder, Elbow, Forearm,
 
 bool is_finger(BodyJoint joint) { return joint >= Thumb; }
 
-// Radians of a motion, zero where it is not said.
+// Returns the angle of a joint's motion (such as flexion) in radians, zero if it is not given.
 double radians_of(const JointMotions& motions, std::size_t motion) {
   return motions[motion].value_or(0) * std::numbers::pi / 180;
 }
 
-// A left joint's turn from the anatomical position, in the body's axes.
+// Returns the rotation of a left joint from the anatomical position, in the body's axes.
 glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   const double a = radians_of(motions, 0), b = radians_of(motions, 1), c = radians_of(motions, 2);
   switch (joint) {
@@ -51,16 +51,17 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   }
 }
 
-// Degrees between a hanging arm and one that the shoulder turns so.
+// Returns how far these shoulder angles raise the arm from hanging down, degrees.
 double raise_of(const JointMotions& shoulder) {
   const glm::dvec3 arm = turn_of(Shoulder, shoulder) * -kZ;
   return glm::degrees(std::acos(std::clamp(-arm.z, -1.0, 1.0)));
 }
 
-// Of an arm's raise beyond the first 30 degrees a third is the shoulder blade's, and half of that is the collarbone's
-// at its inner end, the other half the joint's between both [Inman, Saunders & Abbott 1944, Observations on the
-// function of the shoulder joint]. Collarbones whose own joint is not named take their share; a blade that moves as one
-// with them would leave the ribs with more.
+// Adds the shoulder rhythm: beyond the first 30 degrees by which an arm is raised, the shoulder blade contributes a
+// third of the motion. Half of this third happens at the collarbone's inner end, the other half between collarbone and
+// blade [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint]. Here only the first half,
+// a sixth, is added, and only to collarbones for which no angles are requested. If a blade that moves as one with the
+// collarbone turned more, it would leave the ribs.
 JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
   constexpr double kSetting = 30, kShare = 1.0 / 6;
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
@@ -72,7 +73,7 @@ JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
   return angles;
 }
 
-// The bones that a joint turns, from the body outwards.
+// Returns the bones that a joint turns, from the trunk outwards.
 std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   std::vector<int> bones;
   const auto add = [&](BodyPart part, int index) {
@@ -85,7 +86,7 @@ std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
     if (joint.joint == Neck) add(BodyPart::Head, 0);
   } else if (is_finger(joint.joint)) {
     for (int segment = 1; segment <= 3; ++segment) add(part, segment);
-    // A hand whose fingers are one bone bends it as its middle finger.
+    // If one bone stands for all fingers, it bends as the middle finger.
     if (bones.empty() && joint.joint == Middle) add(BodyPart::Fingers, 0);
   } else {
     add(part, 0);
@@ -93,7 +94,8 @@ std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   return bones;
 }
 
-// The hand that does its part of a pronation.
+// Returns the hand bone that shares the forearm's pronation. Returns nothing if there is no hand bone, or if it is the
+// only root.
 std::optional<int> hand_of_forearm(const BodyFrames& frames, BodySide side) {
   const auto hand = frames.find(BodyPart::Hand, side);
   return hand && *hand != frames.only_root ? hand : std::nullopt;
@@ -108,7 +110,8 @@ bool has_on_a_side(const BodyFrames& frames, BodyJoint joint) {
   return has(frames, {joint, BodySide::Left}) || has(frames, {joint, BodySide::Right});
 }
 
-// The joint on the side that the rig has it on, where none is said.
+// Adds the side to a joint without one, if the rig has the joint on one side only. Throws Error if the rig does not
+// have the joint, or has it on both sides.
 SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::string& where) {
   if (has(frames, joint)) return joint;
   const std::string known = joints_of_rig(frames);
@@ -126,7 +129,8 @@ SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::s
               "use what it has: " + known);
 }
 
-// Turns of all bones in the world, joint by joint. Bones are asked for in any order.
+// Computes the rotations of all bones in world axes. Each rotation is computed when it is first needed, since bones may
+// depend on bones that come later.
 class Posing {
  public:
   Posing(const Armature& armature, const BodyFrames& frames, const Pose& base, const JointAngles& angles)
@@ -152,11 +156,11 @@ class Posing {
   }
 
  private:
-  // What is asked of a bone, by its joints' motions.
+  // The joint angles that are requested of one bone.
   struct Wanted {
     std::vector<std::pair<SidedJoint, JointMotions>> joints;
-    double share = 1;        // of a spine's turn
-    std::size_t motion = 0;  // of a finger's
+    double share = 1;        // share of the spine's or neck's rotation that this bone takes
+    std::size_t motion = 0;  // for a finger bone: index into JointMotions
   };
 
   void want(const SidedJoint& joint, const JointMotions& motions) {
@@ -170,12 +174,12 @@ class Posing {
       if (is_finger(joint.joint))
         wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
     }
-    // The hand does the forearm's part of a pronation that the forearm cannot do.
+    // The hand takes the share of the pronation that the forearm does not take.
     const auto hand = joint.joint == Forearm ? hand_of_forearm(frames_, joint.side) : std::nullopt;
     if (hand) wanted_[static_cast<std::size_t>(*hand)].joints.emplace_back(joint, motions);
   }
 
-  // Fingers that hang from the forearm go with the hand.
+  // A finger bone whose parent is the forearm follows the hand all the same.
   void follow_hands() {
     followed_.assign(armature_.bones.size(), -1);
     for (const auto& [role, bone] : frames_.bone) {
@@ -212,7 +216,8 @@ class Posing {
     return glm::normalize(now);
   }
 
-  // The bone that a joint's angles count from: the trunk for an arm, else what the bone hangs from.
+  // Returns the bone that a joint's angles are relative to: for a shoulder the collarbone's parent, else the bone's own
+  // parent.
   int reference_of(int bone, BodyJoint joint) const {
     int above = armature_.bones[static_cast<std::size_t>(bone)].parent;
     if (joint != Shoulder) return above;
@@ -222,7 +227,7 @@ class Posing {
     return above;
   }
 
-  // How the bone has turned from its place in the anatomical position.
+  // Returns the bone's rotation from the anatomical position.
   glm::dquat from_anatomical(int bone, const glm::dquat& turned) const {
     return bone < 0 ? kNoTurn
                     : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
@@ -262,7 +267,7 @@ class Posing {
     return above * world * frame.anatomical_from_rest;
   }
 
-  // A hinge in place of what the pose has.
+  // Returns the bone's rotation after its joint's rotation was replaced by a flexion of the hinge.
   glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
     return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) *
            about(hinge.axis, flexion - hinge.at_rest);
@@ -274,14 +279,16 @@ class Posing {
     return sine > 0 ? v * (2 * std::atan2(sine, q.w) / sine) : glm::dvec3(0);
   }
 
-  // Forearm and hand have joints of two names: the one that is not named keeps its turn.
+  // The forearm bone is moved by the elbow and the forearm joint, the hand bone by the wrist and the forearm joint.
+  // This function replaces the rotation of one of these two joints and keeps that of the other.
   glm::dquat arm_turn(int bone, const glm::dquat& before, const SidedJoint& joint, const JointMotions& motions) const {
     const auto found = frames_.pronation.find(joint.side);
     const BodyFrames::Pronation pronation = found == frames_.pronation.end() ? BodyFrames::Pronation{} : found->second;
     const bool is_hand = frames_.find(BodyPart::Hand, joint.side) == bone;
     const double share = is_hand ? 1 - pronation.forearm_share : pronation.forearm_share;
     if (joint.joint == Forearm && share == 0) return before;
-    // The pronation is about the limb: the first turn of a hand, the last of a forearm.
+    // The pronation is a rotation about the limb's length. It is the first factor of a hand's rotation, and the last
+    // factor of a forearm's.
     const glm::dmat3 m = glm::mat3_cast(before);
     const glm::dquat kept = about(kZ, is_hand ? std::atan2(-m[1].x, m[1].y) : std::atan2(-m[1].x, m[0].x));
     if (joint.joint == Elbow) return turn_of(Elbow, motions) * kept;
@@ -308,14 +315,14 @@ Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const
 }
 
 JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, const std::string& where) {
-  // Of what is said for both sides or for a whole hand, the rig need not have all.
+  // A request for both sides or for a whole hand may name joints that the rig does not have. They are left out.
   JointAngles found;
   for (const auto& [joint, motions] : angles)
     if (angles.size() == 1 || has(frames, joint) ||
         (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
       found[sided(frames, joint, where)] = motions;
   if (!found.empty() || angles.empty()) return found;
-  // A limb whose names say no side is both sides that there are.
+  // A limb without a side in its names takes the angles that are requested for either side.
   for (const auto& [joint, motions] : angles)
     if (has(frames, {joint.joint, BodySide::Middle})) found[{joint.joint, BodySide::Middle}] = motions;
   if (found.empty()) sided(frames, angles.begin()->first, where);
@@ -326,7 +333,7 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
   JointAngles known;
   for (const auto& [joint, motions] : angles) {
     if (has(frames, joint)) known[joint] = motions;
-    // A limb whose names say no side is posed as the one that its shape says it is.
+    // A limb without a side in its names takes the angles of the left or the right side, whichever its shape resembles.
     const bool right = joint.side == BodySide::Right;
     const SidedJoint sideless{joint.joint, BodySide::Middle};
     const auto shape = frames.is_right.find(BodySide::Middle);
@@ -389,7 +396,7 @@ std::string joints_of_rig(const BodyFrames& frames) {
 }
 
 std::string beyond_limits(const Armature& armature, const Pose& pose) {
-  constexpr double kShown = 0.05;  // degrees
+  constexpr double kShown = 0.05;  // degrees; a bone beyond its limits by less is not listed
   constexpr int kNamed = 8;
   std::string names;
   int count = 0;

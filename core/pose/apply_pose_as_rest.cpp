@@ -18,7 +18,7 @@ Armature with_pose_as_rest(const Armature& armature, const Pose& pose) {
     bone.roll = roll_of(bone, posed[b].rotation * rest_axes(before)[0]);
     JointLimits& limits = bone.limits;
     if (limits.axis == glm::dvec3(0)) continue;
-    // A hinge turns about an axis of the bone above, a ball about one of its own.
+    // A hinge's axis moves with the parent bone, a ball joint's axis with the bone itself.
     const bool hinge = limits.type == JointLimits::Type::Hinge;
     const glm::dquat carries = !hinge              ? posed[b].rotation
                                : before.parent < 0 ? glm::dquat(1, 0, 0, 0)

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose becomes the rest of its rig: the bones stay where the pose has them and are at rest there.
+// Makes a pose the rest pose of its rig: the bones stay where the pose has moved them.
 #pragma once
 
 #include "core/rig/pose.h"
 
 namespace limber {
 
-// Joints go on allowing what they allowed. A hinge's range is counted from its new rest, and holds it also where the
-// pose went beyond the old range; a ball's cone and twist are about the new rest.
+// Returns the rig with the pose as its rest pose. The limits of a hinge are measured from the new rest pose and keep
+// their range; if the pose was beyond the limits, the range is widened to contain it. The cone and twist limits of a
+// ball joint keep their size around the new rest pose.
 Armature with_pose_as_rest(const Armature& armature, const Pose& pose);
 
 }  // namespace limber

@@ -44,7 +44,7 @@ constexpr BodyPose kPoses[] = {
     {"A", "Arms straight and half way down, thumbs forward.", "shoulders abduction=45; forearms pronation=90"},
 };
 
-// Joints that a pose of the whole body sets also where it says nothing of them.
+// The joints that every body pose sets. Those that a pose does not name take the anatomical position.
 constexpr BodyJoint kLimbs[] = {BodyJoint::Shoulder, BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist,
                                 BodyJoint::Hip,      BodyJoint::Knee,  BodyJoint::Ankle};
 

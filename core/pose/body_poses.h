@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses that any body can take, by the angles of its joints from the anatomical position.
+// Named poses for any body ("sit", "walk"), given by the angles of its joints from the anatomical position.
 #pragma once
 
 #include <span>
@@ -15,35 +15,37 @@ namespace limber {
 
 struct BodyPose {
   std::string_view name;         // "sit"
-  std::string_view description;  // a sentence
-  // Requests of joint_angles.h with a semicolon between. Limbs stand in the anatomical position where nothing is said;
-  // spine, neck, fingers and toes keep their rest, collarbones go with raised arms.
+  std::string_view description;  // a full sentence
+  // Joint requests (joint_angles.h), separated by semicolons. Limb joints that are not named take the anatomical
+  // position; spine, neck, fingers and toes keep their rest pose, and collarbones follow raised arms.
   std::string_view joints;
 };
 
 std::span<const BodyPose> body_poses();
 
-// By its name in any case, "_" as good as "-". throws Error that lists the names
+// Finds a body pose by its name, in upper or lower case; "_", "-" and blanks are equal. Throws Error that lists the
+// known names.
 const BodyPose& require_body_pose(const std::string& name, const std::string& where);
 
 JointAngles angles_of(const BodyPose& pose);
 
-// What is asked of a body: a pose by its name, single joints over it, either or both.
+// A requested pose: the name of a body pose, single joints that override it, or both.
 struct PoseRequest {
-  std::string name;                 // of body_poses(); empty: none
-  std::vector<std::string> joints;  // requests of joint_angles.h
+  std::string name;                 // one of body_poses(); empty: none
+  std::vector<std::string> joints;  // joint requests (joint_angles.h)
 
   bool empty() const { return name.empty() && joints.empty(); }
 };
 
-// `pose` with the joints that are asked for; of a named pose what the rig lacks is left out. `warnings` gets a line for
-// each asked angle that adults do not reach, and one that lists bones beyond the rig's own limits. throws Error for a
-// name or a joint that is not known or that the rig lacks
+// Returns `pose` with the requested joint angles. Joints of a named pose that the rig does not have are left out. Adds
+// to `warnings` a line for each requested angle that adults do not reach, and lines for bones beyond the rig's own
+// limits and for other doubts about the rig. Throws Error for an unknown name or joint, or a requested joint that the
+// rig does not have.
 Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request,
                   std::vector<std::string>& warnings);
 
-// The named poses that this rig can take, as entries of a library (pose_library.h): with all bones of the joints that
-// they set, and without pictures. None where no limb's joint is known.
+// Returns the named poses that this rig can take, as entries of a pose library without pictures. Each entry contains
+// the bones of all joints that the pose sets. Returns an empty library if no limb joint is recognised.
 PoseLibrary body_pose_library(const Armature& armature);
 
 }  // namespace limber

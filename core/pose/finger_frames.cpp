@@ -11,10 +11,15 @@ namespace limber {
 namespace {
 
 constexpr BodyPart kFingers[] = {BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
-constexpr double kCurled = 0.5;  // sine of 30 degrees, summed along the finger: it tells the plane
-constexpr double kAskew = 0.8;   // cosine of 37 degrees: a finger curled further aside is crooked, not curled
-constexpr double kSided =
-    0.26;  // sine of 15 degrees, summed along all fingers: what tells a left hand from a right one
+// Sum of the sines of a finger's bends. A finger with a larger sum (30 degrees in one bend) is curled enough to show
+// the plane in which it bends.
+constexpr double kCurled = 0.5;
+// Cosine of 37 degrees. A finger whose curl axis deviates further from the line across the palm counts as crooked, not
+// curled.
+constexpr double kAskew = 0.8;
+// Sum of the sines of the bends of all fingers (15 degrees in one bend) from which a left hand can be told from a right
+// hand.
+constexpr double kSided = 0.26;
 
 glm::dvec3 unit(const glm::dvec3& v) {
   const double length = glm::length(v);
@@ -26,7 +31,7 @@ std::optional<int> bone_of(const Skeleton& skeleton, BodyPart part, BodySide sid
   return found == skeleton.joint.end() ? std::nullopt : std::optional(found->second);
 }
 
-// The joint between palm and finger.
+// Returns the position of the knuckle, the joint between palm and finger.
 std::optional<glm::dvec3> knuckle(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   if (const auto place = skeleton.place_of(finger, side, 1)) return place;
   const auto metacarpal = bone_of(skeleton, finger, side, 0);
@@ -39,7 +44,7 @@ std::optional<glm::dvec3> wrist(const Skeleton& skeleton, BodySide side) {
   return forearm ? std::optional(skeleton.tip[*forearm]) : std::nullopt;
 }
 
-// The last segment that a finger has.
+// Returns the bone of the finger's last segment.
 std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   for (int segment = 3; segment >= 1; --segment)
     if (const auto bone = bone_of(skeleton, finger, side, segment)) return bone;
@@ -47,8 +52,9 @@ std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodyS
 }
 
 struct Finger {
-  std::vector<int> bones;              // from the knuckle outwards
-  std::vector<glm::dvec3> directions;  // of what comes before the first bone, then of each
+  std::vector<int> bones;  // from the knuckle to the tip
+  // Unit vectors: first the direction of the metacarpal or palm, then that of each bone.
+  std::vector<glm::dvec3> directions;
 };
 
 Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
@@ -66,7 +72,7 @@ Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
   return finger;
 }
 
-// The axis about which it is curled, as long as the sine of the curl.
+// Returns the axis about which the finger is curled. The length of the axis is the sum of the sines of the bends.
 glm::dvec3 curl(const Finger& finger) {
   glm::dvec3 axis(0);
   for (std::size_t i = 1; i < finger.directions.size(); ++i)
@@ -147,10 +153,11 @@ std::optional<bool> is_right_hand(const Skeleton& skeleton) {
 Hinges finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySide side, bool right) {
   Hinges hinges;
   const glm::dvec3 to_little = unit(across_palm(skeleton, side).value_or(glm::dvec3(0)));
-  // A left hand's fingers bend about the line from index to little finger, a right hand's the other way about.
+  // The fingers of a left hand flex about the axis from index to little finger, those of a right hand about the
+  // opposite axis.
   const glm::dvec3 across = right ? -to_little : to_little;
   for (const BodyPart finger : kFingers) add_hinges(hinges, armature, finger_of(skeleton, finger, side), across);
-  // A thumb bends across the palm.
+  // A thumb flexes in the direction across the palm.
   const Finger thumb = finger_of(skeleton, BodyPart::Thumb, side);
   if (!thumb.bones.empty()) add_hinges(hinges, armature, thumb, unit(glm::cross(thumb.directions[1], to_little)));
   if (const auto fingers = bone_of(skeleton, BodyPart::Fingers, side, 0)) {

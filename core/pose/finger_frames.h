@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a hand's bones at rest tell: where it points, where its palm faces, and about which axes its fingers bend.
+// Finds from a hand's bones at rest where it points, where its palm faces, and about which axes its fingers bend.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,20 @@
 
 namespace limber {
 
-// From the wrist to the middle finger's knuckle, or to what there is of knuckles; nothing without fingers or a wrist.
+// Returns the vector from the wrist to the middle finger's knuckle, else to the mean of the other knuckles; nothing
+// without fingers or a wrist.
 std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side);
 
-// From the index finger to the little one; away from the thumb where it is the only one. Not of unit length.
+// Returns the vector across the palm from the index finger to the little finger, or away from the thumb if there is no
+// other finger. The vector is not normalized.
 std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side);
 
-// Of a hand whose names say no side: told by where its fingers curl.
+// Tells whether a hand without a side in its names is a right hand, judged by the direction in which its fingers curl.
+// Returns nothing if they are straight.
 std::optional<bool> is_right_hand(const Skeleton& skeleton);
 
-// The hinges of a hand's finger bones, fingers that curl by the plane in which they do, straight ones across the palm.
-// Fingers keep their spread.
+// Returns a hinge for each finger bone of a hand. A curled finger bends in the plane of its curl, a straight one about
+// the line across the palm. Fingers stay spread as they are.
 std::vector<std::pair<int, AnatomicalHinge>> finger_hinges(const Armature& armature, const Skeleton& skeleton,
                                                            BodySide side, bool right);
 

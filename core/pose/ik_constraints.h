@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What holds limbs while joints are dragged. By the bones' names, as keys are, so that a change of the rig loses only
-// what it removed.
+// The constraints of inverse kinematics while joints are dragged: pins and poles. They are stored by bone name, so that
+// a change of the rig loses only the constraints of removed bones.
 #pragma once
 
 #include <map>
@@ -12,8 +12,9 @@
 namespace limber {
 
 struct Anchors {
-  std::set<std::string> pins;               // bones whose tails stay where they are
-  std::map<std::string, glm::dvec3> poles;  // world, mm: the limb ending in that bone bends towards the point
+  std::set<std::string> pins;  // bones whose tails stay at their positions
+  // For each bone, a point in the world, mm. The limb that ends in the bone bends towards this point.
+  std::map<std::string, glm::dvec3> poles;
 
   bool operator==(const Anchors&) const = default;
 };

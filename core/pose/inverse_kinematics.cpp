@@ -16,26 +16,29 @@ namespace limber {
 
 namespace {
 
-constexpr int kSteps = 80;            // of one search
-constexpr double kLongestStep = 0.6;  // radians of any one parameter
-constexpr double kAtLimit = 1e-10;    // radians
-constexpr double kNoProgress = 1e-6;  // share of the squared error below which a step gains nothing
-constexpr double kRoughly = 1e-3;     // the same while a search only prepares the next
-constexpr double kPoleWeight = 0.1;   // mm beside the plane count as so many mm from the target
+constexpr int kSteps = 80;            // largest number of steps in one search
+constexpr double kLongestStep = 0.6;  // largest change of a parameter in one step, radians
+constexpr double kAtLimit = 1e-10;    // a parameter within this distance of its limit counts as at the limit, radians
+// A search ends when a step reduces the squared error by a smaller share than this.
+constexpr double kNoProgress = 1e-6;
+constexpr double kRoughly = 1e-3;  // used instead of kNoProgress in a search that only prepares the next one
+// Weight of 1 mm off the half plane of the pole; 1 mm off a target has the weight 1.
+constexpr double kPoleWeight = 0.1;
 constexpr int kRestartsBeyondReach = 6;
-constexpr double kWorthAJump = 1e-4;  // share of the chain's length by which another pose must come nearer to be taken
+// The pose found by a restart is used if it is nearer to the target by this share of the chain's length.
+constexpr double kWorthAJump = 1e-4;
 
 double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
 
-// A joint that may turn, with its parameters.
+// A joint that the search may turn, with its limits and the current values of its parameters.
 struct Joint {
   int bone;
   JointLimits::Type type;
-  glm::dvec3 axis{0};               // of hinge and twist
-  double minimum = 0, maximum = 0;  // of the hinge or the twist
+  glm::dvec3 axis{0};               // the axis of the hinge or of the twist
+  double minimum = 0, maximum = 0;  // limits of `angle`, radians
   double cone = 0;
 
-  double angle = 0;  // of the hinge or the twist
+  double angle = 0;  // the hinge's angle or the ball's twist, radians
   glm::dvec3 swing{0};
   glm::dquat free{1, 0, 0, 0};
 
@@ -51,7 +54,7 @@ struct Joint {
     return free;
   }
 
-  // Directions of the swing's two parameters: away from rest, and around.
+  // Returns the two directions in which the swing's parameters change it: away from the rest pose, and around it.
   std::array<glm::dvec3, 2> swing_directions() const {
     const double length = glm::length(swing);
     glm::dvec3 outward = swing;
@@ -63,13 +66,13 @@ struct Joint {
     return {outward, glm::cross(axis, outward)};
   }
 
-  // The axes, in the parent's rest frame, about which a small change of each parameter turns the bone.
+  // Computes, in the parent's rest frame, the axis about which a small change of each parameter turns the bone.
   void turning_axes(glm::dvec3* out) const {
     if (type == JointLimits::Type::Hinge) out[0] = axis;
     if (type == JointLimits::Type::Free)
       for (int i = 0; i < 3; ++i) out[i] = glm::dvec3(i == 0, i == 1, i == 2);
     if (type != JointLimits::Type::Ball) return;
-    // The derivative of exp at the swing: I + (1 - cos)/a^2 [s] + (a - sin)/a^3 [s]^2.
+    // Derivative of the exponential map at the swing s with the angle a: I + (1 - cos)/a^2 [s] + (a - sin)/a^3 [s]^2.
     const double a = glm::length(swing);
     const double first = a < 1e-4 ? 0.5 : (1 - std::cos(a)) / (a * a);
     const double second = a < 1e-4 ? 1.0 / 6 : (a - std::sin(a)) / (a * a * a);
@@ -81,7 +84,7 @@ struct Joint {
     out[2] = exponential(swing) * axis;
   }
 
-  // Whether parameter i stands at a limit that `push` leads beyond.
+  // Returns whether parameter i is at a limit and a change by `push` would pass the limit.
   bool is_held(int i, double push) const {
     if (type == JointLimits::Type::Free) return false;
     if (type == JointLimits::Type::Ball && i == 0) return push > 0 && glm::length(swing) >= cone - kAtLimit;
@@ -124,7 +127,7 @@ Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool kee
     joint.axis = twist_axis(bone);
     joint.minimum = bone.limits.twist_minimum;
     joint.maximum = bone.limits.twist_maximum;
-    joint.cone = std::min(bone.limits.cone, std::numbers::pi - 1e-6);  // a swing by half a turn has no direction
+    joint.cone = std::min(bone.limits.cone, std::numbers::pi - 1e-6);  // a swing by half a turn has no unique direction
   } else {
     return joint;
   }
@@ -141,7 +144,7 @@ Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool kee
 }
 
 struct State {
-  std::vector<Joint> joints;  // of the bones that move, parents first
+  std::vector<Joint> joints;  // the joints of the bones that move, parents first
   glm::dvec3 root{0};
 };
 
@@ -188,7 +191,7 @@ class Search {
     const int restarts = lies_beyond_reach() ? std::min(settings_.restarts, kRestartsBeyondReach) : settings_.restarts;
     for (int i = 0; i < restarts && nearest > settings_.tolerance && parameters_ > 0; ++i) {
       State next = initial_;
-      // First from close by: a straight chain cannot tell where to bend.
+      // The first two restarts begin near the start pose, since a straight chain has no gradient that would bend it.
       for (Joint& joint : next.joints) {
         Joint other = joint;
         other.scatter(random);
@@ -212,8 +215,8 @@ class Search {
     int bone;
     glm::dvec3 target;
     double weight;
-    int first;      // uppermost bone that moves for it
-    double length;  // of the chain, mm
+    int first;      // the uppermost bone that moves to reach this goal
+    double length;  // length of the chain, mm
     std::vector<bool> moved_by;
   };
 
@@ -223,7 +226,7 @@ class Search {
     return bone.parent < 0 ? own : own + glm::distance(bone.head, armature_.bones[bone.parent].tail);
   }
 
-  // Whether a goal lies further off than its chain is long.
+  // Returns whether a target is further from the base of its chain than the chain is long.
   bool lies_beyond_reach() {
     place(initial_);
     return !settings_.move_root && std::any_of(goals_.begin(), goals_.end(), [&](const Goal& goal) {
@@ -259,8 +262,8 @@ class Search {
     return furthest;
   }
 
-  // A far target is first drawn to within the chain's reach: the search then has little left to gain that it cannot
-  // have.
+  // Runs a search from this state. If a target lies beyond the chain's reach, a first search aims at a nearer point in
+  // the same direction, so that the final search has little left to gain.
   State from(State state) {
     place(state);
     std::vector<glm::dvec3> targets;
@@ -280,8 +283,9 @@ class Search {
 
   int rows(bool pole) const { return static_cast<int>(3 * goals_.size()) + (pole ? 1 : 0); }
 
-  // How far the first chain's last joint lies beside the half plane through its base, its tip and the pole, mm; its
-  // gradient.
+  // Returns the distance of the first chain's last joint from its wanted position in the half plane through the chain's
+  // base, the chain's tip and the pole, mm.
+  //   normal  set to the unit direction from the joint to this position
   double beside_pole(glm::dvec3& normal) const {
     const Goal& goal = goals_[0];
     const glm::dvec3 base = pivot(goal.first), along = tip(goal) - base, joint = pivot(goal.bone) - base;
@@ -293,7 +297,7 @@ class Search {
     if (length < 1e-9) return 0;
     towards /= length;
     const glm::dvec3 across = joint - along * (glm::dot(joint, along) / squared);
-    normal = glm::length(across) * towards - across;  // from where the joint is to where it should be
+    normal = glm::length(across) * towards - across;  // from the joint's position to the wanted one
     const double off = glm::length(normal);
     if (off > 0) normal /= off;
     return off;
@@ -331,7 +335,7 @@ class Search {
         for (size_t g = 0; g < goals_.size(); ++g) J(3 * g + i, column) = goals_[g].weight;
   }
 
-  // Leaves out the parameters that a step would push beyond their limits, until none is.
+  // Computes a damped least squares step. Repeats it without the parameters that it would push beyond their limits.
   Eigen::VectorXd damped_step(const State& state, const Eigen::VectorXd& e, const Eigen::MatrixXd& J,
                               double damping) const {
     Eigen::MatrixXd free = J;
@@ -373,7 +377,8 @@ class Search {
     return arrived;
   }
 
-  // Damping is mm^2 per radian^2, against the squared levers of the chain.
+  // Minimizes the errors, starting from this state. The damping is relative to the mean squared lever arm of the chain,
+  // mm^2 per radian^2.
   State search(State state, const std::vector<glm::dvec3>& targets, bool pole, double no_progress) {
     if (parameters_ == 0) return state;
     Eigen::VectorXd e(rows(pole));
@@ -417,8 +422,9 @@ class Search {
   const Pose& start_;
   const ReachSettings& settings_;
   std::vector<Goal> goals_;
-  std::vector<int> needed_,
-      joint_of_;  // bones above the goals; their place among the joints, -1 where they do not move
+  // The bones of the goals and all bones above them; for each of these bones, its index in State::joints (-1: it does
+  // not move).
+  std::vector<int> needed_, joint_of_;
   State initial_;
   int parameters_ = 0;
   std::vector<RigidTransform> posed_;

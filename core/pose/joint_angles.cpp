@@ -15,14 +15,14 @@ namespace {
 
 using enum BodyJoint;
 
-// The names of a joint. A plural means both sides.
+// A name of a joint. A plural name means the joint on both sides.
 struct JointName {
   std::string_view name;
   BodyJoint joint;
   bool plural = false;
 };
 
-// The first name of each joint is the one that messages use.
+// A joint may have several names. Messages use the first name of each joint.
 constexpr JointName kNames[] = {
     {"spine", Spine},
     {"trunk", Spine},
@@ -69,7 +69,7 @@ constexpr JointName kNames[] = {
     {"little fingers", Little, true},
 };
 
-// A motion's word, the place in JointMotions that it sets, and its sign there.
+// The word for a motion of a joint ("flexion"), the index of this motion in JointMotions, and the sign of its angle.
 struct MotionWord {
   BodyJoint joint;
   std::string_view word;
@@ -77,7 +77,7 @@ struct MotionWord {
   double sign = 1;
 };
 
-// The first word of each motion is the one that messages use; of a finger's motions see finger_motions().
+// A motion may have several words. Messages use the first word of each motion. For fingers see finger_motions().
 constexpr MotionWord kMotions[] = {
     {Spine, "flexion", 0},
     {Spine, "extension", 0, -1},
@@ -139,7 +139,7 @@ constexpr MotionWord kMotions[] = {
 struct UsualRange {
   BodyJoint joint;
   std::size_t motion;
-  double low, high;  // degrees
+  double low, high;  // range that adults usually reach, degrees
 };
 
 constexpr UsualRange kUsual[] = {
@@ -154,9 +154,9 @@ constexpr UsualRange kUsualThumb[] = {{Thumb, 0, -10, 60}, {Thumb, 1, -15, 80}, 
 constexpr UsualRange kUsualFinger[] = {{Index, 0, -45, 95}, {Index, 1, -10, 110}, {Index, 2, -10, 90}};
 
 constexpr double kMostDegrees = 360;
-// The last joint of a finger bends by two thirds of the middle one, whose tendon bends both.
+// The last joint of a finger bends two thirds as far as the middle one, since one tendon bends both.
 constexpr double kLastJointShare = 2.0 / 3;
-// A thumb that closes with the hand bends by half as much as the fingers.
+// When the whole hand curls, the thumb bends half as far as the fingers.
 constexpr double kThumbShare = 0.5;
 
 constexpr bool is_finger(BodyJoint joint) { return joint >= Thumb; }
@@ -222,7 +222,8 @@ void set_fingers(JointAngles& angles, Sides sides, double degrees, bool with_thu
   }
 }
 
-// "left hand curl", "fingers flexion": several joints at once.
+// Reads a request that sets several joints at once: "left hand curl", "fingers flexion". Returns false for any other
+// request.
 bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words, std::size_t first, Sides sides,
                       double degrees) {
   if (words.size() != first + 2) return false;
@@ -235,7 +236,7 @@ bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words
   return true;
 }
 
-// A finger's motions: all its joints by "flexion", one of them by its name.
+// Returns the angles of a finger's joints: "flexion" bends all of them, "knuckle flexion" and the like only one.
 std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& motion, double degrees) {
   if (motion == "flexion" || motion.empty()) {
     if (finger == Thumb) return JointMotions{std::nullopt, degrees, degrees};
@@ -261,7 +262,7 @@ std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& 
 std::optional<JointMotions> motions_of(BodyJoint joint, const std::string& motion, double degrees) {
   if (is_finger(joint)) return finger_motions(joint, motion, degrees);
   for (const MotionWord& word : kMotions) {
-    // "left elbow=30": a joint that only flexes need not be told how.
+    // For a joint that only flexes, the word for the motion may be left out: "left elbow=30".
     const bool only = motion.empty() && (joint == Elbow || joint == Knee);
     if (word.joint != joint || (word.word != motion && !only)) continue;
     JointMotions motions;
@@ -274,10 +275,10 @@ std::optional<JointMotions> motions_of(BodyJoint joint, const std::string& motio
 struct FoundJoint {
   BodyJoint joint;
   bool plural = false;
-  std::size_t next = 0;  // the word after its name
+  std::size_t next = 0;  // index of the word after the joint's name
 };
 
-// The longest name of a joint that the words go on with.
+// Finds the longest joint name that begins at the word with index `first`.
 std::optional<FoundJoint> joint_at(const std::vector<std::string>& words, std::size_t first) {
   for (std::size_t count = 2; count >= 1; --count) {
     if (first + count > words.size()) continue;

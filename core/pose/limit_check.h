@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a whole pose stands to the joint limits of its rig. A joint without limits is neither within nor beyond them.
+// Checks a whole pose against the joint limits of its rig. A joint without limits counts as neither within nor beyond
+// limits.
 #pragma once
 
 #include <string>
@@ -9,17 +10,18 @@
 namespace limber {
 
 struct LimitCheck {
-  int limited = 0;             // bones that have limits
-  int unlimited = 0;           // bones with a parent that have none
-  int beyond = 0;              // of `limited`: turned further than `tolerance` beyond
-  int first = -1, worst = -1;  // of those beyond, the first one and the one that is furthest; -1 where none is
-  double excess = 0;           // of the worst, radians
+  int limited = 0;             // number of bones that have limits
+  int unlimited = 0;           // number of bones with a parent but without limits
+  int beyond = 0;              // number of bones turned more than `tolerance` beyond their limits
+  int first = -1, worst = -1;  // bone indices: the first bone beyond its limits, and the bone furthest beyond; -1: none
+  double excess = 0;           // how far the worst bone is beyond its limits, radians
 };
 
 //   tolerance  radians
 LimitCheck check_limits(const Armature& armature, const Pose& pose, double tolerance);
 
-// "all within", "3 within, 2 without limits", "Forearm is beyond", "Forearm and 2 more are beyond"; "the rig has none".
+// Describes the result: "all within", "3 within, 2 without limits", "Forearm is beyond", "Forearm and 2 more are
+// beyond" or "the rig has none".
 std::string words_of(const LimitCheck& check, const Armature& armature);
 
 }  // namespace limber

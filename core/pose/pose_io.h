@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses from and to our JSON:
+// Reads and writes poses as JSON:
 //   {"rig": name?, "bones": {name: {"rotation_wxyz": [4]} | {"axis": [3], "degrees": d}}, "root_translation"?: [3]}
-// axes in world coordinates at rest, about the bone's head. Bones that are not named stay at rest.
+// Axes are in world coordinates at rest, and bones rotate about their heads. Bones that are not listed stay at rest.
 #pragma once
 
 #include "core/base/file.h"
@@ -9,11 +9,11 @@
 
 namespace limber {
 
-// Throws Error for an unknown bone, a zero axis or quaternion, a number that is not finite.
+// Reads a pose. Throws Error for an unknown bone, a zero axis or quaternion, or a number that is not finite.
 Pose read_pose(const Path& path, const Armature& armature);
 Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature);
 
-// What reads back as the same pose, bit for bit.
+// Writes a file that reads back as the same pose, bit for bit.
 void write_pose(const Pose& pose, const Armature& armature, const Path& path);
 
 }  // namespace limber

@@ -12,11 +12,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kFilledCavity = 0.7;  // g/cm3: what is called a cavity and is denser holds tissue or fluid
+constexpr double kFilledCavity = 0.7;  // g/cm3; a cavity at least this dense is filled with tissue or fluid
 
 constexpr std::array<glm::ivec3, 6> kFaces{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-// The 8-connected pieces of tissue in one layer of the volume.
+// Finds the connected components of tissue within one layer of voxels (8-connected: by edges and corners in the layer).
 class LayerPieces {
  public:
   LayerPieces(const LabelVolume& volume, int axis, int layer)
@@ -46,7 +46,7 @@ class LayerPieces {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  std::vector<std::int64_t> sizes;  // voxels of each piece
+  std::vector<std::int64_t> sizes;  // voxel count of each component
 
  private:
   bool is_tissue(int a, int b) const { return volume_.at(voxel(a, b)) != 0; }
@@ -74,7 +74,8 @@ class LayerPieces {
   std::vector<int> piece_;
 };
 
-// Of one side of the volume, where tissue ends and where it is cut.
+// Distinguishes, for one of the volume's six faces, tissue that was cut there from tissue that only touches the face
+// (close_skin.h).
 class BorderSide {
  public:
   BorderSide(const LabelVolume& volume, int side, const LabelSet& bone)
@@ -150,7 +151,7 @@ class SkinCloser {
   }
 
  private:
-  // Of the skins that are named, the one with most voxels.
+  // Returns the label with the most voxels among the labels that are skin in the table.
   Label main_skin(const TissueTable& tissues) const {
     std::vector<std::int64_t> counts(65536, 0);
     for (const Label label : volume_.voxels) counts[label] += skin_[label];
@@ -227,7 +228,8 @@ class SkinCloser {
     for (size_t i = 0; i < changed.size(); ++i) closed_.volume.at(changed[i]) = labels[i];
   }
 
-  // Of each changed voxel, the skin that is the fewest steps through tissue and changed voxels away.
+  // Returns for each changed voxel the label of the nearest skin voxel. Distance is the number of steps from voxel to
+  // voxel through faces, over tissue and changed voxels.
   std::vector<Label> nearest_skin(const std::vector<glm::ivec3>& changed) const {
     const LabelVolume& volume = closed_.volume;
     const auto index = [&](const glm::ivec3& v) { return volume.grid.index(v); };
@@ -259,7 +261,7 @@ class SkinCloser {
     return labels;
   }
 
-  // Voxels of outside air that stayed air and are no longer outside.
+  // Returns the number of air voxels that were outside air and that the new skin has enclosed.
   std::int64_t newly_enclosed() const {
     const std::vector<std::uint8_t> outside = outside_air(closed_.volume);
     const int margin = closed_.is_padded ? 1 : 0;

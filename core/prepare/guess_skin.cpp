@@ -11,10 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kCovered = 0.99;  // of the surface
-constexpr double kThin = 0.4;  // of a sheet's voxels that lie at the surface: it is at most two or three voxels thick
+constexpr double kCovered = 0.99;  // smallest share of the surface voxels that have the skin's label
+constexpr double kThin =
+    0.4;  // smallest share of the skin's voxels that lie at the surface: a sheet of at most two or three voxels
 
-// By label, the voxels that have a face at the air around the body.
+// Returns for each label how many of its voxels share a face with the air around the body.
 std::map<Label, std::int64_t> at_surface(const LabelVolume& volume) {
   constexpr std::array<glm::ivec3, 6> kFaces{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
   const std::vector<std::uint8_t> is_air = outside_air(volume);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which label is skin when nothing says so: the one that covers a body as a thin sheet.
+// Guesses which label is skin when the tissue table does not say so: the label that covers a body as a thin sheet.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@ namespace limber {
 
 struct SkinGuess {
   Label label;
-  double share_of_surface;  // of the voxels that have a face at the air around the body
+  double share_of_surface;  // the label's share of the voxels that touch the air around the body
 };
 
-// The label of at least 99 % of the surface, of whose own voxels at least 40 % lie there. Nothing when there is none,
-// when `tissues` knows what it is, or knows another label as skin.
+// Returns the label that has at least 99 % of the surface voxels and at least 40 % of its own voxels at the surface.
+// Returns nothing when no label does, when `tissues` knows that label's kind, or when any label is known as skin.
 std::optional<SkinGuess> guess_skin(const LabelVolume& volume, const TissueTable& tissues);
 
-// The same table with that label as skin, in the colour it has. The label is of the table.
+// Returns the table in which the kind of `label` is skin. The table must contain the label, which keeps its colour.
 TissueTable with_skin(TissueTable table, Label label);
 
 }  // namespace limber

@@ -17,9 +17,10 @@ namespace limber {
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
 
-// new voxel v holds old voxel at[axis] = flipped ? size - 1 - v[from] : v[from].
+// A permutation and flip of the voxel axes. The new voxel v gets the label of the old voxel `old`, where old[axis] is
+// v[from[axis]], or size - 1 - v[from[axis]] for a flipped axis.
 struct AxisMap {
-  std::array<int, 3> from;  // old axis -> new axis
+  std::array<int, 3> from;  // the new axis of each old axis
   std::array<bool, 3> flipped;
 };
 
@@ -39,7 +40,7 @@ LabelVolume permuted(const LabelVolume& volume, const Grid& grid, const AxisMap&
   return result;
 }
 
-// A sub-box, or a larger box with air around.
+// Returns the box of `size` voxels whose lowest voxel is `low`. Where the box extends beyond the volume, it is air.
 LabelVolume boxed(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& size) {
   LabelVolume result{volume.grid, {}};
   result.grid.size = size;
@@ -56,8 +57,8 @@ LabelVolume boxed(const LabelVolume& volume, const glm::ivec3& low, const glm::i
   return result;
 }
 
-// The voxel axis whose direction is nearest to each of three orthogonal unit directions; each axis once, the best
-// assignment of the six.
+// Returns for each of three orthogonal unit vectors `wanted` the voxel axis most nearly parallel to it. Each axis is
+// used once: of the six assignments it returns the one with the largest sum of |cosine|.
 std::array<int, 3> nearest_axes(const glm::dmat3& direction, const std::array<glm::dvec3, 3>& wanted) {
   std::array<int, 3> axes{0, 1, 2}, best = axes;
   double most = -1;
@@ -107,10 +108,10 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
     throw Error("this is no orientation", code, "name three axes by L or R, P or A, S or I, for example LPS or RAS");
 
   const Grid& grid = volume.grid;
-  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);  // of each new axis
+  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);  // the old axis of each new axis
   Grid turned = grid;
   AxisMap map{};
-  glm::dvec3 first(0);  // the old voxel that becomes voxel 0
+  glm::dvec3 first(0);  // the old voxel that becomes voxel (0, 0, 0)
   for (int i = 0; i < 3; ++i) {
     const int old = old_axis[i];
     const bool back = glm::dot(grid.direction[old], wanted[i]) < 0;
@@ -176,10 +177,11 @@ LabelVolume drop_specks(const LabelVolume& volume, std::int64_t voxels) {
   const glm::ivec3 size = volume.grid.size;
   const auto is_speck = [&](const Components::Run& run) { return components.voxels[run.component] < voxels; };
 
-  // What becomes of a speck is counted on the volume without any speck.
+  // The new label of a speck is chosen from `volume` and not from `result`, so that the order of specks does not
+  // matter.
   LabelVolume result = volume;
-  std::vector<std::vector<std::pair<glm::ivec3, int>>> runs_of(
-      components.voxels.size());  // start and length, of specks
+  // First voxel and length of each run of each component that is a speck; empty for other components.
+  std::vector<std::vector<std::pair<glm::ivec3, int>>> runs_of(components.voxels.size());
   for (std::int64_t row = 0; row + 1 < std::ssize(components.first_run); ++row)
     for (std::int64_t i = components.first_run[row]; i < components.first_run[row + 1]; ++i) {
       const Components::Run& run = components.runs[i];
@@ -193,7 +195,7 @@ LabelVolume drop_specks(const LabelVolume& volume, std::int64_t voxels) {
 
   for (const auto& runs : runs_of) {
     if (runs.empty()) continue;
-    std::map<std::int64_t, Label> around;  // voxels around, each once
+    std::map<std::int64_t, Label> around;  // labels of the voxels around the speck, by voxel index
     for (const auto& [start, length] : runs)
       for (int x = start.x - 1; x <= start.x + length; ++x)
         for (int j = -1; j <= 1; ++j)
@@ -218,7 +220,7 @@ std::vector<LabelStatistics> label_statistics(const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   struct Sums {
     std::int64_t voxels = 0, components = 0;
-    glm::dvec3 position{0};  // whole and half numbers: exact
+    glm::dvec3 position{0};  // sum over voxels, in voxels; exact, because it adds whole and half numbers
     glm::ivec3 low{INT32_MAX}, high{-1};
   };
   std::vector<Sums> sums(65536);
@@ -280,7 +282,7 @@ std::string to_csv(const std::vector<LabelStatistics>& statistics, const TissueT
   for (const LabelStatistics& s : statistics) {
     const Tissue* tissue = tissues.find(s.label);
     std::string name = tissue ? tissue->name : "";
-    // RFC 4180: quotes are doubled inside quotes.
+    // A quote inside a quoted field is written twice [RFC 4180].
     for (std::size_t i = 0; i < name.size(); ++i)
       if (name[i] == '"') name.insert(i++, 1, '"');
     csv << (tissue ? tissue->file_value : s.label) << ",\"" << name << "\"," << s.voxels << ',' << s.volume_mm3 << ','

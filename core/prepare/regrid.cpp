@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// regrid() of core/prepare/prepare.h.
+// Implements regrid(), which changes a volume's spacing; core/prepare/prepare.h describes the method.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,17 +13,19 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
-constexpr double kLargestSpacing = 1e6;  // mm: what reading a volume believes
-// Shares closer than this part of a voxel's volume are equal: they come from sums of products of lengths.
+constexpr double kLargestSpacing = 1e6;  // upper limit on the spacing, mm; the same as for volumes that are read
+// Shares that differ by less than this fraction of a voxel's volume count as equal, because they are sums of rounded
+// products.
 constexpr double kTie = 1e-9;
-// Insertions ripple: a voxel given to skin may now part others. In practice two rounds settle.
+// Upper limit on the rounds of insertions. An insertion may cause others: a voxel that becomes skin may touch labels
+// that it must not touch. In practice two rounds suffice.
 constexpr int kMostRounds = 8;
 
 struct Share {
   Label label;
-  double volume;  // in old voxels
+  double volume;  // volume that the label takes of a box, in old voxels
 };
-using Shares = std::vector<Share>;  // of few labels: searched in line
+using Shares = std::vector<Share>;  // shares of a box; it holds few labels, so a linear search is fast
 
 void add_share(Shares& shares, Label label, double volume) {
   for (Share& share : shares)
@@ -40,16 +42,17 @@ double share_of(const Shares& shares, Label label) {
   return 0;
 }
 
-// An interval of old voxels along one axis with how much of each it covers. Old voxel i covers [i, i + 1].
+// The interval of a box along one axis, in units of old voxels: old voxel i is the interval [i, i + 1]. cover(i)
+// returns the length of old voxel i that lies in the interval.
 struct Span {
   double low, high;
-  int first, end;  // old voxels that it touches, within the volume
-  int reach;       // end, or one more where it reaches out of the volume into air
+  int first, end;  // the old voxels first .. end - 1 of the volume overlap the interval
+  int reach;       // `end`, or end + 1 when the interval extends beyond the volume into air
   double cover(int i) const { return std::min(high, i + 1.0) - std::max(low, static_cast<double>(i)); }
 };
 
 Span span(double low, double high, int size) {
-  // A box that ends where a voxel ends does not touch the next one, whatever rounding says.
+  // An interval that ends at the border of two old voxels does not overlap the second one, despite rounding errors.
   const double first = std::clamp(std::floor(low + kTie), 0.0, double(size)), end = std::ceil(high - kTie);
   const int inside = static_cast<int>(std::clamp(end, 0.0, double(size)));
   return {low, high, static_cast<int>(first), inside, end > inside ? inside + 1 : inside};
@@ -70,7 +73,8 @@ class Regrid {
 
   LabelVolume run(Progress& progress) {
     vote(progress);
-    // Air first, because skin must be closed; what is put there stays. Then inside, which must not open the skin again.
+    // Restores layers between tissue and air first, because skin must be closed, and locks the voxels that become skin.
+    // Then restores layers inside the body, which must not open the skin again.
     if (!every_voxel_lies_in_an_old_one()) {
       locked_.assign(to_.voxels.size(), false);
       std::vector<std::int64_t> ignored, changed;
@@ -95,7 +99,7 @@ class Regrid {
   LabelVolume to_;
   std::vector<Span> spans_[3];
   std::vector<bool> locked_;
-  double volume_;  // of a new voxel, in old voxels
+  double volume_;  // volume of a new voxel, in old voxels
 
   bool every_voxel_lies_in_an_old_one() const {
     return std::all_of(std::begin(spans_), std::end(spans_), [](const std::vector<Span>& spans) {
@@ -123,7 +127,7 @@ class Regrid {
     if (outside > kTie) add_share(shares, 0, outside);
   }
 
-  // The label of all old voxels of a box when they have only one, as nearly everywhere.
+  // Returns the label of a box when all its old voxels have the same label, as nearly everywhere; else nothing.
   std::optional<Label> only_label(const Span& x, const Span& y, const Span& z) const {
     if (x.reach > x.end || y.reach > y.end || z.reach > z.end || x.first == x.end || y.first == y.end ||
         z.first == z.end)
@@ -142,7 +146,7 @@ class Regrid {
     gather(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z], shares);
   }
 
-  // Label with the largest share among `candidates`, or among all; nothing when two are equal.
+  // Returns the label with the largest share; nothing when another label has an equal share.
   static std::optional<Label> largest(const Shares& shares, double volume) {
     const auto most = std::max_element(shares.begin(), shares.end(),
                                        [](const Share& a, const Share& b) { return a.volume < b.volume; });
@@ -197,7 +201,8 @@ class Regrid {
     }
   }
 
-  // Do labels a and b meet in the old voxels of both boxes: by a face, or by edges and corners too?
+  // Returns whether an old voxel of label a touches one of label b within the boxes of the new voxels p and q: by a
+  // face, or with `corners` also by an edge or corner.
   bool met(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b, bool corners) const {
     glm::ivec3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
@@ -218,7 +223,8 @@ class Regrid {
     return false;
   }
 
-  // What should stand between neighbours p and q whose labels never met.
+  // Returns the label of the lost layer between the new voxels p (label a) and q (label b), and which of the two voxels
+  // gets it. Returns nothing when no other tissue lies in their boxes, or when both voxels are locked.
   std::optional<Insertion> insertion(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b) const {
     Shares of_p, of_q, together;
     gather(p, of_p);
@@ -233,7 +239,7 @@ class Regrid {
     const double in_p = share_of(of_p, between.label), in_q = share_of(of_q, between.label);
     const std::int64_t i = to_.grid.index(p), k = to_.grid.index(q);
     bool p_gives_way = in_p > in_q || (in_p == in_q && i < k);
-    // Air gives way only where most of its box is tissue, so that the body keeps its volume.
+    // An air voxel is replaced only where most of its box is tissue, so that the body keeps its volume.
     if (a == 0) p_gives_way = share_of(of_p, 0) < 0.5 * volume_;
     if (b == 0) p_gives_way = share_of(of_q, 0) >= 0.5 * volume_;
     const bool take_p = !locked_[i] && (locked_[k] || p_gives_way);
@@ -241,7 +247,7 @@ class Regrid {
     return Insertion{take_p ? i : k, between.label, take_p ? in_p : in_q};
   }
 
-  // What neighbours p and q, a step apart, ask for.
+  // Appends the insertion that restores a lost layer between the new voxels p and p + step, if there is one.
   void add_insertion(const glm::ivec3& p, const glm::ivec3& step, Closing closing,
                      std::vector<Insertion>& insertions) const {
     const glm::ivec3 q = p + step;
@@ -252,14 +258,13 @@ class Regrid {
     if (const auto found = insertion(p, q, a, b)) insertions.push_back(*found);
   }
 
-  static glm::ivec3 step_to_neighbour(int n) {
-    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-  }  // 0 to 26; 13 is no step
+  // Returns the step to neighbour number n of a voxel (0 .. 26, by face, edge or corner); 13 is the voxel itself.
+  static glm::ivec3 step_to_neighbour(int n) { return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1}; }
 
   std::vector<Insertion> insertions_of_slice(int z, Closing closing) const {
     std::vector<Insertion> insertions;
     const glm::ivec3 size = to_.grid.size;
-    // Half of the neighbours: each pair once.
+    // The steps to half of the 26 neighbours, so that each pair of voxels is visited once.
     std::vector<glm::ivec3> steps;
     for (int n = 14; n < 27; ++n)
       if (z + step_to_neighbour(n).z < size.z) steps.push_back(step_to_neighbour(n));
@@ -296,10 +301,11 @@ class Regrid {
     return all;
   }
 
-  // Makes insertions and those that they call for in turn; the voxels that changed are added to `changed`.
+  // Carries out the insertions, then those that become necessary around them, round by round. Appends the changed
+  // voxels to `changed`.
   void close_all(std::vector<Insertion> insertions, Closing closing, std::vector<std::int64_t>& changed) {
     for (int round = 0; round < kMostRounds && !insertions.empty(); ++round) {
-      // Of several for one voxel the largest share wins, then the smaller label.
+      // Of several insertions for one voxel, the one with the largest share wins, then the one with the smaller label.
       std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
         if (a.voxel != b.voxel) return a.voxel < b.voxel;
         return a.share != b.share ? a.share > b.share : a.label < b.label;
@@ -336,7 +342,7 @@ LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progres
   }
   if (spacing == volume.grid.spacing) return volume;
 
-  // The lowest corner of the lowest voxel stays where it is.
+  // The lowest corner of the grid keeps its position.
   grid.spacing = spacing;
   grid.origin = volume.grid.origin + volume.grid.direction * (0.5 * (spacing - volume.grid.spacing));
   return Regrid(volume, grid).run(progress);

@@ -25,7 +25,8 @@ class Names {
     const auto found = before_.find(now);
     return found != before_.end() && found->second != now;
   }
-  // Nothing for a bone that is gone and whose name another one takes.
+  // Returns the present name of the bone that was called `name`. Returns nothing for a removed bone whose name another
+  // bone has taken.
   std::optional<std::string> now(const std::string& name) const {
     if (const auto found = now_.find(name); found != now_.end()) return found->second;
     return before_.contains(name) ? std::nullopt : std::optional(name);
@@ -43,7 +44,7 @@ class Names {
   std::map<std::string, std::string> now_, before_;
 };
 
-// Where nothing of it changes the part stays the same one.
+// Replaces a part of the document only where the new value differs, so that an unchanged part keeps its pointer.
 template <class Part>
 void take(std::shared_ptr<const Part>& part, Part next) {
   if (next != *part) part = std::make_shared<const Part>(std::move(next));
@@ -53,11 +54,12 @@ RetargetMap matched(const Clip& clip, const Armature& armature) {
   try {
     return match_by_names(*clip.motion, armature);
   } catch (const Error&) {
-    return {};  // nothing matches
+    return {};  // no joint of the clip matches a bone
   }
 }
 
-// Without what travel costs: it changes no offset.
+// Prepares the clip's retargeting without root travel. Preparing root travel is slow, and it does not change the rest
+// offsets.
 Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap& map) {
   RetargetSettings settings = clip.retarget;
   settings.travel = Travel::Locked;
@@ -123,7 +125,7 @@ void follow_names(Document& document, const Armature& before, const Armature& af
 
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {
   const MirrorPlane plane = mirror_plane(before);
-  std::map<std::string, std::string> gone_over;  // names before and after
+  std::map<std::string, std::string> gone_over;  // mirrored bones whose data move with them: old name -> new name
   for (const int bone : bones) {
     const std::string& name = before.bones[bone].name;
     if (!mirrored_name(name) || (after.bones[bone].name != name && before.find(after.bones[bone].name))) continue;

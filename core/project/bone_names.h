@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones that change their names keep what is theirs: keys, poses of the library, the joints that move them, pins and
-// poles, locks of their weights. A clip that was matched by names goes on as it did: where the new names alone would no
-// longer say so, what moved a bone, how it was turned and how far the body travelled is written down in the clip. A
-// bone that was not moved and now has a name that the motion knows is moved by it.
+// Makes a document follow renamed and mirrored bones. The document keeps some data by bone name: keys, library poses,
+// the source joints of clips, pins, pole targets, weight locks and the bone map. A clip that matches its joints to
+// bones by name keeps its motion: where the new names alone would change the match, the clip stores the joint, the rest
+// offset and the scale that it had. A bone that had no joint, and whose new name matches a joint, follows that joint
+// from then on.
 #pragma once
 
 #include "core/project/document.h"
 
 namespace limber {
 
-//   before, after  the same bones in the same order. What the document has under a new name of another, removed bone
-//   goes.
+// Moves the data of every renamed bone to its new name. The data of a removed bone are dropped when another bone takes
+// its name.
+//   before, after  the rig before and after the edit, with the same bones in the same order
 void follow_names(Document& document, const Armature& before, const Armature& after);
 
-// After `bones` were mirrored (mirrored_bones), each in its place in the list: those that went to the other side alone
-// do what they did in the mirror, under the name that they have now: in pose, keys and library, with their pins, poles
-// and locks.
+// Updates the document after mirrored_bones() mirrored `bones`; both armatures list the bones in the same order. A bone
+// of the left or right side that did not swap names with its counterpart takes its pose, keys, library poses and pole
+// targets along, mirrored. Its pins and weight locks follow too. All its data are stored under its present name.
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones);
 
 }  // namespace limber

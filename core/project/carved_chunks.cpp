@@ -21,11 +21,13 @@ namespace limber {
 namespace {
 
 constexpr unsigned char kTableLeaf = 0x0d, kIndexLeaf = 0x0a, kIndexInterior = 0x02;
-constexpr std::int64_t kHashType = 12 + 2 * 32;  // the serial type of a blob of 32 bytes
+constexpr std::int64_t kHashType = 12 + 2 * 32;  // SQLite's serial type of a blob of 32 bytes
 constexpr std::uint32_t kMostPayload = (16u << 20) + (1u << 20);
-constexpr std::int64_t kBatch = 32;       // chunks unpacked together
-constexpr std::size_t kLeastCell = 38;    // bytes of a row of the table of chunks
-constexpr std::int64_t kMostReading = 4;  // times the file: honest rows, of now and from before, share nothing
+constexpr std::int64_t kBatch = 32;     // number of chunks that are unpacked in parallel
+constexpr std::size_t kLeastCell = 38;  // size of the smallest row of the chunk table, bytes
+// Upper limit on the bytes read, as a multiple of the file's size. The rows of an intact file share no page, so only a
+// hostile file exceeds it.
+constexpr std::int64_t kMostReading = 4;
 constexpr std::array<std::string_view, 5> kStates = {"root", "mark", "editor", "thumbnail", "program"};
 
 std::uint32_t big_endian(const char* bytes, int count) {
@@ -34,7 +36,8 @@ std::uint32_t big_endian(const char* bytes, int count) {
   return value;
 }
 
-// SQLite's number of one to nine bytes. Moves `at` behind it; nothing at the end of the bytes.
+// Reads a variable-length integer of SQLite (one to nine bytes) and moves `at` behind it. Returns nothing where the
+// bytes end before the integer does.
 std::optional<std::int64_t> varint(std::string_view bytes, std::size_t& at) {
   std::uint64_t value = 0;
   for (int i = 0; i < 9; ++i) {
@@ -47,7 +50,7 @@ std::optional<std::int64_t> varint(std::string_view bytes, std::size_t& at) {
   return static_cast<std::int64_t>(value);
 }
 
-// How many bytes of a payload lie in the page itself.
+// Returns how many bytes of a row's payload are stored in the row's own page; the others are in overflow pages.
 std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index) {
   const std::int64_t most = index ? (usable - 12) * 64 / 255 - 23 : usable - 35, least = (usable - 12) * 32 / 255 - 23;
   if (payload <= most) return payload;
@@ -55,10 +58,10 @@ std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index
   return static_cast<std::uint32_t>(fitting <= most ? fitting : least);
 }
 
-// A record's two columns.
+// The SQLite types of the two columns of a record.
 struct TwoColumns {
   std::int64_t first_type, second_type;
-  std::size_t header;  // bytes
+  std::size_t header;  // size of the record's header, bytes
   static std::int64_t blob_bytes(std::int64_t type) { return type >= 12 && type % 2 == 0 ? (type - 12) / 2 : -1; }
 };
 std::optional<TwoColumns> two_columns(std::string_view record) {
@@ -102,7 +105,8 @@ void CarvedChunks::scan(Progress& progress) {
   for (std::int64_t number = 1; number * page_bytes_ <= size_; ++number) {
     if (number % 256 == 1)
       progress.update("recover", .5 * static_cast<double>(number * page_bytes_) / static_cast<double>(size_));
-    if (!read_at((number - 1) * page_bytes_, page.data(), page.size())) continue;  // a bad sector: the next may be read
+    if (!read_at((number - 1) * page_bytes_, page.data(), page.size()))
+      continue;  // a bad sector: the next page may still be readable
     const auto type = static_cast<unsigned char>(page[0]);
     if (type == kTableLeaf) scan_table_page(page, number);
     if (type == kIndexLeaf || type == kIndexInterior) scan_index_page(page);
@@ -130,7 +134,7 @@ void CarvedChunks::scan_table_page(const std::string& page, std::int64_t number)
   }
 }
 
-// The table of states keeps its rows in an index.
+// Reads the rows of the state table on a page. SQLite stores this table as an index, since it is WITHOUT ROWID.
 void CarvedChunks::scan_index_page(const std::string& page) {
   const bool interior = static_cast<unsigned char>(page[0]) == kIndexInterior;
   const std::size_t header = interior ? 12 : 8, count = big_endian(page.data() + 3, 2);
@@ -160,7 +164,8 @@ void CarvedChunks::scan_index_page(const std::string& page) {
 
 bool CarvedChunks::may_read(std::uint32_t bytes) { return (bytes_left_ -= bytes) >= 0; }
 
-// The local bytes and those of the overflow pages; nothing where the chain ends early.
+// Joins the payload's bytes on the row's own page (`local`) and those on the overflow pages, of which `next` is the
+// first. Returns nothing where the chain of overflow pages ends early.
 std::optional<std::string> CarvedChunks::payload(const std::string& local, std::uint32_t size,
                                                  std::uint32_t next) const {
   std::string bytes = local;
@@ -185,7 +190,8 @@ std::optional<std::string> CarvedChunks::packed(const Cell& cell) const {
   return record->substr(columns->header + sizeof(ChunkHash));
 }
 
-// Drops what has not its name's hash. Of rows of one name, as free pages may still hold, any that is whole will do.
+// Drops rows whose chunk does not have the hash that the row gives. Several rows may give the same hash, since free
+// pages keep old rows: then one row with an undamaged chunk is kept.
 void CarvedChunks::keep_whole(Progress& progress) {
   std::vector<std::pair<ChunkHash, std::vector<Cell>>> all(cells_.begin(), cells_.end());
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Chunks of a damaged project file, found without its database's structure: every page is looked at by itself, what
-// looks like a row of the table of chunks is followed through its overflow pages, and only bytes that have their name's
-// hash are believed. So lost pages cost the chunks that lay in them, and no others. The file is only read.
+// Finds the chunks of a damaged project file without the structure of its database. The scan reads every page on its
+// own, follows whatever looks like a row of the chunk table through its overflow pages, and accepts only bytes whose
+// hash is the chunk's name. So a lost page costs only the chunks that it held. The file is only read.
 //
-// The format is SQLite's, "Database File Format", sections 1.5 and 1.6 (sqlite.org/fileformat2.html).
+// The file format is SQLite's: "Database File Format", sections 1.5 and 1.6 (sqlite.org/fileformat2.html).
 #pragma once
 
 #include <cstdint>
@@ -23,26 +23,26 @@ namespace limber {
 
 class CarvedChunks final : public ChunkSource {
  public:
-  // Reads the file twice; tells `progress` of stage "recover". throws Error when the file cannot be read
+  // Reads the file twice and reports progress as stage "recover". Throws Error when the file cannot be read.
   explicit CarvedChunks(const Path& path, Progress& progress = no_progress());
   ~CarvedChunks() override;
   CarvedChunks(const CarvedChunks&) = delete;
   CarvedChunks& operator=(const CarvedChunks&) = delete;
 
-  // Packed; nothing unless it is whole, here or in what was added.
+  // Returns the packed chunk from this file or from an added source, or nothing where it is damaged in all of them.
   std::optional<std::string> find(const ChunkHash& hash) override;
-  // Chunks from elsewhere take the place of those that are lost here: of an earlier copy, or of what the project was
-  // made from.
+  // Adds a source for the chunks that are lost in this file: an earlier copy, or the files that the project was made
+  // from.
   void add(std::unique_ptr<ChunkSource> other) { others_.push_back(std::move(other)); }
-  // All that are whole, those first that were written last.
+  // Returns the hashes of all undamaged chunks of this file, the last written first.
   const std::vector<ChunkHash>& latest_first() const { return latest_first_; }
-  // A row of the table of states ("root", "editor", ...), where it is left.
+  // Returns the value of a row of the state table ("root", "editor", ...), or nothing when the row is lost.
   std::optional<std::string> state(const std::string& name) const;
 
  private:
-  struct Cell {                    // a row of the table of chunks
-    std::int64_t rowid, offset;    // of its payload in the file
-    std::uint32_t payload, local;  // bytes in all, and in the page itself
+  struct Cell {                    // a row of the chunk table
+    std::int64_t rowid, offset;    // offset of the payload in the file, bytes
+    std::uint32_t payload, local;  // payload: its whole size, bytes; local: its bytes on the row's own page
   };
   void scan(Progress& progress);
   void scan_table_page(const std::string& page, std::int64_t number);
@@ -56,8 +56,9 @@ class CarvedChunks final : public ChunkSource {
   std::string where_;
   int descriptor_ = -1;
   std::int64_t size_ = 0, page_bytes_ = 8192;
-  std::int64_t bytes_left_ = 0;  // to be read of payloads: rows of a hostile file may share their pages
-  std::unordered_map<ChunkHash, std::vector<Cell>, ChunkHash::Hasher> cells_;  // after keep_whole() one each
+  // Payload bytes that may still be read. They are limited because the rows of a hostile file may share pages.
+  std::int64_t bytes_left_ = 0;
+  std::unordered_map<ChunkHash, std::vector<Cell>, ChunkHash::Hasher> cells_;  // one row per hash after keep_whole()
   std::vector<ChunkHash> latest_first_;
   std::map<std::string, std::string> states_;
   std::vector<std::unique_ptr<ChunkSource>> others_;

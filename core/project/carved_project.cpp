@@ -15,13 +15,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRoots = 64;                              // that are tried; those written last come first
-constexpr int kMostCandidates = 16;                         // for one part
-constexpr std::size_t kLargestNode = std::size_t{4} << 20;  // bytes, packed
+constexpr int kMostRoots = 64;       // number of root nodes that are tried, latest first
+constexpr int kMostCandidates = 16;  // number of nodes that are tried for one part of the document
+constexpr std::size_t kLargestNode = std::size_t{4} << 20;  // upper limit on a node's packed size, bytes
 
 bool is_empty(const Document& document) { return document == Document{}; }
 
-// The kept document, or nothing where it cannot be read or has no part.
+// Reads the document below `root`. Returns nothing where the document cannot be read or is empty.
 std::optional<Document> try_root(const ChunkHash& root, ChunkSource& source, const std::string& where,
                                  std::vector<std::string>& warnings, Progress& progress) {
   try {
@@ -49,7 +49,7 @@ std::optional<Node> node_of(CarvedChunks& chunks, const ChunkHash& hash) {
   return chunk ? to_node(*chunk) : std::nullopt;
 }
 
-// A root as the writer of documents writes it (core/project/document_writer.cpp).
+// The root node of a document, in the layout of core/project/document_writer.cpp.
 struct Root {
   std::map<PartKind, ChunkHash> single;
   std::map<PartKind, std::vector<ChunkHash>> lists;
@@ -73,7 +73,7 @@ struct Root {
       part(kind);
     list(PartKind::Result);
     list(PartKind::Clip);
-    out.put(std::int32_t{0});  // the clip that is shown, and its frame
+    out.put(std::int32_t{0});  // the index of the shown clip; the next value is its frame
     out.put(std::int32_t{0});
     list(PartKind::NamedPose);
     for (const PartKind kind :
@@ -84,7 +84,7 @@ struct Root {
   }
 };
 
-// The carved chunks and a root of our own.
+// A source of the carved chunks and of one root node that was assembled here.
 class WithRoot final : public ChunkSource {
  public:
   WithRoot(ChunkSource& chunks, const Root& root)
@@ -104,7 +104,7 @@ class WithRoot final : public ChunkSource {
   std::string packed_;
 };
 
-// Whether the document has the part that the root names.
+// Returns whether the document contains a part of this kind.
 bool has(const Document& document, PartKind kind) {
   switch (kind) {
     case PartKind::Volume: return document.volume != nullptr;
@@ -146,7 +146,8 @@ class Assembly {
   }
 
  private:
-  // Parts by their kind, the latest first. Volumes and weights that belong to another part are no document's own.
+  // Collects the nodes of each kind, latest first. The volumes of results and the weights of weight layers go last, so
+  // that the document's own volume and weights are tried before them.
   void find_nodes() {
     std::vector<std::pair<PartKind, ChunkHash>> owned;
     for (const ChunkHash& hash : chunks_.latest_first()) {
@@ -185,7 +186,8 @@ class Assembly {
     }
   }
 
-  // What a part is checked against when it is read.
+  // Returns a root node with the parts that the reader needs to check a part of this kind: weights need the volume, for
+  // example.
   Root needed_by(PartKind kind) const {
     Root root;
     const auto take = [&](PartKind part) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A damaged project put together again from the chunks that are whole (core/project/carved_chunks.h).
+// Rebuilds a damaged project from its undamaged chunks (core/project/carved_chunks.h).
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@
 
 namespace limber {
 
-// The document of the last save, as far as it is whole; where its root is lost, that of the latest root there is; where
-// none is left, one made of the parts that were written last, which may be none. Its warnings say what is missing.
-//   where  names the file in messages
+// Returns the project as last saved, as far as its chunks are undamaged. When the root node of the last save is lost,
+// takes the latest save whose root node survives. When no root node survives, assembles a document from the part of
+// each kind that was written last; this document may be empty. The project's warnings say what is missing.
+//   where  the file's name in messages
 Project put_together(CarvedChunks& chunks, const std::string& where, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -13,7 +13,7 @@
 namespace limber {
 
 namespace {
-constexpr int kQuick = 1, kDense = 3;  // zstd levels
+constexpr int kQuick = 1, kDense = 3;  // zstd compression levels
 
 struct NotANode {};
 
@@ -32,13 +32,13 @@ std::size_t ChunkHash::Hasher::operator()(const ChunkHash& hash) const {
 ChunkHash hash_of(std::string_view chunk) { return {sha256(chunk.data(), chunk.size())}; }
 
 std::string pack(std::string_view chunk, Packing packing) {
-  // A context costs a megabyte to make: one a thread.
+  // Each thread keeps one compression context, since creating one allocates a megabyte.
   thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
   std::string packed(ZSTD_compressBound(chunk.size()), '\0');
   const std::size_t size = ZSTD_compressCCtx(context.get(), packed.data(), packed.size(), chunk.data(), chunk.size(),
                                              packing == Packing::Quick ? kQuick : kDense);
-  if (ZSTD_isError(size)) throw std::bad_alloc();  // with room enough, only memory can be lacking
+  if (ZSTD_isError(size)) throw std::bad_alloc();  // the output buffer is large enough, so only memory can be lacking
   packed.resize(size);
   packed.shrink_to_fit();
   return packed;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What projects and journals are made of: chunks of bytes, named by their SHA-256 and kept packed (zstd). What did not
-// change has the name it had, and is not written again; what is read must have its name's hash, or it is damaged.
+// Projects and journals consist of chunks: byte strings that are named by their SHA-256 and stored packed (zstd).
+// Unchanged bytes keep their name and are not written again. Bytes whose SHA-256 is not their name are damaged.
 //
-// A chunk is a leaf (plain bytes) or a node: it names other chunks and carries bytes of its own. A chunk is put only
-// after all that it names, so whoever has a node has everything below it.
+// A chunk is a leaf (plain bytes) or a node, which names other chunks and carries bytes of its own. A node is written
+// only after all chunks that it names, so where a node is stored, everything below it is stored too.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ using ChunkSet = std::unordered_set<ChunkHash, ChunkHash::Hasher>;
 
 ChunkHash hash_of(std::string_view chunk);
 
-constexpr std::size_t kLargestChunk = std::size_t{16}
-                                      << 20;  // bytes, unpacked: what a reader may have to allocate at once
+// Upper limit on the size of an unpacked chunk, bytes. A reader may have to allocate it at once.
+constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
 
 class ChunkSink {
  public:
@@ -42,13 +42,14 @@ class ChunkSink {
 class ChunkSource {
  public:
   virtual ~ChunkSource() = default;
-  virtual std::optional<std::string> find(const ChunkHash& hash) = 0;  // packed
+  virtual std::optional<std::string> find(const ChunkHash& hash) = 0;  // returns the packed chunk, or nothing
 };
 
-// Quick for journals; dense is still faster than most disks.
+// Quick is the faster compression, for journals. Dense gives smaller chunks and is still faster than most disks.
 enum class Packing { Quick, Dense };
 std::string pack(std::string_view chunk, Packing packing);
-// Nothing when the bytes are damaged, are not this hash's, or would unpack to more than kLargestChunk.
+// Returns the unpacked chunk. Returns nothing when the bytes are damaged, do not have this hash, or would unpack to
+// more than kLargestChunk.
 std::optional<std::string> unpack(std::string_view packed, const ChunkHash& hash);
 
 struct Node {
@@ -56,9 +57,9 @@ struct Node {
   std::string bytes;
 };
 std::string to_chunk(const Node& node);
-std::optional<Node> to_node(std::string_view chunk);  // nothing when it is none
+std::optional<Node> to_node(std::string_view chunk);  // nothing when the chunk is not a node
 
-// Adds `root` and every chunk below it to `reached`. False when a node is missing or damaged.
+// Adds `root` and every chunk below it to `reached`. Returns false when a node below `root` is missing or damaged.
 bool reach(const ChunkHash& root, ChunkSource& source, ChunkSet& reached);
 
 }  // namespace limber

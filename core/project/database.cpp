@@ -15,9 +15,10 @@ namespace limber {
 
 namespace {
 constexpr int kBusyMilliseconds = 2000;
-constexpr int kLargestValue = 32 << 20;  // bytes: no damaged length makes SQLite allocate more
+// Upper limit on the size of a value, bytes. SQLite then allocates no more, even if a damaged file asks for it.
+constexpr int kLargestValue = 32 << 20;
 
-// What SQLite may meet in a project and in our own statements, with room to spare.
+// Limits set for SQLite: the most that a project and Limber's own statements need, with a margin.
 constexpr std::array<std::pair<int, int>, 10> kLimits = {{{SQLITE_LIMIT_LENGTH, kLargestValue},
                                                           {SQLITE_LIMIT_SQL_LENGTH, 1 << 16},
                                                           {SQLITE_LIMIT_COLUMN, 16},
@@ -38,7 +39,8 @@ constexpr std::array<std::pair<int, int>, 9> kSwitches = {{{SQLITE_DBCONFIG_DEFE
                                                            {SQLITE_DBCONFIG_DQS_DDL, 0},
                                                            {SQLITE_DBCONFIG_DQS_DML, 0}}};
 
-// Read by SQLite's own file: see Database::first_bytes.
+// Reads the first bytes through SQLite's own file handle: opening and closing a second descriptor would drop the locks
+// of this process (see Database::first_bytes).
 std::string first_bytes_of(sqlite3* handle, int size) {
   sqlite3_file* file = nullptr;
   sqlite3_int64 there = 0;
@@ -49,13 +51,14 @@ std::string first_bytes_of(sqlite3* handle, int size) {
   return code == SQLITE_OK ? bytes : "";
 }
 
-// Whether another program has set the database to write-ahead logging, which Limber never does.
+// Returns whether another program has switched the database to write-ahead logging, which Limber never does.
 bool uses_wal(sqlite3* handle) {
   const std::string header = first_bytes_of(handle, 20);
   return header.size() == 20 && (header[18] == 2 || header[19] == 2);
 }
 
-// A journal or a write-ahead log of SQLite's, by its first bytes; one that has ended is empty or begins with zeros.
+// Returns whether the file begins like a journal or a write-ahead log of SQLite. A journal whose transaction has ended
+// is empty or begins with zeros.
 bool begins_as_journal(const Path& path) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06";
   std::array<char, 8> bytes{};
@@ -103,7 +106,8 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
     if (!std::filesystem::is_regular_file(path, error))
       throw Error("this is not a file", where_, "name a .limber file");
   }
-  // A reader may have to undo a transaction that was cut off, so it too asks to write; SQLite falls back by itself.
+  // Opens the file for writing even for a reader, since the reader may have to roll back an interrupted transaction.
+  // SQLite opens it for reading where writing is not allowed.
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | (mode == Mode::Create ? SQLITE_OPEN_CREATE : 0);
   const int opened = sqlite3_open_v2(vfs_.database().c_str(), &handle_, flags, vfs_.name().c_str());
   try {
@@ -113,7 +117,7 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
     sqlite3_busy_timeout(handle_, kBusyMilliseconds);
     distrust();
     run("PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA mmap_size = 0");
-    // Without shared memory a write-ahead log can only be used by one alone.
+    // Without shared memory, only one connection at a time can use a write-ahead log.
     if (uses_wal(handle_)) run("PRAGMA locking_mode = EXCLUSIVE");
   } catch (...) {
     sqlite3_close(handle_);
@@ -155,8 +159,8 @@ void Database::clear_journal(const Path& path) {
     int code = sqlite3_prepare_v2(database.handle_, "PRAGMA schema_version", -1, &statement, nullptr);
     if (code == SQLITE_OK) sqlite3_step(statement);
     code = sqlite3_finalize(statement);
-    const bool is_broken =
-        (code & 0xff) == SQLITE_NOTADB || (code & 0xff) == SQLITE_CORRUPT;  // and is about to be replaced
+    // A broken database is no failure here, since a new file replaces it.
+    const bool is_broken = (code & 0xff) == SQLITE_NOTADB || (code & 0xff) == SQLITE_CORRUPT;
     if (code != SQLITE_OK && !is_broken) database.fail(code);
   }
   for (const Path& file : {journal, log}) {
@@ -230,7 +234,7 @@ Transaction::~Transaction() {
   if (done_) return;
   try {
     database_.run("ROLLBACK");
-  } catch (const std::exception&) {  // SQLite has rolled back by itself, or will when the file is opened again
+  } catch (const std::exception&) {  // SQLite has rolled back already, or will when the file is opened again
   }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// SQLite, in the few words that a project needs. Every failure is an Error that says what the user can do: the disk is
-// full, the file cannot be written, another program is writing it, it is no database, it is damaged.
+// Wraps the few SQLite calls that a project needs. Every failure is an Error that says what the user can do: the disk
+// is full, the file cannot be written, another program is writing it, it is not a database, or it is damaged.
 //
-// A database is hostile until it has shown otherwise: SQLite sees only the database and its journal
-// (core/project/named_file_vfs.h), and triggers, views, attached databases and extensions are off.
+// A database is treated as hostile: SQLite sees only the database and its journal (core/project/named_file_vfs.h), and
+// triggers, views, attached databases and extensions are off.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct sqlite3_stmt;
 
 namespace limber {
 
-// Thrown where another program has the file just now: trying again helps, recovering does not.
+// Error thrown while another program uses the file: trying again helps, recovering does not.
 class ProjectInUse : public Error {
  public:
   using Error::Error;
@@ -37,17 +37,18 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  // The first bytes of the file, as many as there are; nothing where it cannot be read. Not with a descriptor of our
-  // own: when that is closed the system takes the locks of this process's connections, and a save would lose its own.
+  // Returns up to `size` first bytes of the file, or "" where it cannot be read. Reads through SQLite: if we opened and
+  // closed a file descriptor of our own, the system would drop the locks of this process on the file, and a save that
+  // runs would lose its lock.
   static std::string first_bytes(const Path& path, int size);
 
-  // Rolls back what a save that was cut off has left beside `path`, and removes a journal that belongs to no database
-  // any more, so that a new file may take the name. throws Error when the database is in use, or when what stands
-  // beside it is no journal of Limber's.
+  // Rolls back what an interrupted save left unfinished in the database at `path`, and removes its journal, so that a
+  // new file can take the name. Throws Error when the database is in use, or when the file with the journal's name is
+  // not a journal of SQLite.
   static void clear_journal(const Path& path);
 
   void run(const char* sql);
-  std::int64_t number(const std::string& sql);  // the first column of the first row; 0 without one
+  std::int64_t number(const std::string& sql);  // returns the first column of the first row, or 0 without a row
   [[noreturn]] void fail(int code) const;
 
  private:
@@ -65,12 +66,12 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  Statement& bind(int place, std::string_view bytes);  // as a blob; must live until the next step
-  bool step();                                         // true while there is a row
+  Statement& bind(int place, std::string_view bytes);  // binds a blob, which must live until the next step
+  bool step();                                         // moves to the next row; returns false when there is none
   std::string bytes(int column) const;
   std::int64_t number(int column) const;
   void reset();
-  // Binds, runs to the end and resets.
+  // Binds the two blobs to the parameters 1 and 2, runs the statement to its end and resets it.
   void run(std::string_view first, std::string_view second);
 
  private:
@@ -78,7 +79,7 @@ class Statement {
   sqlite3_stmt* handle_ = nullptr;
 };
 
-// BEGIN IMMEDIATE, rolled back unless committed.
+// A transaction (BEGIN IMMEDIATE) that is rolled back at the end of its scope unless it was committed.
 class Transaction {
  public:
   explicit Transaction(Database& database);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the user works on, as a value: shared immutable parts. An operator copies the document (a few pointers),
-// replaces the parts it changes, and commits the copy to the History; nobody writes an undo. Equal pointers mean
-// unchanged parts: that tells what to upload, to save and what has become stale.
+// The document is all that the user works on, held as shared immutable parts. An operator copies the document (a few
+// pointers), replaces the parts that it changes and commits the copy to the History, so no operator writes an undo.
+// Equal pointers mean unchanged parts: comparing pointers tells what to upload, what to save and which results are
+// stale.
 #pragma once
 
 #include <map>
@@ -29,7 +30,7 @@ namespace limber {
 struct WeightLayers;
 struct SolvedMesh;
 
-// How one tissue is shown. A label without an entry is shown as it is.
+// How one tissue is shown. A label without an entry is visible and opaque.
 struct TissueLook {
   bool visible = true;
   float opacity = 1;  // [0, 1], in the X-ray and tissue displays
@@ -37,7 +38,8 @@ struct TissueLook {
   bool operator==(const TissueLook&) const = default;
 };
 
-// The part of the volume that is shown, in voxel coordinates of the volume's grid (faces at whole numbers - 0.5).
+// The box of the volume that is shown, in voxel coordinates of the volume's grid (voxel faces lie at whole numbers -
+// 0.5).
 struct ClipBox {
   bool enabled = false;
   glm::dvec3 low{0}, high{0};
@@ -45,15 +47,15 @@ struct ClipBox {
   bool operator==(const ClipBox&) const = default;
 };
 
-// What lies on the side that the normal points to is hidden.
+// A plane that hides everything on the side that its normal points to.
 struct ClipPlane {
   bool enabled = false;
-  glm::dvec3 point{0}, normal{0, 0, 1};  // world, mm; unit
+  glm::dvec3 point{0}, normal{0, 0, 1};  // point in world space, mm; unit normal
 
   bool operator==(const ClipPlane&) const = default;
 };
 
-// What of the body is shown. Edits of it are undone like any other.
+// Which tissues are shown, and which region of the volume. Edits of the visibility can be undone like any other edit.
 struct Visibility {
   std::map<Label, TissueLook> looks;
   ClipBox clip_box;
@@ -62,14 +64,15 @@ struct Visibility {
   bool operator==(const Visibility&) const = default;
 };
 
-// Where a resampling's map claimed a posed voxel twice: indices into the posed volume, rising.
+// Voxels of a resampled volume onto which the pose moves two different places of the body, as ascending indices.
 struct Overlap {
-  std::vector<std::int64_t> tissue, bones;  // by two places of tissue; by two bones
+  std::vector<std::int64_t> tissue, bones;  // taken twice by tissue not adjacent at rest; taken by two bones
 
   bool operator==(const Overlap&) const = default;
 };
 
-// A posed volume that a resampling made, with what it was made from, to tell when it has become stale.
+// A posed volume made by resampling. It keeps the parts that it was made from: when they are no longer the document's
+// parts, the result is stale.
 struct Result {
   std::string name;    // unique among the results
   std::string method;  // "lbs", "dqs", "fem", "fem-contact"
@@ -80,36 +83,36 @@ struct Result {
   std::shared_ptr<const Armature> from_armature;
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
-  std::shared_ptr<const SolvedMesh> solved;      // by finite elements, where anything bends; else null
-  std::shared_ptr<const Overlap> overlap;        // null where it was not kept
-  std::shared_ptr<const Seams> from_seams;       // as the document's
-  std::shared_ptr<const BoneMap> from_bone_map;  // as the document's
+  std::shared_ptr<const SolvedMesh> solved;      // the mesh solved by finite elements; null where no joint bends
+  std::shared_ptr<const Overlap> overlap;        // null where the overlap was not kept
+  std::shared_ptr<const Seams> from_seams;       // the seams used (Document::seams)
+  std::shared_ptr<const BoneMap> from_bone_map;  // the bone map used (Document::bone_map)
 };
 
-// Any part may be absent (null); weights, their layers, pose and results need what they belong to.
+// A whole document. Any part may be absent (null), but weights, weight layers, pose and results need the parts that
+// they refer to.
 struct Document {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
-  std::shared_ptr<const FileType> volume_type;  // what the volume's file was
+  std::shared_ptr<const FileType> volume_type;  // the format that the volume was read from
   std::shared_ptr<const Armature> armature;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Pose> pose;  // at `frame`: as the clip says there, until it is changed
+  std::shared_ptr<const Pose> pose;  // starts as the clip's pose at `frame`; the user may change it
   std::shared_ptr<const Visibility> visibility;
   std::vector<std::shared_ptr<const Result>> results;
   std::vector<std::shared_ptr<const Clip>> clips;
-  int clip = 0;   // the one that moves the rig, where there are any
-  int frame = 0;  // of that clip
+  int clip = 0;   // index of the clip that moves the rig, where there are clips
+  int frame = 0;  // the current frame of that clip
   PoseLibrary poses;
   std::shared_ptr<const Anchors> anchors;
   std::shared_ptr<const WeightLocks> locks;
-  std::shared_ptr<const WeightLayers> layers;  // `weights` are what comes out of them; null: the weights have no layers
-  std::shared_ptr<const Seams>
-      seams;  // as the user left them, none where they are empty; null: those that are found by themselves
-  std::shared_ptr<const BoneMap> bone_map;  // which rig bones labels follow where the user says so; null: nowhere
+  std::shared_ptr<const WeightLayers> layers;  // their blend is `weights`; null when the weights have no layers
+  std::shared_ptr<const Seams> seams;          // seams that the user edited (empty: none); null: found automatically
+  std::shared_ptr<const BoneMap> bone_map;     // the rig bones that the user assigned to labels; null: none assigned
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 
-  bool operator==(const Document&) const = default;  // the same parts: pointers, not contents
+  bool operator==(const Document&) const = default;  // compares pointers, not contents
 };
 
 }  // namespace limber

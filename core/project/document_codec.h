@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Documents as chunks and back, bit for bit. Each part is a node; what is large in it (voxels, a group of weight
-// bricks, a motion) lies in leaves of at most a megabyte, so that an edit writes anew only the leaves it touched.
+// Writes documents as chunks and reads them back, bit for bit. Each part of a document is a node. Its large arrays
+// (voxels, a group of weight bricks, a motion) are stored in leaves of at most a megabyte, so that an edit writes only
+// the leaves that it changed.
 //
-// Reading believes nothing: hashes are verified, every list is bounded by the bytes that are there, every index is
-// checked, and a volume is refused when it would not fit into memory. Parts that are equal come back as one part, so
-// that a result still knows what it was made from.
+// The reader trusts nothing: it verifies every hash, checks the length of every list against the bytes that are left,
+// checks every index, and refuses a volume that would not fit into memory. Equal parts are read as one shared part, so
+// that a result still refers to the parts that it was made from.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +21,12 @@
 
 namespace limber {
 
-// Remembers the parts it has written (by pointer, without keeping them), so that what is shared with an earlier
-// document costs nothing. One thread uses it at a time.
+// Writes documents and remembers the parts it has written (by weak pointer), so that a part shared with an earlier
+// document is not written again. Only one thread may use a writer at a time.
 class DocumentWriter {
  public:
-  // Puts what the sink lacks; the root comes last. `progress` is told of stage "save".
+  // Writes the chunks that the sink lacks, the root node last, and returns the root's hash. Reports progress as stage
+  // "save".
   ChunkHash write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress = no_progress());
 
  private:
@@ -32,7 +34,9 @@ class DocumentWriter {
     std::weak_ptr<const void> part;
     ChunkHash hash;
   };
-  struct LastWeights {  // weights differ from the last ones in the same role, or in another, by a few bricks
+  // The weights last written as the blend, as the base or as one layer. New weights mostly differ from some of these in
+  // a few bricks only.
+  struct LastWeights {
     std::vector<std::weak_ptr<const SkinWeights::Chunk>> bricks;
     std::vector<ChunkHash> groups;
   };
@@ -43,14 +47,16 @@ class DocumentWriter {
 };
 
 struct ReadLimits {
-  std::int64_t most_bytes = 0;  // of voxels and weights; 0: what the machine has
-  // Keep the parts that are whole, and of the volume and of weights the blocks that are; say what is not: lost voxels
-  // are air, lost weights those of a block beside them.
+  std::int64_t most_bytes = 0;  // upper limit on the bytes of voxels and weights; 0: 90 % of the free memory
+  // true: keeps the undamaged parts of the document, and the undamaged blocks of the volume and of weights; warnings
+  // say what is lost. Lost voxels become air. Lost weights get the influences of a neighbouring voxel.
   bool leave_out_damaged = false;
 };
 
-// `where` names the file in messages. throws Error when a chunk is missing or damaged, or does not make sense.
-//   warnings  parts that were left out: damaged ones if so asked, and weights or a pose that fit no volume or armature
+// Reads the document below `root`. Throws Error when a chunk is missing, damaged or invalid.
+//   where     the file's name in messages
+//   warnings  receives a line for each part that was left out: damaged parts (only if limits.leave_out_damaged is set),
+//             and weights or a pose that do not fit the volume or armature
 Document read_document(const ChunkHash& root, ChunkSource& source, const std::string& where,
                        std::vector<std::string>& warnings, const ReadLimits& limits = {},
                        Progress& progress = no_progress());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the writer and the reader of documents agree upon. A change of it is a new kDocumentLayout.
+// The byte layout that the document's writer and reader share. Every change of the layout needs a new kDocumentLayout.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,12 @@
 
 namespace limber {
 
-// 1 had one motion and no clips, 2 no library of poses, 3 no anchors, 4 nothing above the two lowest bits of a clip's
-// reference, 5 no locks of weights, 6 no layers of weights, 7 no overlap with a result, 8 neither seams nor a bone map.
+// The reader also accepts the earlier layouts. Layout 1 has one motion and no clips, 2 has no pose library, 3 no
+// anchors, 4 only bits 0 and 1 of packed_reference(), 5 no weight locks, 6 no weight layers, 7 no overlap in a result,
+// 8 neither seams nor a bone map.
 constexpr std::uint32_t kDocumentLayout = 9;
 
-// A part's first byte.
+// The first byte of a part, which names its type.
 enum class PartKind : std::uint8_t {
   Volume = 1,
   Tissues,
@@ -135,15 +136,16 @@ struct PartKindOf<BoneMap> {
   static constexpr const char* kName = "bone map";
 };
 
-// The reference, and above it what source and rig rest in.
+// Packs three settings of a clip into one byte: the retargeting's reference into bits 0 and 1, the rest stance (T-pose,
+// A-pose, ...) of the source skeleton into bits 2 and 3, and the rig's rest stance into bits 4 and 5.
 inline std::uint8_t packed_reference(const Clip& clip) {
   return static_cast<std::uint8_t>(static_cast<int>(clip.retarget.reference) |
                                    static_cast<int>(clip.map.stances.source) << 2 |
                                    static_cast<int>(clip.map.stances.rig) << 4);
 }
 
-constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;   // voxels and long texts
-constexpr std::int64_t kGroupBricks = 32;                    // of weights in one leaf: 256 KB at most
-constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // a part's bytes that its node holds itself
+constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;   // size limit of a leaf of voxels or long text, bytes
+constexpr std::int64_t kGroupBricks = 32;                    // number of weight bricks in one leaf: 256 KB at most
+constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // size limit of a part stored in its node itself, bytes
 
 }  // namespace limber

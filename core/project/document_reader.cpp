@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kMostInList = 100'000;
 constexpr std::int64_t kMostFrames = 1 << 28;
 constexpr std::int32_t kLongestAxis = 1 << 20;
-constexpr std::int64_t kBatch = 32;  // leaves unpacked together
+constexpr std::int64_t kBatch = 32;  // number of leaves that are unpacked in parallel
 
 bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -32,7 +32,7 @@ glm::dquat get_rotation(ByteReader& in) {
   for (double* value : {&q.w, &q.x, &q.y, &q.z}) *value = in.get<double>();
   return q;
 }
-// Far from where sums of a few of them would overflow.
+// Reads a frame number and limits its size, so that sums of a few frame numbers cannot overflow.
 std::int32_t get_frame(ByteReader& in) {
   const auto frame = in.get<std::int32_t>();
   in.require(std::abs(std::int64_t{frame}) <= kMostFrames);
@@ -240,7 +240,7 @@ void get(ByteReader& in, Visibility& visibility) {
   visibility.clip_plane.normal = get_vector(in);
 }
 
-// Whether the weights' bricks are the volume's.
+// Returns whether the weights fit the volume: equal numbers of bricks, and of tissue voxels in each brick.
 bool fits(const SkinWeights& weights, const LabelVolume& volume) {
   const TissueVoxels tissue(volume);
   if (std::ssize(tissue.bricks()) != weights.chunk_count()) return false;
@@ -344,12 +344,12 @@ class Reading {
     return std::move(*node);
   }
 
-  // take(i, bytes) for each leaf, in order.
+  // Calls take(i, bytes) for each leaf, in order. Throws Error where a leaf is missing or damaged.
   template <class Take>
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take) {
     for_leaves(leaves, first, what, take, [&](std::int64_t) { throw damaged(what); });
   }
-  // lost(i) for each that is missing or damaged.
+  // Calls take(i, bytes) for each whole leaf and lost(i) for each leaf that is missing or damaged, in order.
   template <class Take, class Lost>
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take,
                   const Lost& lost) {
@@ -386,7 +386,7 @@ class Reading {
     bytes_left_ -= bytes;
   }
 
-  // Equal parts become one.
+  // Returns the part with this hash. Reads each part only once: later calls with its hash return the same pointer.
   template <class T>
   std::shared_ptr<const T> read(const ChunkHash& hash) {
     const std::string what = PartKindOf<T>::kName;
@@ -473,7 +473,7 @@ class Reading {
     return volume;
   }
 
-  // Without a block only where what is whole is to be kept.
+  // Adds a damaged block to `lost`. Throws Error unless damaged blocks may be left out.
   void lose(std::vector<std::int64_t>& lost, std::int64_t block, const std::string& what) const {
     if (!limits_.leave_out_damaged) throw damaged(what);
     lost.push_back(block);
@@ -483,7 +483,7 @@ class Reading {
   }
 
   static std::int64_t checked_voxel_bytes(const Grid& grid, const ByteReader& in) {
-    const std::int64_t slice = std::int64_t{grid.size.x} * grid.size.y;  // at most 2^40
+    const std::int64_t slice = std::int64_t{grid.size.x} * grid.size.y;  // voxels of a slice, at most 2^40
     in.require(slice == 0 || grid.size.z <= (std::int64_t{1} << 42) / slice);
     return slice * grid.size.z * std::int64_t{sizeof(Label)};
   }
@@ -506,7 +506,7 @@ class Reading {
         [&](std::int64_t group, const std::string& leaf) {
           const auto first = lengths.begin() + group * kGroupBricks;
           const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
-          // Two weights with the same group share its bricks.
+          // Two sets of weights that name the same group of bricks share its bricks in memory.
           auto& known = groups_[node.leaves[group + 1].bytes];
           const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
                                          [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
@@ -529,7 +529,7 @@ class Reading {
     return {std::move(bones), std::move(chunks)};
   }
 
-  // Bricks that are lost take the last influence that is known before them, or else the first behind them.
+  // Fills each lost brick with the last influence in the bricks before it, or with the first influence there is.
   static void fill_lost_bricks(std::vector<std::shared_ptr<const SkinWeights::Chunk>>& bricks,
                                const std::vector<std::uint16_t>& lengths) {
     Influence known = rigid_influence(0);
@@ -669,7 +669,7 @@ class Reading {
     return clip;
   }
 
-  // A long report, many keys: the same bytes, from leaves.
+  // Reads a part whose bytes were too long for its node (a long report, many keys) from the node's leaves.
   template <class T>
   T from_leaves(const Node& node, ByteReader& in) {
     const std::string what = PartKindOf<T>::kName;

@@ -161,7 +161,8 @@ void put(ByteWriter& out, const RetargetMap& map) {
   }
 }
 
-// The influences of a group of bricks, first bones then weights, each in a plane of its own: it packs better.
+// Returns the influences of a group of bricks as eight arrays in a row: the first bone of every voxel, the second, the
+// third and the fourth, then the four weights in the same order. Arrays of one kind of value compress better.
 std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
   const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
   std::vector<std::uint16_t> planes;
@@ -182,7 +183,7 @@ std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
 
 }  // namespace
 
-// One document on its way into one sink.
+// The state while one document is written into one sink.
 class DocumentWriter::Writing {
  public:
   Writing(DocumentWriter& memory, ChunkSink& sink, Packing packing, Progress& progress)
@@ -229,7 +230,7 @@ class DocumentWriter::Writing {
   }
 
  private:
-  // The node of a part, written unless the sink has it.
+  // Writes a part's node unless the sink has it, and returns the node's hash.
   template <class T>
   ChunkHash write(const std::shared_ptr<const T>& part) {
     const auto known = memory_.parts_.find(part.get());
@@ -240,7 +241,7 @@ class DocumentWriter::Writing {
     out.put(static_cast<std::uint8_t>(PartKindOf<T>::kKind));
     fill(node, out, *part);
     std::string bytes = out.take();
-    if (bytes.size() > kInlineBytes && node.leaves.empty()) {  // a long motion, a long report: its bytes go into leaves
+    if (bytes.size() > kInlineBytes && node.leaves.empty()) {  // a long motion or report goes into leaves
       node.bytes.assign(1, bytes[0]);
       append_leaves(node, static_cast<std::int64_t>(bytes.size() - 1), [&](std::int64_t begin, std::int64_t end) {
         return bytes.substr(1 + static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
@@ -275,7 +276,7 @@ class DocumentWriter::Writing {
     std::vector<std::uint16_t> lengths(bricks);
     for (std::int64_t brick = 0; brick < bricks; ++brick)
       lengths[brick] = static_cast<std::uint16_t>(weights.chunk(brick).size());
-    // As a leaf: they stay while weights change.
+    // The number of voxels of each brick is stored in a leaf of its own, since it stays the same while weights change.
     node.leaves.push_back(
         put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
 
@@ -307,7 +308,8 @@ class DocumentWriter::Writing {
     return true;
   }
 
-  // The masks of a group of bricks in a leaf, those one after another that are there.
+  // Writes a weight layer. One leaf tells which bricks have a mask; then each group of bricks has a leaf with its masks
+  // in the order of the bricks.
   void fill(Node& node, ByteWriter& out, const WeightLayer& layer) {
     out.text(layer.name);
     out.flag(layer.visible);
@@ -327,7 +329,7 @@ class DocumentWriter::Writing {
     node.leaves.insert(node.leaves.end(), leaves.begin(), leaves.end());
   }
 
-  // The base first, then the layers from below.
+  // Writes the base weights first, then the layers from bottom to top.
   void fill(Node& node, ByteWriter& out, const WeightLayers& layers) {
     role_ = 1;
     node.nodes.push_back(write(layers.base));
@@ -339,7 +341,8 @@ class DocumentWriter::Writing {
     role_ = 0;
   }
 
-  // A layer's own weights are no part with a pointer of its own.
+  // Writes a layer's weights and returns the hash of their node. The weights are a plain member of the layer, so parts_
+  // cannot remember them by pointer.
   ChunkHash write_weights(const SkinWeights& weights) {
     Node node;
     ByteWriter out;
@@ -363,7 +366,8 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
-    // At the end, as far as the last one that is there: results without one are as they always were.
+    // Writes the optional parts last, up to the last one that exists, so that a result without optional parts has the
+    // same bytes as in earlier layouts.
     const bool has_sources = result.from_seams || result.from_bone_map;
     if (result.solved || result.overlap || has_sources) part(result.solved);
     if (result.overlap || has_sources) part(result.overlap);
@@ -411,10 +415,10 @@ class DocumentWriter::Writing {
     node.leaves.insert(node.leaves.end(), written.begin(), written.end());
   }
 
-  // Hashes and packs in parallel, puts in order.
+  // Hashes and packs the chunks in parallel and puts them into the sink in order.
   template <class Chunk>
   std::vector<ChunkHash> put_all(std::int64_t count, const Chunk& chunk) {
-    constexpr std::int64_t kBatch = 32;  // megabytes at most in memory
+    constexpr std::int64_t kBatch = 32;  // number of leaves in memory at once, each at most a megabyte
     std::vector<ChunkHash> hashes(count);
     for (std::int64_t first = 0; first < count; first += kBatch) {
       progress_.update("save", static_cast<double>(first) / static_cast<double>(count));
@@ -434,7 +438,7 @@ class DocumentWriter::Writing {
       });
       for (std::int64_t i = 0; i < batch; ++i)
         if (missing[i] && !sink_.has(hashes[first + i]))
-          sink_.put(hashes[first + i], bytes[i]);  // equal ones came once
+          sink_.put(hashes[first + i], bytes[i]);  // equal chunks are put once
     }
     return hashes;
   }
@@ -449,7 +453,7 @@ class DocumentWriter::Writing {
   ChunkSink& sink_;
   const Packing packing_;
   Progress& progress_;
-  int role_ = 0;  // of the weights that are written: what comes out, the base, the layers from below
+  int role_ = 0;  // weights being written: 0 the blend of all layers, 1 the base, 2... the layers from bottom to top
 };
 
 ChunkHash DocumentWriter::write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress) {

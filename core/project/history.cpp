@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-// What the heap adds to a block, and a shared_ptr's counts.
+// Bytes that a heap block takes in addition to its contents: the heap's own data and a shared_ptr's use counts.
 constexpr std::int64_t kBlock = 32;
 
 template <class Vector>
@@ -37,7 +37,7 @@ std::int64_t own_bytes(const Armature& armature) {
   for (const Bone& bone : armature.bones) bytes += heap_bytes(bone.name);
   return bytes;
 }
-std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are shared
+std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are counted on their own
   std::int64_t bytes = kBlock + weights.chunk_count() * std::int64_t{sizeof(std::shared_ptr<const SkinWeights::Chunk>)};
   for (const std::string& bone : weights.bones()) bytes += heap_bytes(bone) + std::int64_t{sizeof bone};
   return bytes;
@@ -56,8 +56,8 @@ std::int64_t own_bytes(const NamedPose& pose) {
     bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
   return bytes;
 }
-std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is shared
-  constexpr std::int64_t kNode = kBlock + 48;  // of a map
+std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is counted on its own
+  constexpr std::int64_t kNode = kBlock + 48;  // overhead of a map's node, bytes
   std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
   for (const auto& [bone, source] : clip.map.sources)
     bytes += kNode + std::int64_t{sizeof source} + heap_bytes(bone) + heap_bytes(source.joint);
@@ -67,7 +67,7 @@ std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is s
   return bytes;
 }
 std::int64_t own_bytes(const Anchors& anchors) {
-  constexpr std::int64_t kNode = kBlock + 32;  // of a set or map
+  constexpr std::int64_t kNode = kBlock + 32;  // overhead of a node of a set or map, bytes
   std::int64_t bytes = 0;
   for (const std::string& bone : anchors.pins) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
   for (const auto& [bone, place] : anchors.poles)
@@ -75,21 +75,22 @@ std::int64_t own_bytes(const Anchors& anchors) {
   return bytes;
 }
 std::int64_t own_bytes(const WeightLocks& locks) {
-  constexpr std::int64_t kNode = kBlock + 32;  // of a set
+  constexpr std::int64_t kNode = kBlock + 32;  // overhead of a set's node, bytes
   std::int64_t bytes = 0;
   for (const std::string& bone : locks.bones) bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
   return bytes;
 }
 std::int64_t own_bytes(const Seams& seams) { return seams.heap_bytes() + 2 * kBlock; }
 std::int64_t own_bytes(const BoneMap& map) {
-  constexpr std::int64_t kNode = kBlock + 32;  // of a map
+  constexpr std::int64_t kNode = kBlock + 32;  // overhead of a map's node, bytes
   std::int64_t bytes = 0;
   for (const auto& [label, bone] : map)
     bytes += kNode + std::int64_t{sizeof label + sizeof bone} + heap_bytes(label) + heap_bytes(bone);
   return bytes;
 }
 std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
-// Without chunks and masks, which are shared.
+// Counts neither the chunks of the layer's weights nor its masks: documents share them, so they are counted on their
+// own.
 std::int64_t own_bytes(const WeightLayer& layer) {
   return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask);
 }
@@ -112,8 +113,8 @@ std::int64_t own_bytes(const Result& result) {
 
 }  // namespace
 
-// How often each part stands in the line. A part is entered by its address; what is inside of it (a weights' chunks,
-// what a result was made from) is visited when it comes for the first time and when it goes for good.
+// Counts how many documents of the history use each part, by the part's address. The parts within a part (the chunks of
+// weights, the parts that a result was made from) are counted once for the part that contains them.
 class History::Ledger {
  public:
   void add(const Document& document) { visit(document, +1); }
@@ -121,7 +122,8 @@ class History::Ledger {
   std::int64_t bytes() const { return bytes_; }
 
  private:
-  // True when the part came for the first time, or went for good.
+  // Adds or removes one use of a part, for step 1 or -1. Returns true for the part's first use and when its last use is
+  // removed.
   template <class T>
   bool count(const std::shared_ptr<const T>& part, int step) {
     if (!part) return false;
@@ -249,7 +251,7 @@ void History::set_limit(std::int64_t bytes) {
   keep_within_limit();
 }
 
-// Undo's oldest states go first; when none is left, redo's last.
+// Drops the oldest undo steps first; when none is left, drops redo steps from the end.
 void History::keep_within_limit() {
   if (bytes() <= limit_) return;
   const std::int64_t most = std::max(limit_, current_bytes() + limit_ / 2);

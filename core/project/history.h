@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Undo and redo: a line of documents, each with the label of the edit that made it. Documents share their parts, so a
-// step costs what it changed. Memory is bounded: when the distinct parts of the line (weights by brick, a volume once)
-// take more than the limit, the oldest states go, and note() says so. The limit counts the current document too, but
-// leaves at least half of itself to the others, so that a large volume does not take undo away.
+// Undo and redo: a list of documents, each with the label of the edit that made it. Documents share their parts, so a
+// step costs only what it changed. Memory is bounded: when the distinct parts of all steps (weights by brick, a volume
+// once) exceed the limit, the oldest steps are dropped, and note() says so. The current document counts too, but the
+// other steps may always use half of the limit, so that a large volume does not disable undo.
 //
-// One thread owns a History.
+// Only one thread may use a History.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ class History {
   static constexpr std::int64_t kDefaultLimit = std::int64_t{1} << 30;  // bytes
 
   struct Step {
-    std::string label;  // of the edit that made it: "Paint weights"
+    std::string label;  // the edit that made the document, such as "Paint weights"
     Document document;
-    std::int64_t revision;  // of this state alone, never given again
+    std::int64_t revision;  // unique number of this state of the document
   };
 
   explicit History(Document first = {}, std::string label = "New project", std::int64_t limit_bytes = kDefaultLimit);
@@ -34,37 +34,37 @@ class History {
   const Document& current() const { return steps_[position_].document; }
   std::int64_t revision() const { return steps_[position_].revision; }
 
-  // Makes `next` current and forgets what could be redone. False, and nothing happens, when it equals the current
-  // document (the same parts).
+  // Makes `next` current and forgets all steps that could be redone. Returns false and does nothing when `next` has
+  // the same parts as the current document.
   bool commit(std::string label, Document next);
-  // In place of the current step, which becomes what it would have been at once: for many small steps of one deed. It
-  // is then the last step.
+  // Replaces the current step by `next` and forgets all steps that could be redone. So a series of small edits, such as
+  // a drag, becomes one step.
   void amend(std::string label, Document next);
-  // Another project: one step that counts as saved.
+  // Starts the history of another project: one step, which counts as saved.
   void reset(Document first, std::string label);
 
   bool can_undo() const { return position_ > 0; }
   bool can_redo() const { return position_ + 1 < std::ssize(steps_); }
   bool undo();  // false when there is nothing to undo
   bool redo();
-  void jump(std::int64_t step);  // [0, #steps)
+  void jump(std::int64_t step);  // step in [0, #steps)
 
-  // Oldest first; `position` is the current one.
+  // The steps, oldest first; position() is the index of the current one.
   const std::vector<Step>& steps() const { return steps_; }
   std::int64_t position() const { return position_; }
 
-  // The state that was saved, which may no longer be the current one when the saving ends.
+  // Marks the state with this revision as saved. It may no longer be the current state when a save ends.
   void mark_saved(std::int64_t revision) { saved_ = revision; }
-  void mark_unsaved() { saved_ = -1; }  // as after a recovery
+  void mark_unsaved() { saved_ = -1; }  // for example after a recovery
   bool unsaved() const { return revision() != saved_; }
 
-  // Bytes of all distinct parts of all steps, and of the current document's alone.
+  // bytes() returns the size of the distinct parts of all steps, current_bytes() that of the current document's parts.
   std::int64_t bytes() const;
   std::int64_t current_bytes() const;
   std::int64_t limit() const { return limit_; }
   void set_limit(std::int64_t bytes);
   std::int64_t dropped() const { return dropped_; }
-  std::string note() const;  // "The 12 oldest steps were dropped to stay within 64 MB." or ""
+  std::string note() const;  // "The 12 oldest steps were dropped to keep undo within 64 MB." or ""
 
  private:
   class Ledger;
@@ -75,7 +75,7 @@ class History {
   std::unique_ptr<Ledger> ledger_;
 };
 
-// Bytes of a document's distinct parts.
+// Returns the size of a document's distinct parts, in bytes.
 std::int64_t bytes_of(const Document& document);
 
 }  // namespace limber

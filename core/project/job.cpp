@@ -21,11 +21,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kChangeInterval = std::chrono::milliseconds(50);
-constexpr int kLongAtOnce = 1;           // each takes all cores by itself
-constexpr double kFirstEstimate = 0.5;   // seconds; earlier ones jump about
-constexpr double kLeastFraction = 0.02;  // likewise
-constexpr double kPatience = 0.1;        // seconds that a cancelled job holds up the queue
-constexpr double kFarewell = 1;          // seconds that ~Jobs waits
+constexpr int kLongAtOnce = 1;           // number of long jobs that run together; each uses all cores
+constexpr double kFirstEstimate = 0.5;   // seconds that a stage runs without an estimate, since early ones fluctuate
+constexpr double kLeastFraction = 0.02;  // fraction of a stage done without an estimate, since early ones fluctuate
+constexpr double kPatience = 0.1;        // seconds for which a cancelled job that still runs blocks its queue
+constexpr double kFarewell = 1;          // seconds that ~Jobs waits for its jobs to end
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -36,15 +36,15 @@ std::string out_of_memory(const std::string& label) {
 }
 }  // namespace
 
-// Shared with the jobs' threads, and outlives Jobs while one of them hangs.
+// The state that Jobs shares with the threads of its jobs. It outlives Jobs when a job hangs.
 struct Jobs::Board {
-  std::mutex mutex;  // guards what is below and every job's status and edit
+  std::mutex mutex;  // guards the members below, and every job's status and edit
   std::condition_variable ended;
   std::function<void()> on_change;
   bool changed = false;
-  std::vector<int> finished;  // with an edit to apply, in order
+  std::vector<int> finished;  // ids of jobs whose edit must be committed, in the order in which they ended
 
-  void tell() {  // with the mutex held
+  void tell() {  // call this with the mutex locked
     changed = true;
     if (on_change) on_change();
   }
@@ -75,9 +75,9 @@ struct Jobs::Job final : Progress {
   const std::shared_ptr<Board> board;
   const Lane lane;
   Work work;
-  std::jthread thread;  // the owner's
+  std::jthread thread;  // used only by the owner's thread
 
-  // guarded by board->mutex
+  // The members below are guarded by board->mutex.
   JobStatus status;
   Edit edit;
   Clock::time_point started, stage_started, cancelled_at, last_told;
@@ -110,12 +110,12 @@ int Jobs::start(std::string label, Work work, Lane lane) {
   return id;
 }
 
-// In the job's thread.
+// Does the job's work, in the job's own thread.
 void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>& board) {
   JobState state = JobState::Done;
   std::string message;
   Edit edit;
-  const std::string label = job->status.label;  // constant
+  const std::string label = job->status.label;  // does not change, so it needs no lock
   try {
     const CancelScope cancels_loops(*job);
     edit = job->work(*job);
@@ -127,7 +127,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
   } catch (const std::bad_alloc&) {
     state = JobState::Failed;
     message = out_of_memory(label);
-  } catch (const std::length_error&) {  // a vector of more than there can ever be
+  } catch (const std::length_error&) {  // thrown for a vector longer than its max_size()
     state = JobState::Failed;
     message = out_of_memory(label);
   } catch (const std::exception& error) {
@@ -137,7 +137,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
     state = JobState::Failed;
     message = Error("a mistake of the program itself", label, "please report what you did").what();
   }
-  job->work = {};  // its inputs go with it
+  job->work = {};  // also frees the job's inputs
 
   const std::lock_guard lock(board->mutex);
   if (job->cancelled()) state = JobState::Cancelled;
@@ -154,7 +154,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
 
 void Jobs::start_waiting() {
   const std::lock_guard lock(board_->mutex);
-  std::array<int, 2> running{};  // by lane
+  std::array<int, 2> running{};  // number of running jobs in each lane
   const auto running_beside = [&](const auto& job) -> int& { return running[static_cast<std::size_t>(job->lane)]; };
   for (const auto& job : jobs_)
     running_beside(job) += job->status.state == JobState::Running ||
@@ -268,7 +268,7 @@ void Jobs::dismiss(int id) {
     jobs_.erase(place);
     board_->changed = true;
   }
-  if (gone->thread.joinable()) gone->thread.join();  // it has ended, but for its last step
+  if (gone->thread.joinable()) gone->thread.join();  // the thread has ended, or is about to return
 }
 
 void Jobs::dismiss_ended() {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Long work beside a live editor. A job works on copies of its inputs in a thread of its own and returns an *edit*:
-// what it changes in the document of the moment when it is done, so that what the user did meanwhile is kept. Whatever
-// goes wrong in a job becomes its message: an Error, a lack of memory, any exception; a cancel is shown as such.
+// Runs long work beside a live editor. A job works on copies of its inputs in a thread of its own and returns an
+// *edit*, a function that changes the document that is current when the job ends, so that the user's edits made
+// meanwhile are kept. Any failure of a job (an Error, a lack of memory, any exception) becomes its message. A cancelled
+// job is shown as cancelled, not as failed.
 //
-// A job that is cancelled ends at its next Progress::update. One that does not is shown as Stopping and no longer holds
-// up the queue; if it still hangs when Jobs goes, it is left to itself (it owns all that it uses).
+// A cancelled job ends at its next Progress::update. Until then it is shown as Stopping and no longer holds up the
+// queue. If it still hangs when Jobs is destroyed, its thread runs on alone: it owns everything that it uses.
 //
-// One thread owns Jobs: it alone calls the functions and applies the edits.
+// One thread owns Jobs: only that thread calls its functions and applies the edits.
 #pragma once
 
 #include <functional>
@@ -21,58 +22,59 @@
 
 namespace limber {
 
-// Applied in the owner's thread. An empty one changes nothing.
+// A job's change of the document, applied in the owner's thread. An empty function changes nothing.
 using Edit = std::function<Document(const Document& now)>;
 using Work = std::function<Edit(Progress& progress)>;
 
-// Who waits for whom. Long jobs, of minutes, run one at a time beside all others, so that nobody waits for them.
+// The queue of a job. Long jobs take minutes: they run one at a time beside the common jobs, so that no common job
+// waits for them.
 enum class Lane { Common, Long };
 
 enum class JobState { Queued, Running, Stopping, Done, Failed, Cancelled };
 
 struct JobStatus {
   int id = 0;
-  std::string label;  // "Diffuse heat": also the history's label for its edit
+  std::string label;  // such as "Diffuse heat"; also the label of its edit in the history
   JobState state = JobState::Queued;
-  std::string stage;                   // "weights"; empty before the first
-  double fraction = 0;                 // of the stage, [0, 1]
-  double seconds = 0;                  // since it was started
-  std::optional<double> seconds_left;  // of the stage, where it can be told
-  std::string message;                 // why it failed
+  std::string stage;                   // such as "weights"; empty before the first stage
+  double fraction = 0;                 // finished fraction of the stage, [0, 1]
+  double seconds = 0;                  // running time of the job
+  std::optional<double> seconds_left;  // estimated time until the stage ends; empty without an estimate
+  std::string message;                 // reason for which the job failed
 
   bool active() const { return state == JobState::Queued || state == JobState::Running || state == JobState::Stopping; }
 };
 
 class Jobs {
  public:
-  // at_once   that many common ones run together, the others wait in order
-  // on_change called from any thread when a poll() is worth it, at most 20 times a second per job (as
-  // glfwPostEmptyEvent);
-  //           it must not call Jobs itself, and is never called after Jobs has gone
+  //   at_once    number of common jobs that run together; the others wait in order
+  //   on_change  is called in any thread when the owner should call poll() (for example glfwPostEmptyEvent). Progress
+  //              alone calls it at most 20 times a second per job. It must not call Jobs itself, and is never called
+  //              after Jobs is destroyed.
   explicit Jobs(int at_once = 2, std::function<void()> on_change = {});
-  // Cancels all and waits for them, at most a second.
+  // Cancels all jobs and waits at most a second for them to end.
   ~Jobs();
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  void set_at_once(int count) { at_once_ = count; }                   // for those that start from now on
-  int start(std::string label, Work work, Lane lane = Lane::Common);  // returns its id
+  void set_at_once(int count) { at_once_ = count; }                   // for jobs that start from now on
+  int start(std::string label, Work work, Lane lane = Lane::Common);  // returns the job's id
   void cancel(int id);
   void cancel_all();
 
-  // Commits the edits of the jobs that are done, in the order they ended, and starts what waits. True when any job's
-  // state changed since the last call.
+  // Commits the edits of the finished jobs in the order in which they ended, and starts waiting jobs. Returns true
+  // when any job's state changed since the last call.
   bool poll(History& history);
 
-  // Oldest first. Jobs that ended stay until dismissed.
+  // The jobs, oldest first. Ended jobs stay in the list until they are dismissed.
   std::vector<JobStatus> statuses() const;
   JobStatus status(int id) const;
-  bool busy() const;  // any job active, or ended since the last poll()
+  bool busy() const;  // true when any job is active or has ended since the last poll()
   void dismiss(int id);
   void dismiss_ended();
 
-  // Cancels all and waits that long; false when a job still hangs. A program then ends by std::_Exit, since what it
-  // hangs on must not be torn down under it.
+  // Cancels all jobs and waits up to `seconds` for them to end. Returns false when a job still hangs. The program must
+  // then end by std::_Exit, since destructors would free what the hanging job uses.
   bool shut_down(double seconds);
 
  private:

@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "LimberEd";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeadBytes = 8, kSumBytes = 8;
-constexpr std::size_t kMostPayload =
-    kLargestChunk + (std::size_t{1} << 20);  // an incompressible chunk is a little larger
+// Upper limit on a record's payload, bytes. A packed chunk can be slightly longer than the unpacked one.
+constexpr std::size_t kMostPayload = kLargestChunk + (std::size_t{1} << 20);
 
 enum RecordType : std::uint32_t { kHeader = 1, kChunk = 2, kEdit = 3 };
 
@@ -33,7 +33,7 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// type, length, payload, the beginning of the SHA-256 of these
+// Returns a journal record: type, length, payload, and a checksum (the first bytes of the SHA-256 of the others).
 std::string record(std::uint32_t type, const std::string& payload) {
   ByteWriter out;
   out.put(type);
@@ -71,7 +71,7 @@ struct Malformed {};
 
 }  // namespace
 
-// ---- writing
+// ---- writing a journal
 
 JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open)
     : chunks_(std::move(start.base_chunks)) {
@@ -119,12 +119,12 @@ void JournalWriter::write(const Document& document, const std::string& label, Do
   try {
     file_->sync();
   } catch (...) {
-    broken_ = true;  // nobody knows what of it is on the disk
+    broken_ = true;  // it is unknown which bytes are on the disk
     throw;
   }
 }
 
-// ---- reading
+// ---- reading a journal
 
 JournalReader::JournalReader(const Path& path)
     : where_(path.string()),
@@ -140,7 +140,7 @@ JournalReader::JournalReader(const Path& path)
 
 JournalReader::~JournalReader() { ::close(descriptor_); }
 
-// Up to the first record that is not whole.
+// Reads the journal's records up to the first one that is incomplete or damaged.
 void JournalReader::scan() {
   std::int64_t offset = 0;
   const std::int64_t end = ::lseek(descriptor_, 0, SEEK_END);
@@ -203,7 +203,7 @@ std::optional<std::string> JournalReader::find(const ChunkHash& hash) {
   return packed;
 }
 
-// ---- what a session has left
+// ---- the journals of earlier sessions
 
 Path edits_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
@@ -220,11 +220,11 @@ Path edits_folder() {
 Path journal_path(const Path& project) { return project.string() + "-edits"; }
 
 namespace {
-// The root that was saved last; none when that cannot be told.
+// Returns the root of the project's last save, or nothing when it cannot be read.
 std::optional<ChunkHash> saved_root(const Path& project) {
   try {
     if (is_project(project)) return read_mark(project).root;
-  } catch (const Error&) {  // damaged or in use: then the edits are all the more worth offering
+  } catch (const Error&) {  // a damaged or busy project: its edits are offered
   }
   return std::nullopt;
 }
@@ -269,7 +269,7 @@ std::vector<Recoverable> all_recoverable(const Path& folder) {
 
 namespace {
 
-// The journal's chunks, and behind them the project's.
+// A source that looks for a chunk in the journal first, then in the saved project.
 class Both final : public ChunkSource {
  public:
   Both(JournalReader& journal, ChunkSource* saved) : journal_(journal), saved_(saved) {}
@@ -283,7 +283,7 @@ class Both final : public ChunkSource {
   ChunkSource* saved_;
 };
 
-// The last edit that can be read within the limits.
+// Reads the latest edit that is readable within the limits. Returns false when no edit is.
 bool read_latest(const JournalReader& reader, ChunkSource& source, const ReadLimits& limits, const Path& journal,
                  Recovered& recovered, Progress& progress) {
   const auto& edits = reader.edits();
@@ -301,7 +301,7 @@ bool read_latest(const JournalReader& reader, ChunkSource& source, const ReadLim
                                      " edits could not be read: parts of the project are missing");
       return true;
     } catch (const Error&) {
-      continue;  // an earlier one may be whole
+      continue;  // an earlier edit may be readable
     }
   }
   return false;
@@ -321,7 +321,8 @@ Recovered recover(const Path& journal, Progress& progress) {
   Both both(reader, saved.get());
   if (read_latest(reader, both, {}, journal, recovered, progress)) return recovered;
 
-  // The project it builds on is damaged: what is whole of it, and of the last edit that still has a part.
+  // No edit is readable, so the project file that the journal builds on is damaged. Searches that file for undamaged
+  // chunks, and reads the latest edit of which at least one part is readable.
   std::error_code error;
   if (fs::is_regular_file(reader.project(), error)) {
     CarvedChunks carved(reader.project(), progress);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What was edited since the last save, on disk: NAME.limber-edits beside the project, or a file of its own in the
-// user's state folder for a project that was never saved. (NAME.limber-journal is SQLite's own.)
+// The journal keeps on disk what was edited since the last save: in NAME.limber-edits beside the project, or in a file
+// in the user's state folder for a project that was never saved. (NAME.limber-journal belongs to SQLite.)
 //
-// A journal is appended to, record by record, each with a checksum: first a header, then chunks that neither the
-// project nor the journal has, then the edit that they make whole, then a sync. Whatever a crash or a power cut leaves
-// of the last write is no whole record and is not read. It starts anew, under another name that is then given to it,
-// after each save: from then on it relies on the chunks of that save.
+// A journal is a file of appended records, each with a checksum. It begins with a header. For each edit there follow
+// the chunks that neither the project nor the journal has, and a record that names the edit's root chunk; then the file
+// is synced to the disk. If a crash or a power cut interrupts a write, the last record is incomplete and is not read.
+// After each save a new journal, written under another name and then renamed, replaces the old one and builds on the
+// chunks of that save.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,10 @@ namespace limber {
 
 class JournalWriter final : public ChunkSink {
  public:
-  // project  absolute, empty when never saved        base  the save that the journal builds on, with its chunks
-  // Comes into being in one step, whole and locked. throws Error, also when the name is taken and not to be replaced
+  // The settings of a new journal. Its file appears in one step, complete and locked. The constructor throws Error when
+  // the file cannot be written, or when the name is taken and `replace` is false.
+  //   project  absolute path, empty for a project that was never saved
+  //   base     the save that the journal builds on; base_chunks lists that save's chunks
   struct Start {
     Path path, project;
     std::optional<SaveMark> base;
@@ -35,7 +38,8 @@ class JournalWriter final : public ChunkSink {
   };
   JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open = open_log);
 
-  // On the disk when it returns. throws Error; then write again, or start anew when broken().
+  // Writes the document as an edit, which is on the disk when the call returns. After an Error the caller calls this
+  // again, or starts a new journal when broken() is true.
   void write(const Document& document, const std::string& label, DocumentWriter& writer);
   bool broken() const { return broken_; }
   std::int64_t bytes() const { return bytes_; }
@@ -51,15 +55,15 @@ class JournalWriter final : public ChunkSink {
   bool broken_ = false;
 };
 
-// What a journal holds, as far as it is whole.
+// Reads a journal up to its first record that is incomplete or damaged.
 class JournalReader final : public ChunkSource {
  public:
   struct Edit {
     ChunkHash root;
     std::string label;
-    std::int64_t time;  // s since 1970
+    std::int64_t time;  // seconds since 1970
   };
-  // throws Error when it cannot be read or is no journal
+  // Throws Error when the journal cannot be read or is not a journal.
   explicit JournalReader(const Path& path);
   ~JournalReader() override;
 
@@ -82,24 +86,26 @@ class JournalReader final : public ChunkSource {
   std::map<std::array<std::uint8_t, 32>, Place> chunks_;
 };
 
-// Edits that a session which did not end well has left.
+// Unsaved edits that an earlier session left in its journal.
 struct Recoverable {
-  Path journal, project;  // the project is empty when it was never saved
-  std::string label;      // of the last edit
-  std::int64_t time = 0;  // of the last edit, s since 1970
+  Path journal, project;  // project: empty when it was never saved
+  std::string label;      // label of the last edit
+  std::int64_t time = 0;  // time of the last edit, seconds since 1970
   std::int64_t edits = 0;
 };
 
-// $XDG_STATE_HOME/limber/edits, made when it is not there.
+// Returns $XDG_STATE_HOME/limber/edits (by default ~/.local/state/limber/edits) and creates the folder where it is
+// missing.
 Path edits_folder();
-// NAME.limber-edits
+// Returns the project's path with "-edits" appended: NAME.limber-edits.
 Path journal_path(const Path& project);
 
-// Nothing when the journal is in use, cannot be read, or holds no edit that the project lacks.
+// Describes the edits in a journal. Returns nothing when the journal is in use or unreadable, or when the project file
+// holds its last edit.
 std::optional<Recoverable> recoverable(const Path& journal);
-// Of a journal that is open and has edits.
+// Describes the edits in a journal that the caller has open and that has at least one edit.
 Recoverable recoverable(const JournalReader& reader, const Path& journal);
-// All that the edits folder knows of, the latest first.
+// Describes the edits of all journals in the edits folder or linked from it, the latest first.
 std::vector<Recoverable> all_recoverable(const Path& folder = edits_folder());
 
 struct Recovered {
@@ -108,9 +114,9 @@ struct Recovered {
   std::string label;
   std::vector<std::string> warnings;  // edits and parts that could not be read
 };
-// The document after the last edit that is whole. throws Error when there is none
+// Returns the document after the latest edit that is readable. Throws Error when no edit is readable.
 Recovered recover(const Path& journal, Progress& progress = no_progress());
-// Removes the journal and the edits folder's note of it.
+// Removes the journal and the link to it in the edits folder.
 void discard(const Path& journal, const Path& folder = edits_folder());
 
 }  // namespace limber

@@ -22,7 +22,7 @@ class PosixLogFile final : public LogFile {
     ::unlink(path.c_str());
     descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail();
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // it is new: nobody else has it; a file system without locks has none
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // cannot fail on a new file, except where the file system has no locks
   }
   ~PosixLogFile() override { ::close(descriptor_); }
 
@@ -38,7 +38,8 @@ class PosixLogFile final : public LogFile {
     if (::fdatasync(descriptor_) != 0) fail();
   }
   void cut(std::int64_t size) override {
-    if (::ftruncate(descriptor_, size) != 0) return;  // what stands behind is no whole record, and is not read
+    if (::ftruncate(descriptor_, size) != 0)
+      return;  // the bytes that remain are an incomplete record, so readers ignore them
   }
 
  private:
@@ -63,7 +64,7 @@ bool same_file(int descriptor, const Path& path) {
 std::unique_ptr<LogFile> open_log(const Path& path) { return std::make_unique<PosixLogFile>(path); }
 
 FileLock::FileLock(const Path& path) {
-  constexpr int kAttempts = 100;  // the file may be replaced just when it is opened
+  constexpr int kAttempts = 100;  // attempts to lock; another process may replace the file meanwhile
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return;

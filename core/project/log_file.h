@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A file that is only ever appended to, locked by whoever has it open. Behind an interface, so that tests can lose what
-// a power cut would lose.
+// A file that is only appended to, and locked by the process that has it open. It is an interface so that tests can
+// simulate a power cut by losing the bytes that were not synced.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +15,21 @@ namespace limber {
 class LogFile {
  public:
   virtual ~LogFile() = default;
-  virtual void append(std::string_view bytes) = 0;  // all of them, or throws Error and the file may have grown by some
-  virtual void sync() = 0;                          // on the disk, or throws Error
-  virtual void cut(std::int64_t size) = 0;          // back to that size; best effort
+  virtual void append(std::string_view bytes) = 0;  // appends all bytes; an Error may leave some of them appended
+  virtual void sync() = 0;                          // returns when all bytes are on the disk, or throws Error
+  virtual void cut(std::int64_t size) = 0;          // shortens the file to `size` bytes where that is possible
 };
 
-// A new empty file in place of whatever has that name. throws Error
+// Creates an empty file in place of any file with that name. Throws Error when it cannot.
 using OpenLog = std::function<std::unique_ptr<LogFile>(const Path&)>;
 std::unique_ptr<LogFile> open_log(const Path& path);
 
-// Another's file, held while this lives. The lock is the system's (flock): it goes when the process ends, however it
-// ends.
+// Holds a lock on a file that another process may own, as long as this object lives. The lock is the system's (flock),
+// so it ends with the process, however the process ends.
 class FileLock {
  public:
   FileLock() = default;
-  // Nothing is locked when another process has it, or when there is no such file: taken() says so.
+  // Locks nothing when another process has the lock or when there is no such file; taken() then returns false.
   explicit FileLock(const Path& path);
   ~FileLock();
   FileLock(FileLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
@@ -40,7 +40,7 @@ class FileLock {
   int descriptor_ = -1;
 };
 
-// The folder's names are on the disk: files made, renamed or removed in it stay so.
+// Syncs the folder to the disk, so that files created, renamed or removed in it remain so after a power cut.
 void sync_folder(const Path& folder);
 
 }  // namespace limber

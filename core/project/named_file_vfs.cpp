@@ -35,14 +35,15 @@ namespace {
 
 using State = NamedFileVfs::State;
 
-// The end of a journal that names a super-journal: the name, its length, a sum of its bytes, these eight bytes.
+// The last eight bytes of a journal that names a super-journal. Before these bytes stand the super-journal's name, the
+// name's length (4 bytes) and the sum of the name's bytes (4 bytes).
 constexpr std::array<unsigned char, 8> kJournalMagic = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
 constexpr int kSuperTail = 16;
 
 State* state_of(sqlite3_vfs* vfs) { return static_cast<State*>(vfs->pAppData); }
 
-// The system's methods of the file, without shared memory and memory maps: those would be files of their own. They
-// stand behind the system's part of the file.
+// Gives `file` a copy of the system's file methods, but without shared memory and memory maps, which would open further
+// files. The copy is stored behind the system's own data of the file.
 void limit_methods(sqlite3_file* file, int system_bytes) {
   auto* methods = new (reinterpret_cast<char*>(file) + system_bytes) sqlite3_io_methods(*file->pMethods);
   methods->iVersion = 1;
@@ -54,7 +55,8 @@ bool is_regular_or_missing(const char* path) {
   return ::lstat(path, &status) != 0 || S_ISREG(status.st_mode);
 }
 
-// Whether the journal ends as one that names a super-journal. A sum that does not fit is no excuse.
+// Returns whether the journal ends like one that names a super-journal. The name's checksum is not verified, since a
+// wrong one does not make the journal harmless.
 bool names_super_journal(sqlite3_file* file) {
   sqlite3_int64 size = 0;
   std::array<unsigned char, kSuperTail> tail{};
@@ -65,7 +67,8 @@ bool names_super_journal(sqlite3_file* file) {
          std::memcmp(tail.data() + kSuperTail - kJournalMagic.size(), kJournalMagic.data(), kJournalMagic.size()) == 0;
 }
 
-// SQLite takes whatever has a journal's name for a journal, and removes it.
+// Returns true when the file does not begin like a journal. Such a file must be refused, since SQLite would take any
+// file with the journal's name for one and delete it.
 bool is_no_journal(sqlite3_file* file) {
   sqlite3_int64 size = 0;
   std::array<unsigned char, 8> begin{};
@@ -75,7 +78,7 @@ bool is_no_journal(sqlite3_file* file) {
   return begin[0] != 0 && begin != kJournalMagic;
 }
 
-// Says why the journal that has just been opened is refused; false when it is not.
+// Records why the journal that has just been opened must be refused. Returns false when it is acceptable.
 bool refuse_journal(State& state, sqlite3_file* file) {
   const std::string move_away =
       "move it away if you do not know where it comes from, then check the project: limber project " + state.database +
@@ -134,7 +137,7 @@ int full_path(sqlite3_vfs* vfs, const char* path, int size, char* out) {
   return state.system->xFullPathname(state.system, path, size, out);
 }
 
-// No library is ever loaded.
+// Keeps SQLite from loading any library.
 void* load_nothing(sqlite3_vfs*, const char*) { return nullptr; }
 void tell_nothing(sqlite3_vfs*, int size, char* message) {
   if (size > 0) message[0] = '\0';

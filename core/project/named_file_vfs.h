@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// SQLite's view of the disk while a project is open: the database NAME, its journal NAME-journal and its log NAME-wal,
-// and no other file. SQLite by itself obeys a journal that lies beside a database: such a journal can name a
-// "super-journal", a file that SQLite then opens and deletes. Limber never writes one, so a journal that has such a
-// name is refused before anything is rolled back; a journal without it is rolled back as usual.
+// Limits SQLite's view of the disk while a project is open to three files: the database NAME, its journal NAME-journal
+// and its log NAME-wal. Plain SQLite obeys any journal that lies beside a database, and a journal can name a
+// "super-journal", a file that SQLite then opens and deletes. Limber never writes a super-journal's name, so a journal
+// with such a name is refused before anything is rolled back; any other journal is rolled back as usual.
 //
-// One of these is made for every connection, is registered under a name of its own, and must outlive the connection. It
-// works on top of the VFS that is SQLite's default at that time.
+// Every connection has its own NamedFileVfs, registered under its own name, which must outlive the connection. It
+// works on top of the VFS that is SQLite's default when it is made.
 #pragma once
 
 #include <memory>
@@ -17,16 +17,16 @@ namespace limber {
 
 class NamedFileVfs {
  public:
-  // throws Error when the name cannot be made absolute
+  // Throws Error when the database's path cannot be made absolute.
   explicit NamedFileVfs(const Path& database);
   ~NamedFileVfs();
   NamedFileVfs(const NamedFileVfs&) = delete;
   NamedFileVfs& operator=(const NamedFileVfs&) = delete;
 
-  const std::string& name() const;      // for sqlite3_open_v2
-  const std::string& database() const;  // absolute, with symlinks resolved; never an URI
+  const std::string& name() const;      // the name to pass to sqlite3_open_v2
+  const std::string& database() const;  // absolute path with symlinks resolved; never a URI
 
-  // Why a file was refused, as an Error's three parts; `what` is empty when none was.
+  // Why a file was refused, as the three parts of an Error; `what` is empty when no file was refused.
   struct Refusal {
     std::string what, where, what_to_do;
   };

@@ -24,7 +24,7 @@ constexpr std::int64_t kSchemaVersion = 1;
 constexpr const char* kChunkTable = "CREATE TABLE chunk(hash BLOB PRIMARY KEY, packed BLOB NOT NULL)";
 constexpr const char* kStateTable = "CREATE TABLE state(name BLOB PRIMARY KEY, value BLOB NOT NULL) WITHOUT ROWID";
 constexpr std::size_t kMostEditorBytes = std::size_t{16} << 20;
-constexpr std::int64_t kMostFreeBytes = std::int64_t{16} << 20;  // of removed chunks that a file may keep for later
+constexpr std::int64_t kMostFreeBytes = std::int64_t{16} << 20;  // free bytes up to which the file is not shrunk
 
 std::string_view view(const ChunkHash& hash) {
   return {reinterpret_cast<const char*>(hash.bytes.data()), hash.bytes.size()};
@@ -37,7 +37,7 @@ std::string new_id() {
   return id;
 }
 
-// ---- the database as store of chunks and states
+// ---- the database as a store of chunks and states
 
 class Store final : public ChunkSource, public ChunkSink {
  public:
@@ -74,7 +74,7 @@ Error damaged(const Path& path) {
           "open an earlier copy, or keep what is whole: limber project " + path.string() + " recover -o OUT.limber"};
 }
 
-// Ours, of a version we know, with the tables we made and nothing else.
+// Throws Error unless the database is Limber's, has a known version, and has exactly the two tables of a project.
 void check_schema(Database& database, const Path& path) {
   if (database.number("PRAGMA application_id") != kApplication)
     throw Error("this is not a Limber project", path.string(), "name a .limber file");
@@ -137,14 +137,14 @@ void remove_unused(Database& database, Store& store, const ChunkHash& root, cons
   }
 }
 
-// Gives room back when much of the file is free.
+// Shrinks the file when more than half of its bytes, and more than kMostFreeBytes, are free.
 void shrink(Database& database) {
   const std::int64_t free = database.number("PRAGMA freelist_count") * database.number("PRAGMA page_size");
   const std::int64_t all = database.number("PRAGMA page_count") * database.number("PRAGMA page_size");
   if (free > kMostFreeBytes && free > all / 2) database.run("PRAGMA incremental_vacuum");
 }
 
-// A commit is on the disk when it returns, and so is the end of its journal.
+// Makes each commit return only after the data and the removal of the journal have reached the disk.
 void write_durably(Database& database) { database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA"); }
 
 void sync(const Path& path, int flags) {
@@ -169,7 +169,7 @@ bool is_project(const Path& path) {
 
 Project read_project(const Path& path, Progress& progress, const ReadLimits& limits) {
   Database database(path, Database::Mode::Read);
-  database.run("BEGIN");  // one state of the file, whatever others write meanwhile
+  database.run("BEGIN");  // reads one state of the file, even while others write
   check_schema(database, path);
   Store store(database);
   Project project;
@@ -191,7 +191,7 @@ std::string read_thumbnail(const Path& path) {
 }
 
 namespace {
-// For the reason in errno.
+// Returns the Error that describes errno after a failed write.
 Error not_written(const Path& path) {
   if (errno == EACCES || errno == EROFS)
     return {"the project cannot be opened", path.string(), "check that it and its folder may be read and written"};
@@ -200,7 +200,7 @@ Error not_written(const Path& path) {
   return {"the project cannot be written", path.string(), std::strerror(errno)};
 }
 
-// Onto the disk, with the permissions of what it replaces.
+// Syncs the temporary file to the disk and gives it the permissions of the file that it replaces.
 void finish(const Path& temporary, const Path& target, const Path& path) {
   const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw not_written(path);
@@ -223,7 +223,8 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   const Unfinished unfinished(temporary);
   std::error_code error;
   fs::remove(temporary, error);
-  // Others may not read what is written over a project that they may not read.
+  // A file that replaces a project is created with access for its owner alone, since the project's own permissions may
+  // keep others from reading it.
   const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
                           fs::exists(target, error) ? 0600 : 0666);
   if (file < 0) throw not_written(path);
@@ -244,12 +245,13 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
     Store store(database);
     mark = fill(store, project, writer, Packing::Dense, progress);
     for (const ChunkHash& hash : spare.hashes)
-      if (const auto packed = spare.source->find(hash)) store.put(hash, *packed);  // ignored where it is there
+      if (const auto packed = spare.source->find(hash))
+        store.put(hash, *packed);  // ignored where the file has the chunk already
     transaction.commit();
   } catch (const Error& failure) {
     throw with_name(failure, temporary, path);
   }
-  Database::clear_journal(target);  // or it would be rolled back into the new file
+  Database::clear_journal(target);  // otherwise SQLite would roll the old journal back into the new file
   finish(temporary, target, path);
   if (::rename(temporary.c_str(), target.c_str()) != 0) throw not_written(path);
   sync(folder, O_RDONLY | O_DIRECTORY);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The project file NAME.limber: one SQLite database with the document's chunks (core/project/chunk.h), the name of
-// their root, and beside it what the editor wants to find again (views, layout, a picture), which is opaque here.
+// Reads and writes the project file NAME.limber: an SQLite database with the document's chunks (core/project/chunk.h),
+// the hash of the root chunk, and what the editor restores when it opens the project (views, layout, a picture), as
+// bytes that are not interpreted here. Its two tables:
 //   chunk(hash, packed)      state(name, value): root, mark, editor, thumbnail, program
-// Saving writes the chunks that are not there yet and the new root in one transaction, so whoever opens the file, after
-// whatever happened, finds the state before or after. A new file is made under another name and renamed.
+// A save writes the missing chunks and the new root in one transaction, so whoever opens the file later finds the
+// state before or after the save, whatever happened. A new file is written under another name and then renamed.
 //
-// Every save leaves a mark of its own. Who saves again says which mark was there last, so that a project that another
+// Every save stores a mark of its own. The next save names the mark that it expects, so that a project that another
 // program has changed or replaced meanwhile is not overwritten.
 #pragma once
 
@@ -19,10 +20,10 @@
 
 namespace limber {
 
-// What a save left behind.
+// Identifies one save of a project.
 struct SaveMark {
   ChunkHash root;
-  std::string id;  // of this save alone
+  std::string id;  // random, unique to this save
 
   bool operator==(const SaveMark&) const = default;
 };
@@ -32,53 +33,54 @@ struct Project {
   std::string editor;     // the editor's state, JSON; 16 MB at most
   std::string thumbnail;  // PNG; 16 MB at most
   SaveMark mark;
-  std::vector<std::string> warnings;  // parts that were left out
+  std::vector<std::string> warnings;  // parts that were left out when reading
 };
 
-// By content: the header of a database that is ours.
+// Returns whether the file's content is that of a project: an SQLite header with Limber's application id.
 bool is_project(const Path& path);
 
-// Throws Error when it is no project, is damaged, was written by a newer version, or is in use.
+// Reads a project. Throws Error when the file is not a project, is damaged, was written by a newer version, or is in
+// use.
 Project read_project(const Path& path, Progress& progress = no_progress(), const ReadLimits& limits = {});
-// The picture alone, "" when there is none or the file cannot be read.
+// Returns the project's thumbnail, or "" when there is none or the file cannot be read.
 std::string read_thumbnail(const Path& path);
 
-// Chunks that a new file keeps beside the document's own, until it is saved again.
+// Chunks that are written into a new file in addition to the document's own. The next save removes them.
 struct SpareChunks {
   std::vector<ChunkHash> hashes;
   ChunkSource* source = nullptr;
 };
 
-// A new file, whole or not at all; replaces what stands there.
+// Writes a new file, completely or not at all, in place of any file at `path`. Throws Error when it cannot.
 SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer,
                         Progress& progress = no_progress(), const SpareChunks& spare = {});
 
-// Chunks of earlier saves that this one does not need.
+// Whether update_project() removes or keeps chunks that only earlier saves need.
 enum class Unused { Remove, Keep };
 
-// Writes what changed since the save that left `expected`. Throws Error, and the file is as before, when it has changed
-// since, is gone, or cannot be written.
+// Writes what has changed since the save with the mark `expected`. Throws Error, and leaves the file as it was, when
+// the file has another mark, is gone, or cannot be written.
 SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused,
                         DocumentWriter& writer, Progress& progress = no_progress());
-// Removes chunks that the last save does not need.
+// Removes the chunks that the last save does not need.
 void prune_project(const Path& path);
 
-// The mark that stands in the file.
+// Returns the mark of the file's last save.
 SaveMark read_mark(const Path& path);
-// All chunks below the last save's root.
+// Returns the hashes of the last save's root chunk and of all chunks below it.
 ChunkSet reachable_chunks(const Path& path);
 
-// Checks the database's structure and every chunk; what is wrong, one line each.
+// Checks the database's structure and every chunk. Returns one line for each fault.
 std::vector<std::string> verify_project(const Path& path, Progress& progress = no_progress());
 
 struct ProjectSummary {
-  std::string program;                                       // the version that saved it
-  std::int64_t file_bytes = 0, chunks = 0, chunk_bytes = 0;  // packed
+  std::string program;                                       // version of Limber that saved the file
+  std::int64_t file_bytes = 0, chunks = 0, chunk_bytes = 0;  // chunk_bytes: packed size of all chunks
   bool has_thumbnail = false;
 };
 ProjectSummary summarize_project(const Path& path);
 
-// The project's chunks, as a source for whoever reads a journal.
+// Finds chunks in a project file. Readers of a journal need it, since a journal omits the chunks that the project has.
 class ProjectChunks final : public ChunkSource {
  public:
   explicit ProjectChunks(const Path& path);

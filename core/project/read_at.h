@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bytes from a place of an open file, whole or not at all.
+// Reads bytes at an offset of an open file, all of them or none.
 #pragma once
 
 #include <cerrno>
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// False where the file ends before, or cannot be read there.
+// Reads `size` bytes that begin at `offset`. Returns false where the file ends before them or cannot be read.
 //   to  room for `size` bytes
 inline bool read_at(int descriptor, std::int64_t offset, char* to, std::size_t size) {
   while (size > 0) {

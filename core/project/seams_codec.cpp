@@ -32,7 +32,7 @@ void put(ByteWriter& out, const Seams& seams) {
 Seams get_seams(ByteReader& in, const std::function<void(std::int64_t)>& take_memory) {
   glm::ivec3 size;
   for (int i = 0; i < 3; ++i) size[i] = static_cast<int>(in.get_below<std::uint32_t>(kLongestAxis + 1));
-  const std::int64_t slice = std::int64_t{size.x} * size.y;  // at most 2^40
+  const std::int64_t slice = std::int64_t{size.x} * size.y;  // voxels of a slice, at most 2^40
   in.require(slice == 0 || size.z <= (std::int64_t{1} << 42) / slice);
   const glm::ivec3 bricks = (size + 7) / 8;
   take_memory(std::int64_t{bricks.x} * bricks.y * bricks.z * std::int64_t{sizeof(std::int32_t)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams as bytes and back: the grid's size, then for each axis the voxels whose face towards higher x, y or z is cut,
-// by their index in the grid, rising.
+// Writes and reads seams as bytes: the grid's size, then for each axis the ascending grid indices of the voxels whose
+// face towards higher x, y or z is cut.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,11 @@
 namespace limber {
 
 void put(ByteWriter& out, const Seams& seams);
-//   take_memory  is told how many bytes are needed before they are, and may throw
+// Reads seams.
+//   take_memory  is called with the number of bytes that are needed, before they are allocated; it may throw
 Seams get_seams(ByteReader& in, const std::function<void(std::int64_t)>& take_memory);
 
-// Whether the seams are of the volume's grid and lie between tissue alone.
+// Returns whether the seams have the volume's grid and lie only between tissue voxels.
 bool fit(const Seams& seams, const LabelVolume& volume);
 
 }  // namespace limber

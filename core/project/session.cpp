@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::duration;
 
-constexpr std::int64_t kMostGrowth = 4;  // of a large journal
+constexpr std::int64_t kMostGrowth = 4;  // a large journal starts anew at this multiple of its first size
 
 constexpr const char* kGone =
     "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
@@ -97,14 +97,14 @@ Session::~Session() {
   if (last_ == saved_ && journal_) remove_journal(journal_path_);
 }
 
-// Beside the project, or where that cannot be written, among the user's own.
+// Chooses the journal's path: beside the project, or in the edits folder where the project's folder is not writable.
 void Session::choose_journal_path(const Path& project) {
   const std::string name = sha256_of_bytes(project.c_str(), project.string().size()).substr(0, 16) + ".edits";
   const bool beside = may_write(project.parent_path());
   journal_path_ = beside ? journal_path(project) : folder_ / name;
 }
 
-// So that all_recoverable() finds a journal wherever it is.
+// Links to the journal from the edits folder, so that all_recoverable() finds the journal.
 void Session::note_journal() const {
   if (journal_path_.parent_path() == folder_) return;
   const Path link =
@@ -143,7 +143,7 @@ void Session::set_message(std::string message) {
   if (settings_.on_change) settings_.on_change();
 }
 
-// ---- the journal, with disk_ held
+// ---- the journal; these functions need disk_ to be locked
 
 bool Session::journal_in_use() const {
   std::error_code ignored;
@@ -163,8 +163,8 @@ void Session::begin_journal(const Document* document, const std::string& label) 
   note_journal();
 }
 
-// What an earlier session left: edits to offer, nothing new, or what another version wrote, which is not ours to
-// remove.
+// Reads the journal that an earlier session left. If it has unsaved edits, they are offered to the user. If it cannot
+// be read (another version may have written it), it is moved aside, since this session must not remove it.
 void Session::look_at_leftover() {
   try {
     const JournalReader reader(journal_path_);
@@ -202,13 +202,14 @@ void Session::write_journal(const Document& document, const std::string& label) 
   else journal_->write(document, label, journal_writer_);
 }
 
-// A project that is gone can give no chunks back: the journal must have them all.
+// Starts a journal with the whole document when the project's file was removed or replaced, because a reader of the
+// journal then finds no chunks in that file.
 void Session::watch_project() {
   if (!base_ || !identity_ || save_runs_) return;
   const auto now = identity_of(path());
   if (now == identity_) return;
   try {
-    if (now && read_mark(path()) == *mark_) {  // touched, not changed
+    if (now && read_mark(path()) == *mark_) {  // same save: the file was only touched
       identity_ = now;
       return;
     }
@@ -216,7 +217,7 @@ void Session::watch_project() {
   }
   base_.reset();
   identity_.reset();
-  if (leftover_) return;  // it builds on what is gone, and so it stays as it is
+  if (leftover_) return;  // leftover edits build on the missing file, so they stay as they are
   const Document document = last();
   begin_journal(&document, "The project's file has gone");
   set_message(kGone);
@@ -235,7 +236,7 @@ void Session::work(const std::stop_token& stop) {
     std::string message;
     {
       const std::lock_guard disk(disk_);
-      // Only now: a save may have taken it meanwhile.
+      // Reads the waiting document here, after disk_ is locked, since a save may have written it meanwhile.
       std::string label;
       std::int64_t handed = 0;
       {
@@ -300,7 +301,7 @@ Recovered Session::recover(Progress& progress) {
   const std::lock_guard disk(disk_);
   if (!leftover_) throw Error("there is nothing to recover", path().string(), "go on with the project as it is");
   Recovered recovered = limber::recover(leftover_->journal, progress);
-  // One step takes the old journal's place: until then it is there, from then on the new one.
+  // The new journal replaces the old one in one step, so one of the two exists at any moment.
   begin_journal(&recovered.document, "Recovered: " + recovered.label);
   leftover_.reset();
   const std::lock_guard lock(state_);
@@ -317,8 +318,8 @@ void Session::drop_leftover() {
 
 // ---- saving
 
-// What is kept from now on builds on this save, and only then may the file lose what earlier saves needed. The save has
-// succeeded already: what fails here is shown, and tried again.
+// Starts a journal that builds on this save, and only then removes the chunks that earlier saves needed. The save
+// itself has succeeded, so a failure here is only shown; the next save tries again.
 void Session::after_save(const Document& saved, const SaveMark& mark) {
   const Path file = path();
   mark_ = base_ = mark;
@@ -350,7 +351,7 @@ void Session::after_save(const Document& saved, const SaveMark& mark) {
   changed_.notify_all();
 }
 
-// The journal goes on while the file is written.
+// Writes the project file without disk_ locked, so that edits still reach the journal meanwhile.
 void Session::write_file(const std::function<SaveMark()>& write, const Document& saved) {
   {
     const std::lock_guard disk(disk_);
@@ -387,7 +388,7 @@ std::string Session::save(const Project& project, Progress& progress) {
 void Session::save_as(const Project& project, const Path& new_path, Progress& progress) {
   const Path file = absolute_of(new_path);
   const std::lock_guard one_at_a_time(saving_);
-  if (file == path()) {  // over what stands there, whatever it is
+  if (file == path()) {  // replaces whatever file is there now
     write_file([&] { return create_project(project, file, save_writer_, progress); }, project.document);
     return;
   }
@@ -397,7 +398,7 @@ void Session::save_as(const Project& project, const Path& new_path, Progress& pr
 
   const std::lock_guard disk(disk_);
   const Path old_path = journal_path_;
-  const auto old_journal = std::move(journal_);  // there, and locked, until the new one stands
+  const auto old_journal = std::move(journal_);  // keeps the old journal and its lock until the new journal exists
   const bool leave_old = leftover_.has_value();
   leftover_.reset();
   leftover_lock_.reset();
@@ -426,7 +427,7 @@ void Session::discard() {
   if (leftover_ || !journal_) return;
   try {
     if (base_) return begin_journal(nullptr, "");
-  } catch (const Error&) {  // no room for an empty one: then none
+  } catch (const Error&) {  // no room even for an empty journal: the old one is removed
   }
   journal_.reset();
   remove_journal(journal_path_);

@@ -36,16 +36,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kPollMilliseconds = 20, kEndingMilliseconds = 5;
-constexpr double kDying = 0.01;  // seconds that a worker is given to be gone once it is killed
+constexpr double kDying = 0.01;  // seconds to wait for a killed worker to end
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostWarnings = 1000;
 constexpr auto kBeat = std::chrono::seconds(1);
-constexpr double kLeastWork = .001;  // seconds of processor time between two signs of work; a beat takes a tenth of it
+// Processor time between two heartbeats that counts as a sign of work, seconds. A heartbeat itself takes a tenth of it.
+constexpr double kLeastWork = .001;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// A pipe whose ends do not pass to programs that are started meanwhile.
+// A pipe whose ends are not inherited by the programs that this process starts.
 struct Pipe {
   int read_end = -1, write_end = -1;
   Pipe() {
@@ -64,7 +65,7 @@ struct Pipe {
   void close_write() {
     if (write_end >= 0) ::close(std::exchange(write_end, -1));
   }
-  // Hands on what is there; false at the end.
+  // Calls take(bytes, size) with the bytes that can be read now. Returns false at the end of the stream.
   template <class Take>
   bool drain(const Take& take) const {
     std::array<char, 1 << 14> block;
@@ -82,9 +83,9 @@ void bury(pid_t process) {
   }
 }
 
-// The worker in a process group of its own, so that its own children end with it. Killed when this goes. One that
-// yields gives its memory back only when the machine has time for it, so nobody waits for that: killed, it does nothing
-// any more.
+// The worker process. It has a process group of its own, so that its children end with it. The destructor kills the
+// worker. A killed worker does nothing more, but one at idle priority frees its memory only when the machine has time
+// for it, so a thread waits for its end.
 class Process {
  public:
   Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
@@ -106,7 +107,8 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const { ::kill(-id_, signal); }
-  // Ends what it may have left behind, before its name can be given to another.
+  // Returns whether the worker has ended. If so, kills the processes that it left in its group, before the system can
+  // reuse its process id.
   bool has_ended() {
     siginfo_t info{};
     if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
@@ -125,7 +127,7 @@ class Process {
   bool ended_ = false;
 };
 
-// What the worker says on its error stream, line by line.
+// Reads the lines that the worker writes to its error stream.
 class Listener {
  public:
   Listener(Progress& progress, const std::function<void(const WorkerProgress&)>& on_progress)
@@ -141,8 +143,8 @@ class Listener {
       bytes = line_end + 1;
     }
   }
-  // Since the worker last showed that it works. Shows its silence from `shown` seconds on, and what it told last when
-  // it answers again.
+  // Returns the seconds since the worker's last sign of work. Reports it as not answering when they exceed `shown`, and
+  // reports its last progress again once it answers.
   double silence(double shown) {
     const double seconds = seconds_since(sign_);
     const bool silent = seconds > shown;
@@ -151,7 +153,7 @@ class Listener {
     return seconds;
   }
   std::vector<std::string> warnings;
-  std::string complaint;  // its last line that is neither progress nor a warning
+  std::string complaint;  // the worker's last line that is neither progress nor a warning
 
  private:
   void on_line() {
@@ -193,12 +195,12 @@ class Listener {
   const std::function<void(const WorkerProgress&)>& on_progress_;
   std::string line_;
   Clock::time_point sign_ = Clock::now();
-  double worked_ = 0;  // seconds of processor time at the last sign
+  double worked_ = 0;  // seconds of processor time at the last sign of work
   bool silent_ = false;
   WorkerProgress last_;
 };
 
-// A message of the worker's own, "what: where: what to do", as an Error of ours.
+// Turns the worker's message "what: where: what to do" into an Error.
 Error relay(const std::string& line, const Path& job) {
   const std::size_t first = line.find(": "), last = line.rfind(": ");
   if (first == std::string::npos || first == last)
@@ -296,7 +298,8 @@ Heartbeat::Heartbeat() : beating_(std::make_unique<Beating>()) {
       char line[64];
       const int size = std::snprintf(line, sizeof line, "{\"processor_seconds\": %lld.%06ld}\n",
                                      static_cast<long long>(spent.tv_sec), spent.tv_nsec / 1000);
-      // In one piece, and past the buffers of a stream that a child of this process may hold locked.
+      // Writes the line with one call and not through a stream, since a child of this process may hold the stream's
+      // lock.
       if (::write(STDERR_FILENO, line, static_cast<std::size_t>(size)) < 0 && errno != EINTR) return;
     }
   });
@@ -310,7 +313,7 @@ Heartbeat::~Heartbeat() {
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {
   if (parent > 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) std::_Exit(3);  // it died before
+    if (::getppid() != parent) std::_Exit(3);  // the parent died before prctl
   }
   if (yields) {
     const sched_param none{};

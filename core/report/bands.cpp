@@ -12,27 +12,26 @@
 namespace limber {
 
 namespace {
-constexpr double kNeighbours =
-    3;                         // voxels that lay further apart at rest, in steps of the posed grid, were no neighbours
-constexpr int kArcSteps = 16;  // of the way between two motions of a joint
+constexpr double kNeighbours = 3;  // steps of the posed grid; voxels this far apart at rest were no neighbours
+constexpr int kArcSteps = 16;      // number of steps between the motions of a joint's two bones
 
 struct Joint {
   int parent, bone;
   glm::dvec3 head;
-  double reach;                                          // mm
-  std::array<RigidTransform, kArcSteps + 1> on_the_way;  // from the parent's motion to the bone's
+  double reach;                                          // distance from the head, mm
+  std::array<RigidTransform, kArcSteps + 1> on_the_way;  // motions from that of the parent to that of the bone
 };
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b, const glm::dvec3& at) {
   return std::abs(glm::dot(a.rotation, b.rotation)) > 1 - 1e-12 && glm::distance(a * at, b * at) < 1e-6;
 }
 
-// The depth of a point below the air around the body, at least a voxel.
+// Returns how deep a point lies below the outside air, in mm, but at least one voxel edge.
 double depth_at(const Grid& grid, const OutsideAir& outside, const glm::dvec3& p) {
   const glm::ivec3 middle(glm::floor(voxel_from_world(grid) * p + 0.5));
   const double edge = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   if (outside.contains(middle)) return edge;
-  // Ever larger boxes around it, until the nearest air in one lies within the box.
+  // Searches larger and larger boxes until the nearest air found is nearer than the border of the box.
   for (double half = 8 * edge;; half *= 2) {
     const glm::ivec3 steps(glm::ceil(half / grid.spacing));
     double nearest = std::numeric_limits<double>::infinity();
@@ -46,7 +45,7 @@ double depth_at(const Grid& grid, const OutsideAir& outside, const glm::dvec3& p
   }
 }
 
-// Those that the pose turns.
+// Returns the joints that the pose turns.
 std::vector<Joint> turned_joints(const JudgedPose& pose, const OutsideAir& outside, const BandLimits& limits) {
   std::vector<Joint> joints;
   for (int b = 0; b < std::ssize(pose.armature->bones); ++b) {
@@ -72,13 +71,14 @@ double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return glm::distance(p, squared > 0 ? a + glm::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) * d : a);
 }
 
-// Whether a joint explains where stretched tissue went.
+// Returns whether the joint explains where stretched tissue moved: the tissue is near the joint at rest, and its posed
+// position is near the arc or the chord between where the joint's two bones would take it.
 bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& posed, const BandLimits& limits) {
   if (glm::distance(rest, joint.head) > joint.reach) return false;
   const double within = limits.off_arc * joint.reach;
   glm::dvec3 before = joint.on_the_way[0] * rest;
   if (distance_to_segment(posed, before, joint.on_the_way[kArcSteps] * rest) <= within)
-    return true;  // linear blending takes the chord
+    return true;  // linear blend skinning moves tissue along the chord
   for (int k = 1; k <= kArcSteps; ++k) {
     const glm::dvec3 next = joint.on_the_way[k] * rest;
     if (distance_to_segment(posed, before, next) <= within) return true;
@@ -87,8 +87,8 @@ bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& pose
   return false;
 }
 
-// The gradient of the map from posed to rest, world axes; none where a voxel has no neighbour of soft tissue along an
-// axis.
+// The gradient of the map from posed to rest positions, in world axes. It is empty at a voxel that has no neighbour of
+// soft tissue along some axis.
 class RestGradient {
  public:
   RestGradient(const JudgedPose& pose, std::vector<bool> is_soft) : pose_(pose), is_soft_(std::move(is_soft)) {}
@@ -119,7 +119,7 @@ class RestGradient {
 
  private:
   const JudgedPose& pose_;
-  std::vector<bool> is_soft_;  // by label
+  std::vector<bool> is_soft_;  // for each label: whether it is soft tissue
 };
 
 struct StretchedVoxels {
@@ -157,8 +157,8 @@ StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient
   return all;
 }
 
-// Of the bones that take the tissue to where it went, to a voxel or as nearly as any does, the one that lies nearest to
-// it at rest.
+// Returns the rig bone that carried the tissue from its rest to its posed position. Of the bones whose motion matches
+// the movement to within a voxel edge of the best match, it is the one nearest at rest.
 int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm::dvec3& posed) {
   const auto off = [&](std::size_t b) { return glm::distance(pose.applied[b] * rest, posed); };
   double least = std::numeric_limits<double>::infinity(), nearest = least;
@@ -171,7 +171,8 @@ int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm:
   return best;
 }
 
-// The two bones that most of a band's voxels follow rather than others, of which one moves against the other.
+// Returns the names of two rig bones: the one that most of the band's voxels follow, and the most followed one of those
+// that move differently.
 std::array<std::string, 2> ends_of(const JudgedPose& pose, const std::vector<glm::ivec3>& voxels) {
   std::vector<std::int64_t> votes(pose.armature->bones.size(), 0);
   glm::dvec3 middle(0);
@@ -211,7 +212,7 @@ Band describe(const JudgedPose& pose, const StretchedVoxels& voxels, const std::
 }  // namespace
 
 double largest_stretch(const glm::dmat3& rest_from_posed) {
-  // The smallest eigenvalue of G^T G in closed form [Smith 1961].
+  // Computes the smallest eigenvalue of G^T G, where G is the gradient, in closed form [Smith 1961].
   const glm::dmat3 m = glm::transpose(rest_from_posed) * rest_from_posed;
   const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
   const double off = m[1][0] * m[1][0] + m[2][0] * m[2][0] + m[2][1] * m[2][1];

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bands and webs: soft tissue that a pose pulled out between two parts of the body that are no neighbours, such as a
-// hand that had grown to the hip. Measured from the displacement alone: the gradient of the map from posed to rest,
-// taken between neighbouring voxels that were neighbours at rest, has a smallest singular value; its inverse is the
-// largest stretch there.
+// Finds bands and webs: soft tissue that a pose pulls out between two parts of the body that should be separate, for
+// example between a hand and the hip that it touches at rest. The measure needs only the displacement. It takes the
+// gradient of the map from posed to rest positions between neighbouring voxels that were neighbours at rest too. The
+// inverse of the gradient's smallest singular value is the largest stretch at the voxel.
 //
-// Tissue around a turned joint is stretched as well, and has to be. It is left out where it lies within the joint's
-// reach, some times the depth of the joint below the skin, and where it went no further than that joint could have
-// carried it: near the arc between what the joint's two bones do to it. What spans other bones is a band, however near
-// a joint it lay at rest.
+// Tissue around a turned joint must stretch, so it is not a band. It is left out where two conditions hold: at rest it
+// lay within the joint's reach (a multiple of the joint's depth below the skin), and its posed position is close to the
+// arc between the motions of the joint's two bones. Stretched tissue between other bones is a band, however near to a
+// joint it lay at rest.
 #pragma once
 
 #include <array>
@@ -20,25 +20,25 @@
 namespace limber {
 
 struct BandLimits {
-  double stretch = 2;              // times its length at rest
-  double joint_reach = 5;          // times the joint's depth below the outside air
-  double off_arc = 0.25;           // of that reach
-  std::int64_t least_voxels = 50;  // of one band: fewer are what rounding does
+  double stretch = 2;              // least stretch of a band: multiple of the length at rest
+  double joint_reach = 5;          // radius around a joint where tissue may stretch: multiple of the joint's depth
+  double off_arc = 0.25;           // tolerance around the joint's arc, as a fraction of the joint's radius
+  std::int64_t least_voxels = 50;  // size of the smallest band: fewer voxels may be rounding
 };
 
 struct Band {
   std::int64_t voxels = 0;
   double mm3 = 0;
-  double stretch = 0;                  // median of its voxels
-  glm::dvec3 place{0};                 // a voxel in its middle, world, mm
-  std::array<std::string, 2> between;  // rig bones; empty where its ends cannot be told
+  double stretch = 0;                  // median over the band's voxels
+  glm::dvec3 place{0};                 // a voxel in the middle of the band, world, mm
+  std::array<std::string, 2> between;  // names of the rig bones that the band joins; empty where unknown
 };
 
-// Largest first. Needs the displacement and the rig.
+// Returns the bands, the largest first. `pose` must have the displacement and the rig.
 std::vector<Band> find_bands(const JudgedPose& pose, const AirAround& air, const BandLimits& limits = {});
 
-// The largest stretch of a map given by its gradient, rest from posed: 1 / its smallest singular value; infinity where
-// it folds flat.
+// Returns the largest stretch of a map. It is the inverse of the smallest singular value of the gradient of the inverse
+// map (rest from posed), or infinity where this value is 0.
 double largest_stretch(const glm::dmat3& rest_from_posed);
 
 }  // namespace limber

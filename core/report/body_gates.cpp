@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The gates of the body: whether a posed volume is a body at all.
+// Judges the body gates, which tell whether a posed volume is still a body.
 #include "core/report/quality_gates.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kTear = 0.5;  // of a voxel's edge: less does not show in voxels
+constexpr double kTear = 0.5;  // smallest tear that counts, in voxel edges; smaller ones are invisible in voxels
 
 void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
   const Json& doubts = part(report, "doubts");
@@ -27,7 +27,7 @@ void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
       doubts.empty() ? "Volume, labels and rig belong together." : "The inputs do not belong together: " + first + ".");
 }
 
-// The edge of a rest voxel, mm, as its volume says; 0 where no tissue was measured.
+// Returns the edge length of a rest voxel in mm, as the cube root of its volume, or 0 where no tissue was measured.
 double voxel_edge(const Json& report) {
   for (const Json& tissue : part(report, "tissues"))
     if (const auto mm3 = number(tissue, "mm3_before"), voxels = number(tissue, "voxels_before");
@@ -113,7 +113,7 @@ void judge_trapped(const Json& report, const QualityLimits& limits, QualityGate&
                       ".");
 }
 
-// Of a tissue that counts: a row of the report with a change of volume, large enough at rest.
+// Returns the change of a tissue's volume in percent, or nothing for a tissue that is too small at rest to be judged.
 std::optional<double> change_of(const Json& tissue, const QualityLimits& limits) {
   const auto change = number(tissue, "volume_change_percent"), voxels = number(tissue, "voxels_before");
   return change && voxels && *voxels >= double(limits.least_organ_voxels) ? change : std::nullopt;
@@ -157,7 +157,8 @@ void judge_lost(const Json& report, const QualityLimits& limits, QualityGate& ga
 }
 
 void judge_torn(const Json& report, const QualityLimits&, QualityGate& gate) {
-  // Named bones are judged by where each voxel went; thin ones may miss the middles of thick slices at another angle.
+  // Skips labels that name bones, since the gate `whole` judges each voxel of these bones. In thick slices a thin bone
+  // that was turned may look torn although it is not, because it misses voxel centres.
   std::set<double> named;
   for (const Json& bone : part(report, "whole_bones"))
     if (const auto label = number(bone, "label")) named.insert(*label);

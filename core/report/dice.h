@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far two volumes on one grid agree, label by label [Dice 1945]: 2 |A and B| / (|A| + |B|), 1 where they are the
-// same.
+// Measures for each label how well two volumes on one grid agree, by Dice's coefficient [Dice 1945]: 2 |A and B| / (|A|
+// + |B|) for the voxel sets A and B of the label. It is 1 where they are equal.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace limber {
 
-// [65536] by label, 0 where neither has it. Both on the same grid.
+// Returns the coefficient of each label, 65536 values, 0 where neither volume has the label. Both volumes must have the
+// same grid.
 std::vector<double> dice_by_label(const LabelVolume& a, const LabelVolume& b);
 
 }  // namespace limber

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a pose opened to the air, and what it closed off from it, judged from the volumes and the displacement alone.
-//   newly exposed  posed voxels at the outside air that are not skin and lay deep at rest: further from the rest's
-//   outside air than
-//                  a voxel's diagonal and a voxel's edge together, so that rounding at a surface does not count
-//   trapped        air that tissue encloses
+// Measures which tissue a pose exposed to the air and which air it enclosed, from the volumes and the displacement
+// alone.
+//   newly exposed  posed voxels that touch the outside air, are not skin, and were deep at rest: further from the
+//                  outside air at rest than a voxel's diagonal plus its shortest edge, so that rounding at a surface
+//                  does not count
+//   trapped        air that tissue encloses when posed, but did not enclose at rest
 #pragma once
 
 #include <map>
@@ -14,38 +15,38 @@
 
 namespace limber {
 
-// The air that is connected by faces with the air around the grid.
+// The outside air: all air that is connected with the air around the grid, through voxel faces.
 class OutsideAir {
  public:
   explicit OutsideAir(const LabelVolume& volume);
-  // Beyond the grid is air.
+  // Returns whether the voxel is outside air. Every voxel outside of the grid is.
   bool contains(const glm::ivec3& voxel) const { return !box_.contains(voxel) || outside_[box_.index(voxel)]; }
 
  private:
-  VoxelBox box_;  // around all tissue
+  VoxelBox box_;  // a box around all tissue
   std::vector<std::uint8_t> outside_;
 };
 
-// Of a body at rest and posed.
+// The outside air around the body at rest and around the posed body.
 struct AirAround {
   OutsideAir rest, posed;
 };
 AirAround air_around(const JudgedPose& pose);
 
 struct Exposure {
-  std::int64_t voxels = 0;          // newly exposed
-  std::int64_t surface_voxels = 0;  // posed tissue with a face at the outside air
-  double deeper_than_mm = 0;        // what counted as deep at rest
+  std::int64_t voxels = 0;          // number of newly exposed voxels
+  std::int64_t surface_voxels = 0;  // number of posed tissue voxels with a face at outside air
+  double deeper_than_mm = 0;        // depth in mm beyond which a voxel at rest counts as deep
   std::map<Label, std::int64_t> by_label;
-  std::optional<WorstPlace> worst;  // none where nothing is exposed
+  std::optional<WorstPlace> worst;  // empty where nothing is newly exposed
 
   double percent() const { return surface_voxels ? 100.0 * double(voxels) / double(surface_voxels) : 0; }
 };
-// Needs the displacement.
+// Counts the newly exposed voxels. `pose` must have the displacement.
 Exposure measure_exposure(const JudgedPose& pose, const AirAround& air);
 
-// The largest pocket of air that posed tissue encloses and that was not enclosed at rest, as the tissue beside it
-// tells; none where there is none.
+// Returns the largest pocket of air that posed tissue encloses and that was not enclosed at rest. The tissue beside a
+// pocket tells where the pocket was at rest. Returns nothing where there is no such pocket.
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air);
 
 }  // namespace limber

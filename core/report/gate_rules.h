@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How gates are written down and judged: tables of rules over a report in JSON, each with its limit, what it measures
-// and a function that reads the figures. The kind of JSON is a template's, so that no header depends on a library.
+// Defines how gates are written and judged: tables of rules over a report in JSON, each with its limit, its meaning
+// and a function that reads the figures. The JSON type is a template parameter, so that no header depends on the JSON
+// library.
 #pragma once
 
 #include <cstdio>
@@ -37,7 +38,7 @@ inline std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-// "3 286 voxels", "1 pair"
+// Returns a number with its noun, in the plural unless the number is 1: "3 286 voxels", "1 pair".
 inline std::string counted(double count, const char* what) {
   std::string digits = formatted("%.0f", count);
   for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
@@ -47,7 +48,7 @@ inline std::string counted(double count, const char* what) {
 
 inline std::string in_quotes(const std::string& name) { return "\"" + name.substr(0, 80) + "\""; }
 
-// " at (12, -40, 812) mm near LeftThigh", of where something is worst
+// Returns " at (12, -40, 812) mm near LeftThigh" for the position where a fault is worst.
 template <class Json>
 std::string at_place(const Json& worst) {
   const Json& place = part(worst, "place");
@@ -72,7 +73,7 @@ inline void not_checked(QualityGate& gate, const std::string& why) {
 
 using LimitText = std::string (*)(const QualityLimits& limits);
 
-// One gate; "{}" in a name or a meaning stands for the limit.
+// A rule that judges one gate. "{}" in the name and in the meaning is replaced by the limit.
 template <class Json>
 struct GateRule {
   const char* id;
@@ -95,8 +96,8 @@ inline std::string with_limit(std::string words, const std::string& limit) {
   return words;
 }
 
-// Judges a report by each rule, in order.
-//   report  from text that is none nothing is measured
+// Judges a report by each rule, in the order of the rules.
+//   report  limber-report/1; when it is not JSON, every gate is not measured
 template <class Json, std::size_t N>
 std::vector<QualityGate> judged(const GateRule<Json> (&rules)[N], const std::string& report,
                                 const QualityLimits& limits) {
@@ -118,7 +119,7 @@ std::vector<QualityGate> judged(const GateRule<Json> (&rules)[N], const std::str
   return gates;
 }
 
-// Of the rows of a list, the one with the largest figure; nullptr where none has one.
+// Returns the row with the largest value of figure(row), or nullptr where no row has a value.
 template <class Json, class Figure>
 const Json* worst_row(const Json& rows, const Figure& figure) {
   const Json* worst = nullptr;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a posed volume is judged by: the volume at rest, the posed one and the displacement between them, the rig and
-// where its bones were asked to go. None of it is the program's own idea of the body: neither weights nor bone parts.
+// The inputs by which a posed volume is judged: the volume at rest, the posed volume, the displacement between them,
+// the rig, and the motions of the rig's bones in the pose. The inputs contain neither weights nor the program's own
+// split of bone tissue into bones, so that the judgement does not depend on these.
 #pragma once
 
 #include <span>
@@ -15,14 +16,16 @@ namespace limber {
 
 struct JudgedPose {
   const LabelVolume& rest;
-  const LabelVolume& posed;                   // with the labels of `rest`
-  const TissueTable& tissues;                 // of both
-  std::span<const glm::vec3> displacement{};  // #posed voxels, posed - rest, mm; empty where nobody knows it
+  const LabelVolume& posed;                   // has the same labels as `rest`
+  const TissueTable& tissues;                 // the tissues of both volumes
+  std::span<const glm::vec3> displacement{};  // #posed voxels; posed minus rest position, mm; empty where unknown
   const Armature* armature = nullptr;         // nullptr where there is no rig
-  std::vector<RigidTransform> asked;          // #bones, posed from rest, as the pose was asked for
-  std::vector<RigidTransform> applied;  // #bones, where joints were fitted or a solve ended early; else as `asked`
+  std::vector<RigidTransform> asked;          // #bones; transforms from rest to posed as the pose requests
+  std::vector<RigidTransform>
+      applied;  // #bones; the transforms used: they differ from `asked` if joints were fitted or a solve ended early
 
-  // World, mm: where the posed voxel lies, and where its tissue lay at rest. The latter needs `displacement`.
+  // Return the position of a posed voxel, and the rest position of its tissue, in world mm. rest_place() needs
+  // `displacement`.
   glm::dvec3 posed_place(const glm::ivec3& voxel) const { return world_from_voxel(posed.grid) * glm::dvec3(voxel); }
   glm::dvec3 rest_place(const glm::ivec3& voxel) const {
     return posed_place(voxel) - glm::dvec3(displacement[posed.grid.index(voxel)]);
@@ -30,14 +33,14 @@ struct JudgedPose {
   bool knows_field() const { return !displacement.empty(); }
 };
 
-// Where something is worst.
+// The position where a fault is worst.
 struct WorstPlace {
-  std::int64_t voxels = 0;  // of the largest connected piece of it
-  glm::dvec3 place{0};      // a voxel in the middle of that piece, world, mm
-  std::string near;         // the posed rig bone that lies nearest; empty without a rig
+  std::int64_t voxels = 0;  // number of voxels of the fault's largest connected component
+  glm::dvec3 place{0};      // a voxel in the middle of that component, world, mm
+  std::string near;         // name of the nearest posed rig bone; empty without a rig
 };
 
-// Of the bones as the pose has them. Empty without a rig.
+// Returns the name of the rig bone that is nearest to a position in the posed body. Empty without a rig.
 std::string nearest_posed_bone(const JudgedPose& pose, const glm::dvec3& place);
 
 }  // namespace limber

@@ -13,11 +13,11 @@
 namespace limber {
 
 namespace {
-constexpr double kSameVoxel = 0.01;  // of a voxel's volume
-constexpr int kSmallest = 50;        // voxels of a piece that counts
+constexpr double kSameVoxel = 0.01;  // difference of two voxel volumes, as a fraction, up to which they count as equal
+constexpr int kSmallest = 50;        // number of voxels of the smallest connected component that counts
 constexpr int kLabels = std::numeric_limits<Label>::max() + 1;
 
-// Sets of runs that belong together; a set's voxels and label stand at its root.
+// Union-find over connected runs of voxels. The root of each set holds the set's number of voxels and its label.
 class Components {
  public:
   int add(Label label) {
@@ -30,7 +30,7 @@ class Components {
     while (parent_[set] != set) set = parent_[set] = parent_[parent_[set]];
     return set;
   }
-  // The older set stays root, so that set 0 keeps its meaning.
+  // Unites two sets. The older set stays the root, so that set 0 always means outside air.
   int unite(int a, int b) {
     a = root(a);
     b = root(b);
@@ -53,7 +53,7 @@ class Components {
   std::vector<Label> label_;
 };
 
-// Equal labels x = begin .. end - 1 of one row.
+// A run of voxels with equal labels in one row, at x = begin .. end - 1.
 struct Run {
   int begin, end;
   Label label;
@@ -63,10 +63,10 @@ struct Run {
 // The runs of one slice, row by row.
 struct Slice {
   std::vector<Run> runs;
-  std::vector<int> first;  // #rows + 1
+  std::vector<int> first;  // index of each row's first run, #rows + 1
 };
 
-// First x at or after `begin` whose label is not `label`.
+// Returns the first x at or after `begin` whose label is not `label`, or `size`. Compares four labels at a time.
 int end_of_run(const Label* row, int begin, int size, Label label) {
   const std::uint64_t four = std::uint64_t{label} * 0x0001000100010001u;
   int x = begin;
@@ -78,7 +78,7 @@ int end_of_run(const Label* row, int begin, int size, Label label) {
   return x;
 }
 
-// Walks the runs of a neighbouring row beside the runs of the present one.
+// Steps through the runs of a neighbouring row while the runs of the current row are added.
 class Neighbour {
  public:
   Neighbour(const Slice& slice, int row, bool diagonal)
@@ -86,7 +86,8 @@ class Neighbour {
         end_(slice.runs.data() + slice.first[row + 1]),
         diagonal_(diagonal) {}
 
-  // Joins `run` to the runs of its label that it touches: tissue also across edges and corners, air only across faces.
+  // Unites `run` with the runs of the same label that it touches. Tissue is connected through faces, edges and corners,
+  // air only through faces.
   void join(Run& run, Components& components) {
     const int reach = run.label ? 1 : 0;
     if (diagonal_ && !reach) return;
@@ -98,10 +99,10 @@ class Neighbour {
 
  private:
   const Run *next_, *end_;
-  bool diagonal_;  // shares only edges and corners with the present row
+  bool diagonal_;  // true: this row shares only edges and corners with the current row
 };
 
-constexpr int kOutside = 0;  // the set of all air that reaches the border
+constexpr int kOutside = 0;  // the set of all air that is connected with the grid's border
 
 void add_row(const LabelVolume& volume, int y, int z, const Slice& below, Slice& slice, Components& components) {
   const glm::ivec3 size = volume.grid.size;
@@ -124,7 +125,7 @@ void add_row(const LabelVolume& volume, int y, int z, const Slice& below, Slice&
   }
 }
 
-// Tissue voxels of the slice with a face towards air.
+// Counts the slice's tissue voxels that have a face towards air, by label, into `surface`.
 void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::vector<std::int64_t>& surface) {
   const glm::ivec3 size = volume.grid.size;
   const std::vector<Label> air(size.x, 0);
@@ -154,9 +155,9 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
-// Pieces of a label of kSmallest voxels or more beyond `before`. A body that lies at another angle in its grid is
-// parted by a voxel where it is thin, and where thick slices bridged a gap at rest by as much as a slice; neither is a
-// tear.
+// Returns how many more components of kSmallest voxels or more `after` has than `before`. Components count as connected
+// across small gaps: posing a body at another angle in its grid may part it by a voxel where it is thin, and by a slice
+// where a thick slice bridged a gap at rest. Neither is a tear.
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;
@@ -190,7 +191,7 @@ LabelCensus take_census(const LabelVolume& volume, std::int64_t smallest) {
   for (int z = 0; z < size.z; ++z) {
     slice.runs.clear();
     slice.first.assign(size.y + 1, 0);
-    // A row's neighbours look at runs that are already there: the vector must not move while they do.
+    // Neighbour keeps pointers to the runs of this slice, so the vector must not reallocate.
     slice.runs.reserve(std::int64_t{size.x} * size.y);
     for (int y = 0; y < size.y; ++y) {
       slice.first[y] = static_cast<int>(slice.runs.size());

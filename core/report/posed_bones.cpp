@@ -15,26 +15,28 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kFewest = 30;                     // voxels that tell how a limb turned
-constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;  // of a rig bone's axis: away from the joints, where bones meet
-constexpr double kShaftRadius = 0.15;                   // of the rig bone's length
-constexpr double kManyAtShaft = 0.2;                    // of the voxels there
+constexpr std::size_t kFewest = 30;  // number of voxels that are needed to measure a limb's direction
+constexpr double kShaftBegin = 0.25,
+                 kShaftEnd = 0.75;     // fractions of a bone's axis between which its shaft lies, away from the joints
+constexpr double kShaftRadius = 0.15;  // radius of the shaft, as a fraction of the rig bone's length
+constexpr double kManyAtShaft = 0.2;   // fraction of a shaft's voxels that counts as many (see keep_limb)
 
 struct Moved {
-  glm::dvec3 rest, posed;  // world, mm
+  glm::dvec3 rest, posed;  // rest and posed position of a voxel, world, mm
 };
 using MovedVoxels = std::vector<Moved>;
 
 struct BoneVoxel {
-  std::int32_t at_rest;  // place in the graph
+  std::int32_t at_rest;  // index of the voxel in the bone graph
   Moved moved;
 };
 
-// The place in the graph of each rest voxel of bone; the graph is costly, and only named bones need it.
+// The bone graph of the rest volume, and for each tissue voxel its index in this graph. The graph is costly, so it is
+// built only where labels name bones.
 struct RestBone {
   TissueVoxels tissue;
   BoneGraph graph;
-  std::vector<std::int32_t> in_graph;  // #tissue, -1 where it is no bone
+  std::vector<std::int32_t> in_graph;  // #tissue; -1: the voxel is not bone
 
   RestBone(const LabelVolume& rest, const std::vector<TissueKind>& kinds)
       : tissue(rest),
@@ -44,8 +46,8 @@ struct RestBone {
   }
 };
 
-// The posed voxels of bone whose tissue was a voxel of the same label at rest, in the order of the posed grid.
-//   bone  nullptr: without their places in a graph
+// Returns the posed bone voxels that have the same label as their tissue at rest, in the order of the posed grid.
+//   bone  nullptr: the voxels get no index in the bone graph
 std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const RestBone* bone,
                                          const std::vector<TissueKind>& kinds) {
   const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
@@ -83,7 +85,7 @@ RigidTransform best_motion(const MovedVoxels& voxels) {
   return best_rigid_motion(rest, posed);
 }
 
-// Of the bones that it may follow, the one that takes most voxels to where they went.
+// Returns which of the allowed rig bones takes most of the voxels to their posed positions, within a tolerance in mm.
 int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const std::vector<RigidTransform>& motions,
               double within) {
   int best = allowed.front();
@@ -97,7 +99,7 @@ int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const 
   return best;
 }
 
-// The rig bone whose motion comes nearest to where a voxel went.
+// Returns the rig bone whose motion takes the voxel nearest to its posed position.
 std::size_t followed_bone(const Moved& one, const std::vector<RigidTransform>& motions) {
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -105,14 +107,14 @@ std::size_t followed_bone(const Moved& one, const std::vector<RigidTransform>& m
     if (const double off = glm::distance(motions[b] * one.rest, one.posed); off < least - 1e-6) least = off, best = b;
   return best;
 }
-// The one that most of the voxels follow.
+// Returns the rig bone that most of the voxels follow.
 std::size_t followed_bone(const MovedVoxels& voxels, const std::vector<RigidTransform>& motions) {
   std::vector<std::int64_t> votes(motions.size(), 0);
   for (const Moved& one : voxels) ++votes[followed_bone(one, motions)];
   return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
-// One bone of the body: the voxels of a label on one side, and the rig bones that its name allows.
+// Judges one bone of the body, that is, the voxels of one label on one side, by the rig bones that its name allows.
 WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose,
                 double within) {
   WholeBone bone;
@@ -130,7 +132,8 @@ WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool
   return bone;
 }
 
-// A bone that turned back, as a shank that hangs below a raised thigh, still went somewhere.
+// Returns whether a motion moves a bone. A bone may move without turning, such as a shank that hangs below a raised
+// thigh.
 bool moves(const RigidTransform& motion) {
   return motion.rotation != glm::dquat(1, 0, 0, 0) || motion.translation != glm::dvec3(0);
 }
@@ -152,7 +155,7 @@ LimbDirection direction_of(int bone, const MovedVoxels& voxels, bool by_name, co
   return limb;
 }
 
-// Whether a point lies around the middle of the bone's axis, and nearer to it than to any other.
+// Returns whether a point is near the middle of the rig bone's axis, and nearer to this axis than to any other bone's.
 bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
   const Bone& own = armature.bones[bone];
   const glm::dvec3 axis = own.tail - own.head;
@@ -166,8 +169,9 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
                      [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
 
-// Of the voxels at a shaft those of the limb itself: other bones may pass there, as ribs do below a collarbone. They
-// are those that go with its rig bone where these are many, else those that go where most of them go.
+// Removes voxels of other bones from those at a limb's shaft, such as voxels of ribs below a collarbone. Keeps the
+// voxels that follow the limb's rig bone if there are many of them. Otherwise keeps the voxels that follow the rig bone
+// that most of them follow.
 void keep_limb(int bone, const std::vector<RigidTransform>& motions, MovedVoxels& shaft) {
   const auto follows = [&](std::size_t b) {
     return [&motions, b](const Moved& one) { return followed_bone(one, motions) == b; };
@@ -195,7 +199,8 @@ std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::ve
   return limbs;
 }
 
-// Each bone that a label names, on each side, judged; what belongs to a rig bone is added to that one's voxels.
+// Judges each bone that a label names, on each side of the body. Adds its voxels to those of the rig bone that it
+// belongs to.
 std::vector<WholeBone> judge_named(const JudgedPose& pose, const std::map<Label, LabelBones>& labels,
                                    const RestBone& rest, const std::vector<BoneVoxel>& bone,
                                    std::vector<MovedVoxels>& of_rig_bone) {

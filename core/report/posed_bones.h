@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the bones of the body went in a posed volume, measured from the displacement of their voxels: whether each bone
-// that a label names stayed whole and went with the rig bone it belongs to, and in which direction each limb points
-// against what was asked. Neither weights nor the program's bone parts are looked at.
+// Measures how the body's bones moved in a posed volume, from the displacement of their voxels. It measures whether
+// each bone that a label names stayed whole and followed the rig bone that it belongs to, and how far each limb's
+// direction is from the requested one. It uses neither weights nor the program's own split of bone tissue into bones.
 #pragma once
 
 #include <string>
@@ -13,24 +13,23 @@
 
 namespace limber {
 
-// A rig bone that the pose turns, or whose parent it turns.
+// The measured direction of a rig bone that the pose moves.
 struct LimbDirection {
   std::string bone;
-  double direction_degrees = 0;    // between the direction of the bone asked for and the one reached
-  double orientation_degrees = 0;  // the same with the turn about the bone's own axis
-  std::int64_t voxels = 0;         // of bone tissue that it was measured from
-  bool by_name =
-      false;  // these voxels are named bones that belong to it; else bone tissue around the middle of its axis
+  double direction_degrees = 0;    // angle between the requested and the measured direction of the bone
+  double orientation_degrees = 0;  // angle between the requested and the measured rotation
+  std::int64_t voxels = 0;         // number of bone voxels that were measured
+  bool by_name = false;  // true: measured on bones with names; false: on bone tissue around the middle of its axis
 };
 
 struct PosedBones {
-  std::vector<WholeBone> whole;      // by label, then side; labels that name no bone are left out
-  std::vector<LimbDirection> limbs;  // in the rig's order; those with fewer than 30 voxels of bone tissue are left out
+  std::vector<WholeBone> whole;      // sorted by label, then side; labels that name no bone are left out
+  std::vector<LimbDirection> limbs;  // in the rig's order; bones with fewer than 30 voxels are left out
 };
 
-// Needs the displacement and the rig. A voxel is wrong where no rig bone that its label may follow takes it within a
-// voxel's longest edge of where it went; residual_mm is the largest distance from the best rigid motion of all voxels
-// of the bone.
+// Measures a pose, which must have the displacement and the rig. A voxel is wrong where each rig bone that its label
+// may follow would take it further than the longest voxel edge from its posed position. residual_mm is the largest
+// distance of a voxel of the bone from its position under the best rigid motion of all these voxels.
 PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map = {});
 
 }  // namespace limber

@@ -98,12 +98,12 @@ QualityGate gate_of_limits() {
   return gate;
 }
 
-// What a gate is told of joints, by a report or a rig at hand.
+// The figures of the joints by which the gate `limits` is judged. They come from a report or from a rig and a pose.
 struct LimitFigures {
   bool turned = true;              // false: the report names no turned joint
-  int limited = 0, unlimited = 0;  // joints with limits and without
-  double excess_degrees = 0;       // of the joint that is furthest beyond its limits
-  std::string bone;                // that joint
+  int limited = 0, unlimited = 0;  // number of joints with limits and without
+  double excess_degrees = 0;       // excess of the joint that is furthest beyond its limits
+  std::string bone;                // bone of the joint that is furthest beyond its limits
 };
 
 void decide_limits(QualityGate& gate, const LimitFigures& figures, const QualityLimits& limits) {

@@ -19,10 +19,11 @@ namespace limber {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// File values are whole numbers, up to 2^53.
+// Returns a value of a volume file as an integer for JSON. These values are whole numbers of up to 2^53.
 Json whole(double value) { return static_cast<std::int64_t>(value); }
 
-// `deform` knows which rest voxels lost their place, by label.
+// Returns how many rest voxels of the label lost their position in the posed volume to other tissue, or 0 where this
+// was not counted.
 std::int64_t overlap_of(const Report& report, Label label) {
   return report.deform && !report.deform->overlap_by_label.empty() ? report.deform->overlap_by_label[label] : 0;
 }
@@ -39,7 +40,7 @@ Json tissue_rows(const Report& report) {
              {"mm3_after", tissue.mm3_after},
              {"mass_before_g", tissue.mass_before},
              {"mass_after_g", tissue.mass_after}};
-    // Of a tissue that was not there before there is no change in percent.
+    // A tissue that was absent before posing has no change in percent.
     if (tissue.voxels_before) {
       row["volume_change_percent"] = tissue.volume_change_percent;
       row["mass_change_percent"] = tissue.mass_change_percent;
@@ -91,7 +92,7 @@ Json settled_of(const SettledFlesh::Report& settled) {
           {"largest_shift_mm", settled.largest_shift_mm}};
 }
 
-// What a label is called in files; the label itself where no tissue was measured.
+// Returns the value that stands for the label in files, or the label itself where no tissue was measured.
 std::string key_of(const Report& report, Label label) {
   if (report.metrics)
     for (const TissueChange& tissue : report.metrics->tissues)
@@ -128,7 +129,7 @@ Json solve_of(const SolveReport& solve) {
   return row;
 }
 
-// What `--mass-exact` did.
+// Returns the changes that the option --mass-exact made, as JSON.
 Json mass_exact_of(const Report& report, const MassExactReport& exact) {
   Json row{{"changed_voxels", exact.changed_voxels}};
   for (const auto& [label, tissue] : exact.tissues)
@@ -222,7 +223,7 @@ Json gate_of(const QualityGate& gate) {
   return row;
 }
 
-// What was measured of the pose itself.
+// Adds to the JSON what was measured of the pose itself: bones, limbs, exposure, air and bands.
 void add_body(const Report& report, Json& json) {
   if (report.doubts) json["doubts"] = *report.doubts;
   if (report.whole_body) json["whole_body"] = *report.whole_body;
@@ -259,7 +260,7 @@ Json seconds_of(const StageSeconds& seconds) {
   return row;
 }
 
-// One line of a table: text formatted as printf does, without a length to get wrong.
+// Formats one line of a table as printf does, with room for any length.
 [[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
   std::va_list values, again;
   va_start(values, format);
@@ -390,7 +391,7 @@ std::string to_json(const Report& report) {
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   for (const QualityGate& gate : report.gates) json["gates"].push_back(gate_of(gate));
-  // A name that is not UTF-8 must not cost the report.
+  // Bytes that are not UTF-8, for example in a name, are replaced, so that the report does not fail.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The report that goes with a posed volume (schema limber-report/1): what was asked, from which files, how long each
-// stage took, and what changed. A part that was not measured is left out, never filled with zeros.
+// The report on a posed volume (schema limber-report/1): the settings, the input files, how long each stage took, and
+// what changed. A figure that was not measured is left out, never written as zero.
 #pragma once
 
 #include <chrono>
@@ -29,23 +29,24 @@ struct InputFile {
   std::string path;
   std::string sha256;
 };
-// Throws Error when the file cannot be read. A folder's hash covers all its files.
+// Describes an input file by its path and hash. A folder's hash covers all its files. Throws Error when the file or
+// folder cannot be read.
 InputFile describe_input(const Path& path);
 
-// Wall-clock seconds; a stage that did not run has none.
+// Wall-clock seconds of each stage; empty for a stage that did not run.
 struct StageSeconds {
   std::optional<double> read, weights, glide, deform, mesh, solve, rasterize, report, write, total;
 };
 
-// A joint that a pose turns.
+// A joint that a pose turns, named by its bone.
 struct TurnedJoint {
   std::string bone;
-  double degrees = 0;                           // relative to rest and to the parent
-  glm::dvec3 axis{0};                           // unit, world, as the parent stands
-  glm::dvec3 head{0}, tail{0}, parent_head{0};  // of the posed bones, world, mm
-  std::optional<double> excess_degrees;         // beyond the bone's limits; none where it has none
+  double degrees = 0;  // angle from the rest pose, relative to the parent
+  glm::dvec3 axis{0};  // unit vector of the rotation axis in world space, with the parent posed
+  glm::dvec3 head{0}, tail{0}, parent_head{0};  // positions of the posed bone and its parent, world, mm
+  std::optional<double> excess_degrees;         // angle beyond the bone's limits; empty without limits
 };
-// By bone.
+// Returns the turned joints in the order of the rig's bones.
 std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose);
 
 struct Report {
@@ -53,40 +54,39 @@ struct Report {
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;
-  std::optional<std::vector<GlidedJoint>> glide;  // those whose bones would overlap; none where joints do not glide
+  std::optional<std::vector<GlidedJoint>> glide;  // joints whose bones would overlap; empty where joints do not glide
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::optional<std::vector<std::string>>
-      doubts;                      // of inputs that do not belong together [input_doubts.h]; none where nobody asked
-  std::optional<bool> whole_body;  // whether the rig has legs, and arms or a head; none without a rig
+  std::optional<std::vector<std::string>> doubts;  // why inputs may not match (input_doubts.h); empty: unchecked
+  std::optional<bool> whole_body;                  // true: the rig has legs, and arms or a head; empty without a rig
   PosedBones posed_bones;
   std::optional<Exposure> exposure;
-  std::optional<WorstPlace> air_pocket;  // the largest, where the pose closed air in
+  std::optional<WorstPlace> air_pocket;  // the largest air pocket, where the pose enclosed air
   std::optional<std::vector<Band>> bands;
-  std::vector<double> dice;  // by label [dice.h], or empty
+  std::vector<double> dice;  // coefficient of each label (dice.h); empty: not measured
   std::optional<DeformReport> deform;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;
 };
 
-// Everything that is measured of the pose itself: exposure, bones, limbs and bands where it knows the displacement (and
-// the rig), and the largest pocket of air where `report.metrics` say that air was closed in. Says of the rig whether it
-// is that of a whole body.
+// Measures the pose itself. Measures exposure, bones, limbs and bands where the displacement (and the rig) are known,
+// and the largest air pocket where `report.metrics` says that air was enclosed. Also stores whether the rig is that of
+// a whole body.
 void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report);
-// Judges the report by itself, into report.gates [quality_gates.h].
+// Judges the figures of the report and stores the gates in report.gates (quality_gates.h).
 void judge(Report& report);
-// The sentences of strict gates that failed.
+// Returns the sentences of the gates that failed and that make a command with --strict fail.
 std::vector<std::string> failed_gates(const Report& report);
 
 std::string to_json(const Report& report);
 void write_report(const Report& report, const Path& path);
-// What the method itself took, by such text: not weights that had to be computed first, files, nor the report. 0 where
-// it says nothing.
+// Returns the seconds that the method itself took, from a report's JSON text. Computing weights, reading files and
+// writing the report are not included. Returns 0 where the report has no times.
 double method_seconds(const std::string& report);
-// The same as a table that reads well in a terminal of 100 columns.
+// Prints the report as a table that fits a terminal of 100 columns.
 void print_report(std::ostream& out, const Report& report);
 
-// Largest resident memory of this process so far, MB (10^6 bytes).
+// Returns the largest resident memory that this process has had so far, in MB (10^6 bytes).
 double peak_memory_mb();
 
 class Stopwatch {

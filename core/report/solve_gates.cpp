@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Of a report; an object without anything where there is none.
+// Returns an object of the report, or an empty object where the report lacks it.
 Json part(const Json& report, const char* key) {
   return report.is_object() && report.contains(key) && report[key].is_object() ? report[key] : Json::object();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a solve by finite elements must pass beside quality_gates.h:
-//   reached  it came to the pose, and settled there
+// The gates that a solve by finite elements must pass besides those of quality_gates.h:
+//   reached  the solve reached the pose and converged there
 //   gap      there is air between skins that came near each other
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace limber {
 
-// In the order above.
-//   report  limber-report/1, JSON; of another method, or from text that is none, nothing is measured
+// Returns the gates `reached` and `gap`.
+//   report  limber-report/1, JSON; when it is of another method, or not JSON, the gates are not measured
 std::vector<QualityGate> solve_gates(const std::string& report);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where two volumes of one body differ: each tissue voxel of either is looked up in the other, at its middle. Volumes
-// may lie on different grids; where those are aligned the middles are voxels of both, and the lookup is exact.
+// Finds where two volumes of one body differ: the centre of each tissue voxel of one volume is looked up in the other.
+// The volumes may have different grids; where the grids are aligned, the lookup is exact.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 namespace limber {
 
 enum class Differs : std::uint8_t {
-  Not,     // the same label there
-  Tissue,  // another tissue there
-  Air,     // nothing there
+  Not,     // the other volume has the same label
+  Tissue,  // the other volume has another tissue
+  Air,     // the other volume has air
 };
 
-// One volume as held against the other.
+// The voxels of one volume that differ from the other volume.
 struct DifferingSide {
   struct Count {
     std::int64_t other_tissue = 0, air = 0;
@@ -25,14 +25,15 @@ struct DifferingSide {
     std::int64_t both() const { return other_tissue + air; }
     bool operator==(const Count&) const = default;
   };
-  std::vector<Differs> voxels;    // #tissue voxels, in their order
-  std::map<Label, Count> counts;  // of this volume's labels that differ anywhere
+  std::vector<Differs> voxels;    // #tissue voxels of this volume, in the order of TissueVoxels
+  std::map<Label, Count> counts;  // for each label of this volume that has voxels that differ
   Count total;
 
   bool operator==(const DifferingSide&) const = default;
 };
 
-//   tissue  of `volume`
+// Compares the tissue voxels of `volume` with `from`.
+//   tissue  the tissue voxels of `volume`
 DifferingSide differing(const LabelVolume& volume, const TissueVoxels& tissue, const LabelVolume& from);
 
 }  // namespace limber

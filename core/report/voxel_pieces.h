@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Connected pieces of a list of voxels that are few beside their grid, such as those that a measure found fault with.
+// Finds the connected components (pieces) of a list of voxels, such as the voxels that a measure found faulty. The list
+// should be short compared with its grid.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +10,16 @@
 
 namespace limber {
 
-// The pieces of voxels that meet by a face, an edge or a corner (26-connected), the largest first, of equal ones the
-// first in the list; each holds places in the list, ascending.
-//   voxels  indices into the grid, ascending, none twice
-//   reach   along each axis; with 2 or more, voxels also belong together across a gap of one voxel less than that
+// Returns the connected components of the voxels, where voxels that meet by a face, an edge or a corner are connected
+// (26-connected). The largest component comes first; of equally large ones the first in the list. Each component is a
+// list of ascending indices into `voxels`.
+//   voxels  indices into the grid, ascending and distinct
+//   reach   steps along each axis within which voxels are connected: 2 also connects across a gap of one voxel
 std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels,
                                                  const glm::ivec3& reach = glm::ivec3(1));
 
-// The voxel of a piece that lies nearest to the piece's middle.
-//   piece  places in `voxels`, at least one
+// Returns the voxel of a connected component that is nearest to the component's mean position.
+//   piece  the component: indices into `voxels`, at least one
 glm::ivec3 middle_voxel(const Grid& grid, const std::vector<std::int64_t>& voxels,
                         const std::vector<std::int64_t>& piece);
 

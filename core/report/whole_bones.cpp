@@ -13,9 +13,9 @@
 namespace limber {
 
 namespace {
-constexpr double kAstray = 1e-3;  // of a bone's voxels: fewer are what rounding does at a border
+constexpr double kAstray = 1e-3;  // fraction of a bone's voxels that may be wrong by rounding at its border
 
-// The rig bone that each bone voxel of the graph follows most, as a place in `weights`.
+// Returns for each voxel of the bone graph the bone with the largest weight, as an index into the bones of `weights`.
 std::vector<int> followed_bones(const BoneGraph& graph, const TissueVoxels& tissue, const SkinWeights& weights) {
   std::vector<int> bone(graph.size(), 0);
   std::size_t next = 0;
@@ -31,7 +31,7 @@ std::vector<int> followed_bones(const BoneGraph& graph, const TissueVoxels& tiss
 
 double residual_of(const std::vector<std::int32_t>& voxels, const BoneGraph& graph, const AffineTransform& to_world,
                    const std::vector<int>& followed, const std::vector<RigidTransform>& posed_from_rest) {
-  // One motion carries all: nothing to fit.
+  // If one motion moves all the voxels, the residual is 0.
   const bool is_one =
       std::all_of(voxels.begin(), voxels.end(), [&](std::int32_t i) { return followed[i] == followed[voxels[0]]; });
   if (is_one) return 0;
@@ -78,7 +78,7 @@ std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels
   const BoneGraph graph = gather_bone(volume, tissue, kinds);
   const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
   const std::vector<int> followed = followed_bones(graph, tissue, weights);
-  std::vector<int> in_rig;  // by bone of the weights
+  std::vector<int> in_rig;  // rig bone of each bone of the weights; -1: the rig lacks it
   for (const std::string& name : weights.bones()) {
     const auto found =
         std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });

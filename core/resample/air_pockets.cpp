@@ -17,11 +17,11 @@ namespace limber {
 namespace {
 
 struct AirRun {
-  int begin, end;  // x
+  int begin, end;  // x of the first voxel, and x past the last voxel
 };
 
-// Runs of air that have tissue of their row on both sides, joined where they touch through faces. All other air of a
-// row reaches the border of the grid.
+// Finds the runs of air voxels along x that have tissue at both ends, and joins runs that share a voxel face. All other
+// air of a row reaches the border of the grid.
 class AirRuns {
  public:
   explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
@@ -55,8 +55,8 @@ class AirRuns {
 
  private:
   struct Row {
-    std::int64_t first;            // run
-    int tissue_begin, tissue_end;  // x; without tissue the size of the grid, and 0
+    std::int64_t first;            // index of the row's first run
+    int tissue_begin, tissue_end;  // x range [begin, end) of all tissue; grid size and 0 in a row without tissue
   };
 
   std::int64_t row(int y, int z) const { return y + std::int64_t{size_.y} * z; }
@@ -87,7 +87,8 @@ class AirRuns {
     }
   }
 
-  // Runs of a row that touch the border of the grid, or air that reaches it in a row beside.
+  // Marks each air run of a row as open if it touches the border of the grid, or air of a neighbouring row that reaches
+  // the border.
   void open_beside_border(std::int64_t here, int y, int z) {
     const bool at_border = y == 0 || z == 0 || y == size_.y - 1 || z == size_.z - 1;
     for (std::int64_t r = rows_[here].first; r < rows_[here + 1].first; ++r) {
@@ -113,8 +114,8 @@ class AirRuns {
   std::vector<bool> is_open_;
 };
 
-// Which pocket at rest, of those around the rest places of a pocket's walls, holds how many voxels: their sum, each
-// counted once.
+// Returns the volume at rest, in voxels, of the hollow that a posed air pocket comes from: the total of all rest
+// pockets that touch the rest points of the posed pocket's walls.
 std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest,
                           const std::vector<AirPocket>& rest_pockets,
                           const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
@@ -139,14 +140,15 @@ bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
                      [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
 }
 
-// The flesh at a voxel of a pocket's border, looked for at most two voxels behind its wall; else the skin there.
+// Returns the label that fills a voxel at a pocket's border: the most common flesh at most two voxels away, or the most
+// common soft tissue right beside the voxel where there is no such flesh.
 Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet& flesh, const LabelSet& soft) {
   for (int reach : {1, 2})
     if (const Label found = most_common_around(posed, v, reach, flesh)) return found;
   return most_common_around(posed, v, 1, soft);
 }
 
-// The skin that most of a pocket's walls are of; 0 where they are of flesh.
+// Returns the label of the skin that covers more than half of a pocket's wall faces; 0 where no skin does.
 Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSet& flesh, const LabelSet& soft) {
   std::map<Label, std::int64_t> faces;
   std::int64_t walls = 0;
@@ -161,7 +163,7 @@ Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSe
   return 0;
 }
 
-// From the walls inwards, layer by layer, until `kept` voxels are left.
+// Fills an air pocket with tissue from the walls inwards, layer by layer, until `kept` voxels of air are left.
 void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft,
           std::vector<glm::ivec3>& filled) {
   while (std::ssize(pocket) > kept) {

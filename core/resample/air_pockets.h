@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Air that a body encloses. A fold that closes over a hollow would leave a bubble where in a body flesh is pressed
-// together, and a hollow that was there would grow with the flesh that is stretched around it: a body holds as much air
-// as before.
+// Finds and fills the air that a posed body encloses. A fold that closes over a hollow would leave a bubble where in a
+// real body flesh is pressed together, and a hollow that exists at rest would grow with the flesh that is stretched
+// around it. So every air pocket is filled until it has the volume that it has at rest.
 #pragma once
 
 #include <map>
@@ -12,26 +12,27 @@
 
 namespace limber {
 
-// The voxels of one hollow, none of which a way through faces of air joins to the border of the grid.
+// The voxels of one hollow: connected air that no path through voxel faces joins to the border of the grid.
 using AirPocket = std::vector<glm::ivec3>;
 std::vector<AirPocket> air_pockets(const LabelVolume& volume);
 
-// Pockets of `posed` get the size that the hollows behind their walls had at rest, none where there was none: what is
-// more is filled, from the walls on, with the soft tissue nearest to it. Where skin lines the walls that is what lies
-// under it, and what is left of the pocket is lined with skin again.
-//   flesh  soft tissues but skin, by label      soft  with skin
-//   returns  the voxels filled, each after those that it was filled from
+// Shrinks every air pocket of `posed` to the volume of the hollow that its walls enclose at rest (0 where they enclose
+// none). The surplus is filled from the walls inwards with the nearest soft tissue. Where skin lines the walls, the
+// tissue under the skin fills the pocket, and what is left of the pocket is lined with skin again.
+//   flesh  soft tissues without skin, by label      soft  soft tissues with skin, by label
+//   returns  the filled voxels, each one after the voxels that it was filled from
 std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh,
                                            const LabelSet& soft, const RestPoint& rest_point);
 
-// Where tissue comes from that fills what was air: from where the tissue beside it comes from.
+// The rest point given to a voxel that was air and is filled with tissue now: the rest point of the tissue beside it.
 struct Origin {
-  std::int64_t beside;  // the voxel of the posed volume that it was taken from
-  glm::dvec3 rest;
+  std::int64_t beside;  // index of the neighbouring posed voxel that the rest point is taken from
+  glm::dvec3 rest;      // voxel coordinates
 };
-using Origins = std::map<std::int64_t, Origin>;  // by voxel of the posed volume
-//   was_air     such voxels, each beside tissue that was there or an earlier one
-//   rest_point  asked of tissue that was there
+using Origins = std::map<std::int64_t, Origin>;  // by index of the filled voxel in the posed volume
+// Returns for every filled voxel its rest point, and the neighbour that the rest point is taken from.
+//   was_air     filled voxels, each one beside original tissue or beside an earlier voxel of the list
+//   rest_point  called for voxels of original tissue only
 Origins origins_of(const LabelVolume& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point);
 
 }  // namespace limber

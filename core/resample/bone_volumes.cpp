@@ -14,31 +14,36 @@ namespace limber {
 
 namespace {
 
-constexpr int kSweeps = 16;         // over the tissues of a bone, until no price changes
-constexpr float kMostPrice = 0.2f;  // what would need more is left a little short: it has hardly any voxel near
-constexpr int kAsked = 3;           // tissues that may get a voxel
-constexpr float kDither =
-    1e-3f;  // of memberships: a border that runs along the turned grid would go to one side as a whole
+// Upper limit on the passes over the tissues of a bone. They end earlier once no price changes.
+constexpr int kSweeps = 16;
+// Upper limit on the price that is added to a tissue's membership. A tissue that needs a higher price has hardly any
+// voxels near its border, and stays a little too small.
+constexpr float kMostPrice = 0.2f;
+// Upper limit on the number of tissues that compete for one voxel: those with the largest memberships.
+constexpr int kAsked = 3;
+// Largest noise that is added to memberships. Without noise, all voxels along a flat border have equal memberships, and
+// would change their tissue at once.
+constexpr float kDither = 1e-3f;
 
 using Counts = std::map<Label, std::int64_t>;
 
-// A voxel that lies near the border of its tissue.
+// A voxel near the border of its tissue, with the tissues that may get it.
 struct Contested {
-  std::int64_t at;
+  std::int64_t at;  // index in the posed volume
   std::array<Label, kAsked> label;
-  std::array<float, kAsked> membership;  // falling; 0 tissues beyond `count` ones
-  int count;
+  std::array<float, kAsked> membership;  // largest first
+  int count;                             // number of tissues; 0: the voxel is not contested
 };
 
 struct Bone {
   Counts at_rest, posed;
-  Counts settled;  // of the posed voxels, those that are not contested
+  Counts settled;  // number of posed voxels that keep their tissue, by label
   std::vector<Contested> contested;
   std::map<Label, float> price;
 };
 using Bones = std::map<Label, Bone>;
 
-// body(voxel, label of the bone there) for every voxel of bone of a slice.
+// Calls body(voxel, number of its rig bone) for every bone voxel of a slice.
 template <class Body>
 void for_each_in_slice(const LabelVolume& bones, int z, const RowSet* rows, const Body& body) {
   const glm::ivec3 size = bones.grid.size;
@@ -57,14 +62,14 @@ Bones bones_at_rest(const LabelVolume& rest, const LabelVolume& rest_bones, cons
   return bones;
 }
 
-// In [0, 1), as if at random.
+// Returns a pseudo-random number in [0, 1).
 float noise(std::uint64_t seed) {
   seed = (seed ^ seed >> 30) * 0xbf58476d1ce4e5b9;
   seed = (seed ^ seed >> 27) * 0x94d049bb133111eb;
   return static_cast<float>(seed >> 40) / (1 << 24);
 }
 
-// None where the voxel is as good as in the middle of its tissue.
+// Returns the tissues that may get a voxel, with their memberships. The count is 0 where the voxel keeps its tissue.
 Contested contested(const LabelSampler::Memberships& found, Label own) {
   Contested voxel{0, {}, {}, 0};
   for (int i = 0; i < found.count; ++i) {
@@ -86,7 +91,7 @@ Contested contested(const LabelSampler::Memberships& found, Label own) {
   return voxel;
 }
 
-// One slice's part of each bone.
+// Adds the voxels of one slice to the counts and lists of their rig bones.
 void read_slice(const LabelVolume& posed, const LabelVolume& posed_bones, int z, const RowSet* rows,
                 const LabelSampler& sampler, const LabelSet& is_bone, const RestPoint& rest_point, Bones& bones) {
   for_each_in_slice(posed_bones, z, rows, [&](const glm::ivec3& v, Label number) {
@@ -113,7 +118,7 @@ void add(Bones&& slice, Bones& bones) {
   }
 }
 
-// The tissue of the largest sum; `own` on a tie.
+// Returns the tissue with the largest sum of membership and price for a voxel; on a tie, the voxel's tissue `own`.
 Label highest(const Contested& voxel, const std::map<Label, float>& price, Label own) {
   Label best = 0;
   float most = -INFINITY;
@@ -124,9 +129,10 @@ Label highest(const Contested& voxel, const std::map<Label, float>& price, Label
   return best;
 }
 
-// The price at which a tissue gets `wanted` of the contested voxels.
+// Returns the price (the value added to a tissue's memberships) at which the tissue gets `wanted` of the bone's
+// contested voxels, which are those near a border.
 float price_of(Label label, std::int64_t wanted, const Bone& bone) {
-  std::vector<float> least;  // price at which it gets each voxel that it may get
+  std::vector<float> least;  // for each voxel that the tissue may get, the lowest price at which it gets the voxel
   for (const Contested& voxel : bone.contested) {
     float own = -INFINITY, others = -INFINITY;
     for (int i = 0; i < voxel.count; ++i)
@@ -146,7 +152,7 @@ std::int64_t total(const Counts& counts) {
                          [](std::int64_t sum, const auto& count) { return sum + count.second; });
 }
 
-// Of a bone's posed voxels, what each of its tissues should have.
+// Returns the number of posed voxels that each tissue of a bone should have: its share of the bone at rest.
 Counts wanted(const Bone& bone) {
   const double scale = double(total(bone.posed)) / double(total(bone.at_rest));
   Counts wanted;
@@ -163,7 +169,7 @@ void set_prices(Bone& bone, const Counts& wanted) {
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     bool changed = false;
     for (auto& [label, price] : bone.price) {
-      if (label == largest) continue;  // only differences count
+      if (label == largest) continue;  // its price stays 0: only differences of prices matter
       const auto goal = wanted.find(label);
       const float next = price_of(label, (goal == wanted.end() ? 0 : goal->second) - bone.settled[label], bone);
       changed |= next != price;

@@ -17,22 +17,23 @@ struct DeformationMethod {
   std::string word;            // on the command line and in files: "dqs"
   std::string label;           // in lists and columns: "DQ"
   std::string name;            // in a study: "Dual quaternions"
-  std::string summary;         // behind the word in --help
-  std::string description;     // for a tooltip, a sentence
-  std::optional<Blend> blend;  // nothing: finite elements
+  std::string summary;         // explanation that follows the word in --help
+  std::string description;     // a full sentence, for a tooltip
+  std::optional<Blend> blend;  // none: finite elements
 };
 
 inline constexpr std::string_view kFiniteElements = "fem";
 
-// The first is taken where none is named.
+// Returns all methods. The first one is the default.
 std::span<const DeformationMethod> deformation_methods();
-// Null where no method has this word.
+// Returns the method with this word; null where there is none.
 const DeformationMethod* find_method(std::string_view word);
 
-// What a command may take: all methods, or only the blends, which previews can draw.
+// The methods that a command accepts: all of them, or only the blends (skinning), since previews cannot draw finite
+// elements.
 enum class Methods { All, Blends };
 std::vector<std::string> method_words(Methods which);
-// "mix (between the two, ...), lbs (linear) or dqs (dual quaternions)"
+// Returns a list of words with their summaries, such as "lbs (linear) or dqs (dual quaternions)".
 std::string method_summaries(Methods which);
 
 }  // namespace limber

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Posing by finite elements: the tissue that the pose bends is meshed (core/mesh), the bones are led to the pose in
-// steps and the flesh follows at least energy (core/fem); what does not bend goes rigidly with its bones. The mesh then
-// carries its voxels (deform/posed_tets.h).
+// Settings and reports of posing by finite elements. The tissue that the pose bends is meshed (core/mesh), the bones
+// are moved to the pose in steps, and the flesh takes the shape of least energy (core/fem). Tissue that does not bend
+// moves rigidly with its bones. The mesh then carries its voxels (deform/posed_tets.h).
 //
-// A pose may be out of reach: bone against bone, or flesh that would have to be pressed to nothing. Then the result is
-// the last place of the way from rest that was reached, and says so.
+// A pose may be out of reach, because bone meets bone or flesh would have to be pressed to nothing. Then the result is
+// the last pose that was reached on the way from rest, and SolveReport says so.
 #pragma once
 
 #include <functional>
@@ -26,39 +26,39 @@ struct TissueModel;
 enum class FemQuality { Draft, Normal, Fine };
 
 struct Fem {
-  bool contact = false;                     // skin touches skin instead of passing through
+  bool contact = false;                     // true: skin is pushed apart instead of passing through skin
   FemQuality quality = FemQuality::Normal;  // tets of 12 mm, 8 mm, or 8 mm and 4 mm around joints that bend
-  std::optional<double> spacing_mm;         // another size of tets everywhere
+  std::optional<double> spacing_mm;         // edge length of all tets, instead of the quality's
   Mesher mesher = Mesher::lattice;
-  std::function<void(const TissueModel&)> on_mesh;  // before the first iteration
-  std::function<void(const SolveStep&)> on_step;    // after every iteration
+  std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
+  std::function<void(const SolveStep&)> on_step;    // called after every iteration
 };
 
-// What the mesh is, at rest and posed.
+// Size and quality of the tet mesh, at rest and posed.
 struct MeshReport {
   std::int64_t tets = 0, nodes = 0;
   std::int64_t inverted = 0;                       // tets with det F <= 0 at the end of any step
-  double min_det_f = 1;                            // of soft tets, at the end
-  std::int64_t joint_tets = 0;                     // between two bones: soft, not counted in min_det_f
-  double share_below_fifth = 0;                    // of soft tets, those with det F below 0.2
-  std::optional<std::int64_t> self_intersections;  // pairs of triangles of the posed border
-  std::int64_t contact_nodes =
-      0;  // of the border: nearer to another part of it than 1.5 times what contact pushes from, without contact too
-  std::optional<double> min_gap_mm, median_gap_mm;  // of the air at those nodes
-  std::map<Label, double> volume_change_percent;    // of the tets that hold the label's voxels
-  std::map<Label, Stretch> stretch;                 // of soft tissue that bends
-  std::string fallback;  // what the mesher had to do instead of its best, empty where nothing
+  double min_det_f = 1;                            // smallest det F of all soft tets in the result
+  std::int64_t joint_tets = 0;                     // soft tets between two bones, not counted in min_det_f
+  double share_below_fifth = 0;                    // share of the soft tets with det F below 0.2, [0, 1]
+  std::optional<std::int64_t> self_intersections;  // pairs of crossing triangles of the posed border
+  // Border nodes nearer to another part of the border than 1.5 times the contact distance; counted without contact too.
+  std::int64_t contact_nodes = 0;
+  std::optional<double> min_gap_mm, median_gap_mm;  // width of the air at the contact nodes
+  std::map<Label, double> volume_change_percent;    // volume change of the tets that hold the label's voxels
+  std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends
+  std::string fallback;                             // the mesher's warning when it used a fallback; empty: none
 };
 
 struct SolveReport {
   bool converged = false;
-  double reached = 0;      // of the way from rest to the pose, [0, 1]
-  std::string blocked_by;  // where it did not converge
+  double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
+  std::string blocked_by;  // what blocks the pose; empty where the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
-  int analyses = 0;        // of the matrix's pattern, which contact changes
-  double residual_mm = 0;  // furthest that a node wanted to move in the last iteration
-  double bone_drift_mm =
-      0;  // furthest that a node of the mesh is from where its bone is; voxels of bone are where it is
+  int analyses = 0;        // symbolic analyses of the matrix's sparsity pattern, which contact changes
+  double residual_mm = 0;  // longest move of a node that the last iteration proposed
+  // Largest distance of a bone's node from its exact rigid position. Bone voxels are always painted exactly.
+  double bone_drift_mm = 0;
 };
 
 }  // namespace limber

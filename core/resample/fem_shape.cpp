@@ -14,15 +14,16 @@ namespace limber {
 
 namespace {
 
-constexpr double kMargin = 24;  // mm around what bends by its weights: skin creases wider than weights blend
-constexpr double kGive =
-    16;  // mm around what the pose brings together: pressed flesh gives way less far than a crease reaches
-constexpr double kRim = 2.5;  // tets: two layers whole, whatever cells the tissue's border cuts
-constexpr double kJoint = 2;  // tets: so many layers share the sliding of two bones
-constexpr double kDrift =
-    2;  // mm that a bone may give way at a node, more where tets are so coarse that bones are rough
-constexpr double kContact = 1.4;  // mm from which skin is pushed apart; less where tets are small
-constexpr double kTouches = 1.5;  // of that distance: what counts as touching in reports
+// Margins around the tissue that bends by its weights, mm: skin creases further out than weights blend.
+constexpr double kMargin = 24;
+// The same around tissue that the pose brings into contact: pressed flesh gives way less far than a crease reaches.
+constexpr double kGive = 16;
+constexpr double kRim = 2.5;  // width of the rim of held nodes, in tets: at least two whole layers
+constexpr double kJoint = 2;  // layers of tets that share the sliding of two bones
+// Largest distance of a bone's node from its bone, mm. Coarse tets, whose bones are rough, are allowed more.
+constexpr double kDrift = 2;
+constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; smaller where tets are small
+constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -34,7 +35,7 @@ double tet_spacing(const Fem& fem) {
   return fem.quality == FemQuality::Draft ? 12 : 8;
 }
 
-// The joints that turn in any of the poses, where the mesh of best quality is finer.
+// Returns the joints that turn in any of the poses; the mesh of fine quality has smaller tets around them.
 std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses) {
   std::vector<glm::dvec3> joints;
   for (size_t b = 0; b < armature.bones.size(); ++b)
@@ -44,7 +45,7 @@ std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<
   return joints;
 }
 
-// From rest through one pose after the other, each at the end of as long a part of the way.
+// Returns the path from rest through all poses; each pose gets an equal share of [0, 1].
 BonePath way_through(const std::vector<Pose>& poses, const SkinWeights& weights, const Armature& armature) {
   return [&](double t) {
     const double place = t * double(poses.size());
@@ -54,7 +55,8 @@ BonePath way_through(const std::vector<Pose>& poses, const SkinWeights& weights,
   };
 }
 
-// Of that way: four of the first part, which may be long, and two of each after it.
+// Returns the points of way_through that moving_tissue examines: four on the first leg, which may be long, and two on
+// each later leg.
 std::vector<double> places_of(std::size_t poses) {
   std::vector<double> places;
   for (int k = 1; k <= 4; ++k) places.push_back(0.25 * k / double(poses));
@@ -63,14 +65,15 @@ std::vector<double> places_of(std::size_t poses) {
   return places;
 }
 
-// What waits on one of several legs of the way, by places on that leg.
+// Returns the nodes that wait on one of several legs of the path, with `until` converted to that leg.
 std::vector<FemModel::Waiting> on_leg(std::vector<FemModel::Waiting> waiting, std::size_t leg, std::size_t legs) {
   for (FemModel::Waiting& each : waiting) each.until = each.until * double(legs) - double(leg);
   std::erase_if(waiting, [](const FemModel::Waiting& each) { return each.until <= 0; });
   return waiting;
 }
 
-//   spacing  of the mesh, mm       contact_mm  from which skin is pushed apart
+// Fills the mesh report of a solved shape.
+//   spacing  edge length of the tets, mm       contact_mm  distance below which skin is pushed apart
 void measure(const SolvedPose& solved, double spacing, double contact_mm, FemShape& shape) {
   const TetMesh& mesh = shape.model.fem.mesh;
   const std::vector<double> ratios = volume_ratios(mesh, solved.V);
@@ -167,7 +170,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                                .bone_drift_mm = std::max(kDrift, spacing_ / 2)};
   const SolvedPose solved =
       solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
-  if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // something should have moved
+  if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // no node is held by a moving bone
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
                 "choose a finer quality, or blend instead");
   const bool ends = solved_ == poses_.size();
@@ -181,13 +184,13 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
     return is_bone_[tissue.first] != 0;
-  });  // painted rigidly, whatever tets it lies in
+  });  // bone is painted rigidly, whatever tets it lies in
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
-  if (shape->reached < 1) waiting_.clear();  // the way on is another
+  if (shape->reached < 1) waiting_.clear();  // the next leg starts elsewhere, so the waiting times are not valid
   last_.V = shape->V;
   last_.pose = shape->pose;
-  last_.seconds_mesh = 0;  // once
+  last_.seconds_mesh = 0;  // only the first shape reports the time for meshing
   return shape;
 }
 

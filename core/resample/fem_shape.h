@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Mesh, solve, and what became of them: the steps of resample.h by finite elements, before any voxel is written.
+// Meshes the tissue that a pose bends and solves for its posed shape: the part of resample.h by finite elements that
+// comes before any voxel is written.
 #pragma once
 
 #include <vector>
@@ -10,36 +11,37 @@
 
 namespace limber {
 
+// A solved mesh with its reports.
 struct FemShape {
   TissueModel model;
   Eigen::MatrixX3d V;  // #V posed nodes, world, mm
   DeformingRegion moving;
-  double reached = 1;  // of the way to the pose
-  Pose pose;           // where that is
+  double reached = 1;  // share of the way to the pose that was reached, [0, 1]
+  Pose pose;           // the pose that was reached
   MeshReport mesh;
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;
-  FemSeconds cpu;  // of the solve
+  FemSeconds cpu;  // time of each part of the solve
 };
 
-// The tissue that the pose bends, solved. None where the pose bends nothing.
-//   weights  bone tissue follows one bone wholly
+// Returns the solved shape of the tissue that the pose bends; null where the pose bends nothing.
+//   weights  give every voxel of bone tissue to one bone alone
 //   throws Error when the tissue cannot be meshed or memory does not suffice
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
                                             const TissueTable& tissues, const LabelSet& is_bone,
                                             const SkinWeights& weights, const Armature& armature, const Pose& pose,
                                             const Fem& fem, Progress& progress = no_progress());
 
-// The same for a run of poses, as the frames of a motion. They share one mesh, of all the tissue that any of them
-// bends, and each is solved from where the one before it ended, the first from rest.
+// Solves a sequence of poses, such as the frames of a motion. The poses share one mesh of all the tissue that any of
+// them bends. The first solve starts from rest, each later one from the shape in which the solve before it ended.
 class FemSequence {
  public:
-  // All but the settings must outlive it.
+  // Keeps references to `is_bone`, `weights` and `armature`, which must outlive the sequence.
   FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
               const LabelSet& is_bone, const SkinWeights& weights, const Armature& armature, std::vector<Pose> poses,
               Fem fem, Progress& progress = no_progress());
 
-  // Of the next pose. None where nothing bends in any of them.
+  // Returns the shape of the next pose; null where no pose of the sequence bends anything.
   std::shared_ptr<const FemShape> next(Progress& progress = no_progress());
 
  private:
@@ -48,10 +50,10 @@ class FemSequence {
   const LabelSet& is_bone_;
   std::vector<Pose> poses_;
   Fem fem_;
-  double spacing_, finest_;                 // mm
-  std::vector<FemModel::Waiting> waiting_;  // on the way through all poses
-  std::size_t solved_ = 0;
-  FemShape last_;  // at rest, before the first
+  double spacing_, finest_;                 // edge length of the tets, and of the smallest tets, mm
+  std::vector<FemModel::Waiting> waiting_;  // nodes held for a while; `until` counts along the way through all poses
+  std::size_t solved_ = 0;                  // number of poses solved so far
+  FemShape last_;                           // the shape solved last; at rest before the first solve
 };
 
 }  // namespace limber

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A solve by finite elements as seen from another process: two files that the solver leaves for whoever watches,
-//   NAME.mesh  the tets at rest, once
-//   NAME.step  where the nodes and the bones are after the newest iteration, and at the end where they have come to
-//   rest
-// Each step takes the former one's place in one move, so that a reader sees a whole one, and the disk holds one only.
-// Places are single precision: 0.1 um on a body. Files of one program version are read by the same one; they are no
-// archive.
+// Writes and reads two files by which another process can watch a finite element solve:
+//   NAME.mesh  the tets at rest, written once
+//   NAME.step  the positions of nodes and bones after the newest iteration, and at the end their final positions
+// Each step replaces the one before by a rename, so that a reader always sees a whole step and the disk holds only one.
+// Positions are single precision: 0.1 um on a body. Only the program version that wrote a file can read it; the files
+// are not meant for storage.
 #pragma once
 
 #include <memory>
@@ -25,37 +24,40 @@ struct TissueModel;
 struct FemMesh {
   TetMesh tets;                       // at rest
   std::vector<TetMaterial> material;  // #T
-  std::vector<std::uint8_t> joint;    // #T: 1 between two bones
+  std::vector<std::uint8_t> joint;    // #T: 1 for a tet between two bones, else 0
 
   bool is_soft(std::int64_t tet) const { return tets.region[tet] == TetMesh::kSoft && !joint[tet]; }
 };
 
 struct FemStep {
-  double reached = 0;                   // of the way from rest to the pose, [0, 1]
-  int iteration = 0;                    // so far
-  double residual_mm = 0;               // furthest that a node wanted to move in it
-  std::vector<RigidTransform> motions;  // posed_from_rest of the weights' bones
-  Eigen::MatrixX3d V;                   // #V places, world, mm
+  double reached = 0;                   // share of the way from rest to the pose, [0, 1]
+  int iteration = 0;                    // iterations so far
+  double residual_mm = 0;               // longest displacement of a node that this iteration proposed
+  std::vector<RigidTransform> motions;  // posed-from-rest motion of each bone of the weights
+  Eigen::MatrixX3d V;                   // #V node positions, world, mm
 };
 
-// What became of a mesh, to be looked at.
+// A mesh with its solved node positions, for display.
 struct SolvedMesh {
   FemMesh mesh;
-  Eigen::MatrixX3d V;  // #V places, world, mm
+  Eigen::MatrixX3d V;  // #V node positions, world, mm
 };
 
 FemMesh fem_mesh_of(const TissueModel& model);
 
 std::string encode(const FemMesh& mesh);
 std::string encode(const FemStep& step);
-// throw Error when the bytes are none, or do not fit together
+// Decode the bytes of a file. Both functions throw Error when the bytes are not a file of this kind or contradict each
+// other.
+//   where  name of the file, for messages
 FemMesh decode_fem_mesh(const std::string& bytes, const std::string& where);
 FemStep decode_fem_step(const std::string& bytes, const std::string& where);
 
-// throw Error when it cannot be written
+// Write NAME.mesh and NAME.step. Both functions throw Error when the file cannot be written.
 void write_fem_mesh(const FemMesh& mesh, const Path& name);
 void write_fem_step(const FemStep& step, const Path& name);
-// None where there is no such file (yet).    throw Error when it is damaged
+// Read NAME.mesh and NAME.step. Both functions return none when the file does not exist (yet), and throw Error when it
+// is damaged.
 std::optional<FemMesh> read_fem_mesh(const Path& name);
 std::optional<FemStep> read_fem_step(const Path& name);
 

@@ -14,14 +14,15 @@ namespace limber {
 
 namespace {
 
-constexpr double kStep = 10 * std::numbers::pi / 180;  // of a turn: bones come less than a voxel or two nearer in one
-constexpr int kMargin = 2;                             // voxels around a bone, where its surface is still known
+// Rotation per step, radians. It is so small that two bones approach each other by a voxel or two at most.
+constexpr double kStep = 10 * std::numbers::pi / 180;
+constexpr int kMargin = 2;  // width of the border around a bone in its distance field, voxels
 
 struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
 
   void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // or not finite
+  bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // true for NaN as well
   bool contains(const glm::dvec3& p) const {
     return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
   }
@@ -33,13 +34,13 @@ AffineTransform back(const AffineTransform& rigid) {
   return {linear, -(linear * rigid.offset)};
 }
 
-// Of one rig bone.
+// The bone tissue that belongs to one rig bone.
 struct BoneTissue {
   std::vector<glm::ivec3> voxels;
-  Box box;  // of their centres, mm along the grid's axes
+  Box box;  // holds the centres of the voxels; mm along the grid's axes
 };
 
-// By rig bone.
+// Returns the bone tissue of every rig bone.
 std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
                                const SkinWeights& weights, const Armature& armature) {
   std::vector<int> bone_of;
@@ -73,12 +74,12 @@ double angle_of(const glm::dquat& turn) {
   return 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
 }
 
-// A joint of the rig as the pose bends it.
+// A joint of the rig that the pose bends.
 struct Joint {
-  int bone, against;
-  std::vector<RigidTransform> path;  // of `bone` as `against` stands, from the first step to the pose
-  double most_mm;
-  int below = 0;  // how many of these joints lie above it
+  int bone, against;                 // the rig bone that may be shifted, and its ancestor with bone tissue
+  std::vector<RigidTransform> path;  // motions of `bone` relative to `against`, one per step; the last is the full pose
+  double most_mm;                    // upper limit on the length of the shift
+  int below = 0;                     // number of bent joints above this one in the rig's hierarchy
 };
 
 class BentJoints {
@@ -116,7 +117,8 @@ class BentJoints {
     return std::min(length(bone), length(against));
   }
 
-  // Empty where nothing turns.
+  // Returns the motions of `bone` relative to `against`, one per step; empty where no joint between the two bones
+  // turns.
   std::vector<RigidTransform> path_of(int bone, int against) const {
     double angle = 0;
     for (int b = bone; b != against; b = armature_.bones[b].parent) angle += angle_of(pose_.rotation[b]);
@@ -134,7 +136,8 @@ class BentJoints {
   const Pose& pose_;
 };
 
-// Around the voxels of a bone that some of the motions take into a box.
+// Returns the box around the rest positions of those voxels of a bone that at least one of the motions takes into
+// `box`.
 Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineTransform>& motions,
                const glm::dvec3& spacing) {
   Box around;
@@ -152,7 +155,8 @@ VoxelBox voxels_around(const Box& box, const glm::dvec3& spacing) {
   return {low - kMargin, high - low + 1 + 2 * kMargin};
 }
 
-// The shift along the grid's axes as the fixed bone stands.
+// Returns the shortest shift that separates the two bones of a joint, along the grid's axes in the frame of the fixed
+// bone.
 LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid,
                     const ShiftBound& bound) {
   const glm::dmat3 to_grid = glm::inverse(grid.direction);
@@ -165,7 +169,7 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
   std::vector<AffineTransform> way_back;
   for (const AffineTransform& motion : path) way_back.push_back(back(motion));
-  // The part of either bone that the other can come to, narrowed in turns.
+  // Boxes around the voxels of each bone that the other bone can reach. Each box narrows the next one.
   const double reach = bound.most_mm + glm::length(grid.spacing);
   const Box first = taken_into(turning.box.grown(reach), fixed, way_back, grid.spacing);
   const Box near_turning = taken_into(first.grown(reach), turning, path, grid.spacing);
@@ -178,15 +182,16 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);
 }
 
-// How far each bone is carried by its own shift and by those above it.
+// Returns for each bone the sum of its own shift and the shifts of its ancestors.
 std::vector<glm::dvec3> carried_by(std::vector<glm::dvec3> shifts, const Armature& armature) {
   for (std::size_t b = 0; b < shifts.size(); ++b)
     if (const int parent = armature.bones[b].parent; parent >= 0) shifts[b] += shifts[parent];
   return shifts;
 }
 
-// None where nothing overlaps.
-//   motions  posed from rest        carried  as far as it is known: of all bones above
+// Returns the shift of a joint; none where its bones do not overlap.
+//   motions  posed-from-rest motion of each bone
+//   carried  for each bone the sum of its own and its ancestors' shifts; final for all bones above the joint
 std::optional<GlidedJoint> glide_joint(const Joint& joint, const Armature& armature,
                                        const std::vector<BoneTissue>& tissue, const Grid& grid,
                                        const std::vector<RigidTransform>& motions,
@@ -223,7 +228,8 @@ GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, c
   const std::vector<BoneTissue> bones = gather(volume, tissue, is_bone, weights, armature);
   const std::vector<Joint> joints = BentJoints(armature, pose, bones, settings).joints;
   const std::vector<RigidTransform> motions = posed_from_rest(armature, glided.pose);
-  std::vector<glm::dvec3> shifts(armature.bones.size(), glm::dvec3(0));  // world axes of the posed body, mm
+  // One shift per bone; along the world axes of the posed body, mm.
+  std::vector<glm::dvec3> shifts(armature.bones.size(), glm::dvec3(0));
   std::vector<std::optional<GlidedJoint>> found(joints.size());
   bool any = true;
   for (int below = 0; std::exchange(any, false); ++below) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Grey values of a volume anywhere in the world.
+// Samples the grey values of a volume at any point in world coordinates, mm.
 #pragma once
 
 #include "core/volume_io/volume_io.h"
 
 namespace limber {
 
-// Grey values between voxel centres, linear; the nearest voxel's outside the grid.
+// Interpolates grey values trilinearly between voxel centres; outside the grid it returns the nearest voxel's value.
 class GreySampler {
  public:
   explicit GreySampler(const GreyVolume& grey) : grey_(grey), voxel_from_world_(voxel_from_world(grey.grid)) {}

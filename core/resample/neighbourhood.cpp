@@ -9,12 +9,12 @@ namespace limber {
 
 namespace {
 
-constexpr int kReach = 8;  // voxels around a rest point within which its tissue is looked for
+constexpr int kReach = 8;  // distance around a rest point within which its tissue is searched, voxels
 
-// The surroundings as bits, x fastest; bit 13 is the voxel itself.
+// The 3^3 voxels around a voxel are stored as 27 bits, x fastest; bit 13 is the central voxel itself.
 constexpr unsigned kCentre = 1u << 13;
 
-// Of every place among the 3^3, the places beside it.
+// Returns for each of the 3^3 voxels a bit mask of the voxel itself and of those of the 3^3 that are 26-adjacent to it.
 const std::array<unsigned, 27>& beside() {
   static const std::array<unsigned, 27> all = [] {
     std::array<unsigned, 27> places{};
@@ -39,7 +39,8 @@ bool bits_hang_together(unsigned places) {
   return places && reached == places;
 }
 
-// Of every place among the 3^3 but the corners and the middle, those of them that share a face with it.
+// Returns for each of the 3^3 voxels a bit mask of those of the 3^3 that share a face with it. The corners and the
+// centre have an empty mask and are in no mask.
 const std::array<unsigned, 27>& at_faces() {
   static const std::array<unsigned, 27> all = [] {
     const auto from_middle = [](int k) { return std::abs(k % 3 - 1) + std::abs(k / 3 % 3 - 1) + std::abs(k / 9 - 1); };
@@ -57,7 +58,8 @@ const std::array<unsigned, 27>& at_faces() {
 
 constexpr unsigned kFaces = 1u << 4 | 1u << 10 | 1u << 12 | 1u << 14 | 1u << 16 | 1u << 22;
 
-// Whether the places at the faces, of which there is one, are joined by others at faces and edges.
+// Returns whether at least one face neighbour of the central voxel is marked, and all marked face neighbours are
+// 6-connected by marked voxels that share a face or an edge with the central voxel.
 bool faces_hang_together(unsigned places) {
   const unsigned faces = places & kFaces;
   unsigned reached = faces & -faces;
@@ -70,7 +72,7 @@ bool faces_hang_together(unsigned places) {
   return faces && (faces & ~reached) == 0;
 }
 
-// body(place, label) for the 3^3 voxels around a voxel, air outside the grid.
+// Calls body(index, label) for the 3^3 voxels around a voxel, x fastest; voxels outside the grid are air.
 template <class Body>
 void for_each_around(const LabelVolume& volume, const glm::ivec3& voxel, const Body& body) {
   const glm::ivec3 size = volume.grid.size;
@@ -109,9 +111,9 @@ std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, 
   const glm::ivec3 centre(glm::floor(point + 0.5));
   const glm::dvec3 spacing = volume.grid.spacing;
   const double least = std::min({spacing.x, spacing.y, spacing.z});
-  double nearest = INFINITY;  // mm, squared
+  double nearest = INFINITY;  // squared distance, mm^2
   glm::ivec3 found(0);
-  // A voxel of a shell is at least so many voxels but a half away.
+  // Shell number n holds the voxels n steps from the centre. Each is at least n - 0.5 voxels away from the point.
   for (int shell = 0; shell <= kReach && least * (shell - 0.5) < std::sqrt(nearest); ++shell)
     for (int z = -shell; z <= shell; ++z)
       for (int y = -shell; y <= shell; ++y) {

@@ -12,9 +12,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kLayers = 6;                           // at most, on or off an organ
-constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
-constexpr int kRounds = 2;                           // over all organs: what one gave may leave another one short
+// Upper limit on the layers of voxels that one round adds to an organ or takes from it.
+constexpr int kLayers = 6;
+// Connected components with fewer voxels keep their size: a change could take them across 50 voxels, and only
+// components of at least 50 voxels are counted.
+constexpr std::int64_t kFrozen = 2 * kSmallestPart;
+// Number of passes over all organs. An organ that gave voxels in the first pass may be too small afterwards.
+constexpr int kRounds = 2;
 
 class Organs {
  public:
@@ -34,7 +38,7 @@ class Organs {
   }
 
   std::map<Label, std::int64_t> run() {
-    std::vector<std::pair<double, Label>> order;  // the most changed first
+    std::vector<std::pair<double, Label>> order;  // organs by relative change of volume, the largest first
     for (const auto& [label, voxels] : wanted_)
       if (off(label) != 0) order.emplace_back(-std::abs(double(off(label))) / double(voxels), label);
     std::sort(order.begin(), order.end());
@@ -54,20 +58,21 @@ class Organs {
     glm::ivec3 low{INT32_MAX}, high{INT32_MIN};
   };
   struct Candidate {
-    int around;  // of the 26 voxels around, those of the organ
+    int around;  // number of the 26 neighbours that belong to the organ
     std::uint64_t shuffle;
     glm::ivec3 voxel;
   };
 
   std::int64_t least(Label label) const { return std::llround(std::ceil(double(wanted_.at(label)) * (1 - kMostOff))); }
   std::int64_t most(Label label) const { return std::llround(std::floor(double(wanted_.at(label)) * (1 + kMostOff))); }
-  // Voxels that it lacks, negative what it has too much.
+  // Returns the number of voxels that an organ lacks to reach its allowed range; negative: the number of surplus
+  // voxels.
   std::int64_t off(Label label) const {
     return has_[label] < least(label)  ? least(label) - has_[label]
            : has_[label] > most(label) ? most(label) - has_[label]
                                        : 0;
   }
-  // body(voxel, its place in the volume), x fastest.
+  // Calls body(voxel, pointer to its label) for every tissue voxel of a box, x fastest.
   template <class Body>
   void for_each_tissue_voxel(const Box& box, const Body& body) const {
     glm::ivec3 v;
@@ -80,7 +85,8 @@ class Organs {
       }
   }
 
-  // Whether one of the voxels at the faces of v, which lies at `at`, is such a one; outside the grid there is air.
+  // Returns whether `is` holds for the label of at least one face neighbour of voxel v. The pointer `at` points to v's
+  // own label. Voxels outside the grid are air.
   template <class Is>
   bool has_beside(const glm::ivec3& v, const Label* at, const Is& is) const {
     const glm::ivec3 size = posed_.grid.size;
@@ -95,11 +101,12 @@ class Organs {
   bool can_give(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] > least(label); }
   bool can_take(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] < most(label); }
 
-  // One layer of its surface, or as much of it as is asked for. False where nothing could move.
+  // Adds or removes one layer of voxels at an organ's surface, or as much of the layer as the organ needs. Returns
+  // false where no voxel could change.
   bool move_surface(Label label) {
     const bool grows = off(label) > 0;
     std::vector<Candidate> surface = surface_of(label, grows);
-    // Hollows are filled first, what sticks out goes first.
+    // A growing organ fills its hollows first; a shrinking organ loses its protruding voxels first.
     std::sort(surface.begin(), surface.end(), [&](const Candidate& a, const Candidate& b) {
       if (a.around != b.around) return grows ? a.around > b.around : a.around < b.around;
       return a.shuffle < b.shuffle;
@@ -112,7 +119,7 @@ class Organs {
     return moved;
   }
 
-  // Outside it where it grows, its own voxels where it gives.
+  // Returns the flesh voxels just outside an organ that grows, or the surface voxels of an organ that shrinks.
   std::vector<Candidate> surface_of(Label label, bool grows) {
     std::vector<Candidate> surface;
     Box& box = box_[label];
@@ -130,7 +137,8 @@ class Organs {
     return surface;
   }
 
-  // What is most common at its faces, of what can take a voxel; 0 where nothing can.
+  // Returns the tissue that voxel v is given to when `from` loses it: the most common one among the face neighbours
+  // that may grow; 0 where none may.
   Label taker(const glm::ivec3& v, Label from) const {
     std::map<Label, int> count;
     for (const glm::ivec3& step : kFaceNeighbours)
@@ -162,7 +170,7 @@ class Organs {
     return changed != part_of_changed_.end() ? changed->second : component_at(parts_, posed_, v);
   }
 
-  // `label` must be beside.
+  // Returns the connected component of `label` beside a voxel. At least one neighbour must have the label.
   int part_beside(const glm::ivec3& v, Label label) const {
     const auto step = std::find_if(neighbours().begin(), neighbours().end(),
                                    [&](const glm::ivec3& each) { return posed_.at_or_air(v + each) == label; });
@@ -172,10 +180,11 @@ class Organs {
   LabelVolume& posed_;
   const std::map<Label, std::int64_t>& wanted_;
   const LabelSet &soft_, &skin_;
-  Components parts_;  // as they were, but for their sizes
-  std::unordered_map<std::int64_t, int> part_of_changed_;
-  std::vector<std::int64_t> has_;  // by label
-  std::vector<Box> box_;           // by label: that holds all of it
+  // Connected components of the initial volume. Their sizes are kept up to date, their voxel runs are not.
+  Components parts_;
+  std::unordered_map<std::int64_t, int> part_of_changed_;  // component of each changed voxel, by voxel index
+  std::vector<std::int64_t> has_;                          // number of voxels, by label
+  std::vector<Box> box_;                                   // box around all voxels of the tissue, by label
 };
 
 }  // namespace

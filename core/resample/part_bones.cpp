@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kRounds = 4;  // the first takes from the larger part only
+constexpr int kRounds = 4;  // passes over voxels in contact; in the first, only the larger component gives voxels
 
 std::map<Label, int> large_parts(const Components& components, const LabelSet& soft) {
   std::vector<Label> label(components.voxels.size());
@@ -46,7 +46,7 @@ class Parting {
   std::int64_t part(Label label) {
     find_fused(label);
     std::int64_t changed = 0;
-    // Giving only ends contacts: where there was none there will be none.
+    // Giving a voxel to another tissue only removes contacts, so voxels without contact are not examined again.
     std::vector<glm::ivec3> touching = std::move(fused_);
     for (int round = 0; round < kRounds && !touching.empty(); ++round) {
       std::vector<glm::ivec3> still;
@@ -62,13 +62,13 @@ class Parting {
     return changed;
   }
 
-  // The voxels of posed parts that come from more than one large rest part.
+  // Finds the voxels of those posed components in which several large rest components (50 voxels or more) have fused.
   void find_fused(Label label) {
     first_of_run_.assign(of_posed_.runs.size(), -1);
     part_of_.clear();
     fused_.clear();
     std::unordered_map<int, std::set<int>> sources;
-    std::vector<std::pair<glm::ivec3, int>> voxels;  // and their component
+    std::vector<std::pair<glm::ivec3, int>> voxels;  // each voxel with its posed component
     const int height = posed_.grid.size.y;
     for (std::int64_t row = 0; row + 1 < std::ssize(of_posed_.first_run); ++row)
       for (auto r = of_posed_.first_run[row]; r < of_posed_.first_run[row + 1]; ++r) {
@@ -89,7 +89,8 @@ class Parting {
       if (sources[component].size() > 1) fused_.push_back(v);
   }
 
-  // The large rest part of each voxel of a run. Between two voxels of one part, at most four apart, lies no other.
+  // Finds the large rest component (50 voxels or more) that each voxel of a run comes from. Where two voxels at most
+  // four apart come from the same component, the voxels between them are assumed to come from it too.
   void find_sources(const glm::ivec3& first, int count, Label label, int* parts) const {
     constexpr int kStep = 4;
     for (int done = -1; done < count - 1;) {
@@ -106,9 +107,9 @@ class Parting {
     return part >= 0 && of_rest_.voxels[part] >= kSmallestPart ? part : -1;
   }
 
-  // The large rest part that a voxel of the present label comes from, -1 when there is none.
+  // Returns the large rest component that a voxel of the current label comes from, -1 when there is none.
   int part_of(const glm::ivec3& v) const {
-    // Voxels are asked along rows.
+    // Callers ask for voxels along rows, so the run found last is remembered for each of 16 neighbouring rows.
     const std::int64_t row = v.y + std::int64_t{posed_.grid.size.y} * v.z;
     LastRun& last = last_runs_[(v.y & 3) + 4 * (v.z & 3)];
     if (last.row != row || of_posed_.runs[last.run].begin > v.x || of_posed_.runs[last.run].end <= v.x) {
@@ -121,7 +122,8 @@ class Parting {
     return part_of_[first_of_run_[run] + v.x - of_posed_.runs[run].begin];
   }
 
-  // A rest part other than its own that a voxel touches, -1 when there is none.
+  // Returns the rest component that a neighbour of voxel v comes from, if it differs from v's own; -1 where all
+  // neighbours come from v's own rest component.
   int touched_part(Label label, const glm::ivec3& v) const {
     const int own = part_of(v);
     for (const glm::ivec3& step : neighbours()) {
@@ -159,7 +161,7 @@ class Parting {
     return false;
   }
 
-  // What is left of the voxel's own part around it hangs together.
+  // Returns whether the neighbours of voxel v that come from the same rest component as v are connected without v.
   bool part_can_spare(const glm::ivec3& v, Label label) const {
     const int own = part_of(v);
     std::array<bool, 27> same{};
@@ -170,7 +172,8 @@ class Parting {
     return is_connected_26(same);
   }
 
-  // The component of the neighbours of a tissue, when it is one; a small one beside a large one counts for nothing.
+  // Returns the posed component of `tissue` that touches voxel v; -1 when there is none or there are two large ones (50
+  // voxels or more). A small component beside a large one is ignored.
   int only_component(const glm::ivec3& v, Label tissue) const {
     int found = -1;
     for (const glm::ivec3& step : neighbours()) {
@@ -194,11 +197,15 @@ class Parting {
     std::int64_t row = -1, run = 0;
   };
   mutable std::array<LastRun, 16> last_runs_;
-  std::vector<std::int64_t>
-      first_of_run_;  // place in part_of_, -1 for runs that are not of the present label's large parts
+  // Index in part_of_ of each run's first voxel; -1 for runs that do not belong to a large component of the current
+  // label.
+  std::vector<std::int64_t> first_of_run_;
+  // Rest component of each voxel of the runs that have an index in first_of_run_; -1: none.
   std::vector<int> part_of_;
+  // Voxels of posed components in which several large rest components have fused.
   std::vector<glm::ivec3> fused_;
-  std::unordered_map<std::int64_t, int> given_;  // component that a voxel was given to
+  // Component of each voxel that was given to another tissue, by voxel index.
+  std::unordered_map<std::int64_t, int> given_;
 };
 
 }  // namespace

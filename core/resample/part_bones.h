@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps pieces of bone tissue apart that were apart at rest. The wall between two marrows, or between a bone's spongy
-// pieces, is often one voxel thick; turned on the grid it gets pinholes, and where a rig drives bone into bone the
-// marrows of both meet. Then a label has fewer connected parts than at rest, though no bone has fused.
+// Separates connected components of bone tissue that are separate at rest. The wall between two marrow cavities, or
+// between spongy regions of a bone, is often one voxel thick. Rotated on the grid it gets pinholes, and where a rig
+// drives bone into bone the marrows of the two bones touch. Then a label has fewer components than at rest, though no
+// bone has fused.
 //
-// For every bone tissue with fewer parts (26-connected, of 50 voxels or more) than at rest, voxels that touch a voxel
-// from another rest part are given to the bone tissue that most of their neighbours have, which is that wall's. The
-// larger of two parts gives. A voxel is not given when its own part would come apart there, or when it would join two
-// other parts.
+// A bone tissue is changed if it has fewer components (26-connected, of 50 voxels or more) than at rest. Each of its
+// voxels that touches a voxel from another rest component is given to the bone tissue that most of its neighbours have,
+// which is the tissue of the wall. The larger of two components gives voxels first. A voxel is not given when its own
+// component would come apart there, or when it would join two components of the other tissue.
 #pragma once
 
 #include "core/resample/neighbourhood.h"
@@ -14,8 +15,9 @@
 
 namespace limber {
 
-//   soft     the other tissues: they neither give nor take
-//   returns  the number of voxels of `posed` changed
+// Separates the fused components of all bone tissues.
+//   soft     tissues that are not bone, by label: they neither give nor take voxels
+//   returns  the number of changed voxels of `posed`
 std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest,
                         const Components& of_rest, const LabelSet& soft, const RestPoint& rest_point);
 

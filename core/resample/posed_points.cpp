@@ -10,9 +10,10 @@
 namespace limber {
 
 namespace {
-constexpr double kBesideMesh = 10;  // mm
+constexpr double kBesideMesh = 10;  // distance from the mesh within which points move with it, mm
 
-// By the mesh, where it has them in its charge.
+// Returns the posed positions of the points that the mesh moves; none for other points, such as those in unmeshed
+// tissue.
 std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const TissueVoxels& tissue,
                                                const FemShape& shape, std::span<const glm::dvec3> points) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid), to_world = world_from_voxel(volume.grid);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where points of a body go in a pose, as resample() moves the tissue there: points in bone go with their bone, exactly
-// rigid; by finite elements those in what is meshed go with their tet, those up to 10 mm beside it with the nearest
-// place of its border, as far from it as at rest (voxels between skin and skin are pressed flat); all others by the
-// blend of the weights around them (skin/skin_at). A point beside the body follows the nearest tissue.
+// Moves points of a body to a pose in the same way as resample() moves the tissue around them. Points in bone move
+// rigidly with their bone. With finite elements, points in the mesh move with their tet, and points up to 10 mm beside
+// the mesh move with the nearest point of its border and keep their distance from it. All other points move by the
+// blend of the weights around them (skin/weight_at.h). A point outside the body follows the nearest tissue.
 #pragma once
 
 #include <span>
@@ -15,7 +15,8 @@
 
 namespace limber {
 
-//   shape   of a solve, or null       points  #P, world, mm, at rest       returns  #P, posed
+// Returns the posed positions of points.
+//   shape   a solved shape, or null       points  #P, world, mm, at rest       returns  #P, world, mm
 std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                                      const SkinWeights& weights, const Armature& armature, const Pose& pose,
                                      Blend blend, const FemShape* shape, std::span<const glm::dvec3> points);

@@ -25,17 +25,17 @@ namespace limber {
 
 namespace {
 
-constexpr glm::ivec3 kTile = RestPoints::kTile;  // output voxels: 3 MB of map a thread
-constexpr std::int64_t kMostRest = 4 << 20;      // rest points that are kept: 48 MB
-constexpr int kReach = 8;  // voxels: as far as soft tissue is looked for where a joint opens between bones
+constexpr glm::ivec3 kTile = RestPoints::kTile;  // tile size, output voxels: 3 MB of inverse map per thread
+constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points: 48 MB
+constexpr int kReach = 8;          // search radius for soft tissue where a joint opens between bones, voxels
+constexpr double kMostSure = 0.8;  // a voxel keeps its label where its tissue's membership leads by more, [0, 1]
+// Smallest tissue that is tested against the mass limit, voxels: resampling alone changes smaller ones by more.
+constexpr std::int64_t kJudged = 5000;
 
-constexpr double kMostSure = 0.8;       // of memberships: a voxel that is surer of its tissue keeps it
-constexpr std::int64_t kJudged = 5000;  // voxels: the grid alone changes smaller tissues by more than is asked here
-
-// What one tile saw.
+// The counts and voxel lists of one tile.
 struct TileCounts {
   VoxelRange range;
-  RowSet row_used, row_has_bone;  // of the range
+  RowSet row_used, row_has_bone;  // one entry per row of the range
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
@@ -53,20 +53,20 @@ struct TileCounts {
   }
 };
 
-// Soft tissue of one tile, and where its borders may move.
+// The soft tissue of one tile: numbers of voxels, and possible changes of labels at its borders.
 struct SoftBorders {
-  std::map<Label, std::int64_t> by_cell;  // voxels whose place at rest lies in a voxel of the tissue
+  std::map<Label, std::int64_t> by_cell;  // number of posed voxels that come from a rest voxel of the tissue
   std::vector<BorderMove> moves;
 };
 
-// How many rest points are kept: of a limb all, where the pose makes it no larger than by a quarter; of a large body
-// none.
+// Returns how many rest points may be stored: 1.25 times the tissue voxels for a small body such as a limb, which the
+// pose may enlarge by a quarter; 0 for a large body.
 std::int64_t room_for_rest(const TissueVoxels& tissue) {
   const std::int64_t room = tissue.size() + tissue.size() / 4;
   return room <= kMostRest ? room : 0;
 }
 
-// Everything a tile needs to know, and where it writes.
+// Writes the posed volume tile by tile, then repairs it.
 class PosedVoxels {
  public:
   PosedVoxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed)
@@ -107,7 +107,8 @@ class PosedVoxels {
         [&](const TileCounts& tile) { add(tile); });
   }
 
-  // Reading labels takes voxels from thin tissues and gives them to thick ones: they get back what the map gives them.
+  // Gives each soft tissue the volume that it has by the inverse map. Reading interpolated labels takes voxels from
+  // thin tissues and gives them to thick ones.
   void keep_soft_volumes(Progress& progress) {
     SoftBorders borders = soft_borders(progress);
     posed_.report.mended_voxels +=
@@ -172,8 +173,8 @@ class PosedVoxels {
   }
 
  private:
-  // A voxel that was given to a rigid bone is what the bone has nearest to it; where its rest point lies in another
-  // bone that touches this one at rest, it comes from there too.
+  // Writes a voxel that a rigid bone has taken from soft tissue. It gets the label of the bone's rest voxel nearest to
+  // its rest point. Where the rest point lies in another bone, this nearest voxel becomes its rest point too.
   void write_bridge(const glm::ivec3& voxel, const LabelVolume& rest_bones, const glm::dvec3& rest) {
     const Label number = posed_bones_.at(voxel);
     const std::optional<glm::ivec3> own = nearest_voxel(rest_bones, number, rest);
@@ -201,7 +202,7 @@ class PosedVoxels {
       for (const auto& [at, from] : origins) posed_.jacobian[at] = posed_.jacobian[from.beside];
   }
 
-  // work(range, Tile) by many threads, then add(Tile) in order.
+  // Calls work(range, tile) for all tiles on several threads, and add(tile) for each of them in order.
   template <class Tile, class Work, class Add>
   void for_each_tile(Progress& progress, const char* stage, const Work& work, const Add& add) const {
     const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
@@ -249,7 +250,8 @@ class PosedVoxels {
         }
   }
 
-  // To the soft tissues at its faces that its place at rest lies near to, and to air.
+  // Adds the possible changes of a voxel to air or to the soft tissue of a face neighbour. A change is possible where
+  // the voxel's membership of its own tissue leads by less than kMostSure.
   void add_moves(const glm::ivec3& voxel, Label label, const glm::dvec3& rest, std::vector<BorderMove>& moves) const {
     static const LabelSet every(65536, 1);
     const LabelSampler::Memberships found = sampler_.memberships(rest, every);
@@ -288,7 +290,7 @@ class PosedVoxels {
     return soft;
   }
 
-  // Output voxels that a rest voxel is as large as.
+  // Returns the volume of a rest voxel as a number of output voxels.
   double output_per_rest() const {
     const glm::dvec3& ratio = lattice_.output().ratio;
     return ratio.x * ratio.y * ratio.z;
@@ -314,7 +316,8 @@ class PosedVoxels {
     if (mends_) rest_points_.keep(map);
   }
 
-  // False where no tissue reaches.
+  // Fills the inverse map of a range of voxels. Returns false where no tissue reaches the range and no grey values are
+  // asked for.
   bool fill(InverseMap& map, const VoxelRange& range) const {
     std::vector<std::int64_t> bricks, pieces;
     for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
@@ -354,7 +357,7 @@ class PosedVoxels {
       }
   }
 
-  // Whether it is bone.
+  // Writes one voxel and returns whether it is bone.
   bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
     const Label label = label_of(map, i);
     posed_.volume.voxels[at] = label;
@@ -371,7 +374,7 @@ class PosedVoxels {
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
   }
 
-  // Whether a voxel at one of its faces is air, or lies in another tile.
+  // Returns whether a voxel may touch air: one of its face neighbours is air or lies in another tile.
   static bool may_touch_air(const InverseMap& map, std::int64_t i, const glm::ivec3& v) {
     const glm::ivec3 size = map.range.high - map.range.low + 1;
     std::int64_t stride = 1;
@@ -390,7 +393,7 @@ class PosedVoxels {
     }
     const Label own = volume_.voxels[map.cell[i]];
     Label label = settings_.nearest ? own : sampler_.tissue(rest);
-    if (label == 0) label = own;  // a rest point on the tissue's outer border
+    if (label == 0) label = own;  // the rest point lies on the outer border of the tissue
     if (!labels_.bone[label]) return label;
     Label soft = settings_.nearest ? Label{0} : sampler_.tissue(rest, labels_.soft);
     if (soft == 0) soft = sampler_.prevailing(rest, labels_.soft, kReach);
@@ -431,7 +434,8 @@ class PosedVoxels {
 
   float moved_grey(const glm::dvec3& rest) const { return (*grey_)(world_from_rest_ * rest); }
 
-  // Surroundings that were air and are air again stay; where the body went away there is nothing.
+  // Returns the grey value of a voxel of air: the input's value there where it is air at rest too; the lowest value of
+  // the input where the body moved away.
   float still_grey(const glm::ivec3& v) const {
     const glm::dvec3 rest = lattice_.output().to_rest(glm::dvec3(v)), world = world_from_rest_ * rest;
     return sampler_.nearest(rest) == 0 && grey_->covers(world) ? (*grey_)(world) : outside_;
@@ -469,12 +473,12 @@ class PosedVoxels {
   const bool mends_;
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
-  LabelSet flesh_;          // soft tissues but skin
-  RestPoints rest_points_;  // of the map alone
+  LabelSet flesh_;          // soft tissues without skin
+  RestPoints rest_points_;  // rest points of the inverse map, before any repair
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
-  RowSet rows_, bone_rows_;  // of the output that hold tissue, and bone
-  LabelVolume posed_bones_;  // 1 + the rig bone of each voxel that a bone paints
+  RowSet rows_, bone_rows_;  // rows of the output that hold tissue; those that hold bone tissue
+  LabelVolume posed_bones_;  // for each posed voxel of bone tissue 1 + the index of its rig bone, 0 elsewhere
   LabelSampler sampler_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From the inverse map of a posed body to its voxels: read tile by tile from the volume at rest, then mended where the
-// grid or a stretch tore what was whole (preserve_connectivity.h, bone_volumes.h), and where it is asked for brought
-// back to the volumes that tissues have (tissue_volumes.h).
+// Writes the voxels of a posed body from its inverse map. Labels are read tile by tile from the rest volume, then
+// repaired where the grid or a stretch tears connected tissue (preserve_connectivity.h, bone_volumes.h), and on request
+// brought back to the tissues' rest volumes (tissue_volumes.h).
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// By label.
+// Properties of the tissues, indexed by label.
 struct LabelSets {
   LabelSet bone = LabelSet(65536, 0), soft = LabelSet(65536, 1), skin = LabelSet(65536, 0);
   std::vector<int> priority = std::vector<int>(65536, 0);
@@ -28,20 +28,21 @@ struct LabelSets {
   }
 };
 
+// All that write_voxels reads: a body and its deformation.
 struct PosedBody {
   const LabelVolume& volume;  // at rest
   const TissueTable& tissues;
   const LabelSets& labels;
   const PosedLattice& lattice;
   const RigidBones& bones;
-  const PosedTets* tets;     // nullptr: not by finite elements
-  const TissueDepth* depth;  // at rest, mm; nullptr where the body cannot fold
+  const PosedTets* tets;     // nullptr: posed without finite elements
+  const TissueDepth* depth;  // at rest, mm; nullptr where no regions of the body can overlap
   const OutputGrid& output;
-  bool mends;  // tears and lost volumes
+  bool mends;  // true: repairs tears and lost volumes
 };
 
-// Into posed: its volume, the fields that are asked for, and what its report says of voxels.
-// throws Error where a tissue would need more than settings.mass_limit_percent to keep its mass
+// Fills the volume of `posed`, the fields that the settings ask for, and the voxel counts of its report.
+// Throws Error where a tissue would have to change by more than settings.mass_limit_percent to keep its mass.
 void write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed, Progress& progress);
 
 }  // namespace limber

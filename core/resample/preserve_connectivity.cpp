@@ -16,20 +16,25 @@ namespace limber {
 
 namespace {
 
-constexpr int kLongestBridge = 4;  // voxels: a longer one would invent anatomy
-constexpr int kLongestTrace = 64;  // voxels, all of which come from beside the tissue itself
-constexpr std::size_t kTraced =
-    20000;                     // voxels of all traces that are asked where they come from, which takes its time
-constexpr int kAttempts = 32;  // bridges tried for one part, each around the voxels that earlier ones may not take
-constexpr int kSmallestKept = kSmallestPart / 2;  // voxels: a part that came out smaller is not made up again
-constexpr int kSamples = 4;                       // voxels of a part that are asked where they come from
+// Upper limit on the voxels of a bridge between two components. A longer bridge would invent anatomy.
+constexpr int kLongestBridge = 4;
+// Upper limit on the voxels of a bridge whose voxels all come from beside the tissue at rest.
+constexpr int kLongestTrace = 64;
+// Upper limit on the rest points computed for bridges of more than kLongestBridge voxels, since each takes time.
+constexpr std::size_t kTraced = 20000;
+// Upper limit on the bridges tried for one component. Each avoids voxels that failed before.
+constexpr int kAttempts = 32;
+// Smallest posed component that is filled up again to 50 voxels; in voxels.
+constexpr int kSmallestKept = kSmallestPart / 2;
+// Number of voxels of a component for which the rest point is looked up.
+constexpr int kSamples = 4;
 
 struct Part {
   int component;
   std::int64_t voxels;
 };
 
-// Of every label, rising by size.
+// Returns the connected components of 50 voxels or more of every label, smallest first.
 std::map<Label, std::vector<Part>> large_parts(const Components& components) {
   std::vector<Label> label(components.voxels.size());
   for (const auto& run : components.runs) label[run.component] = run.label;
@@ -43,7 +48,7 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
 
 class Mending {
  public:
-  // `posed` may be `tissue` itself.
+  // `posed` and `tissue` may be the same volume.
   Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest,
           const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
       : posed_(posed),
@@ -74,10 +79,11 @@ class Mending {
  private:
   struct Bridge {
     std::vector<glm::ivec3> voxels;
-    int other = -1;  // component
+    int other = -1;  // component at the other end of the bridge
   };
 
-  // Returns how many there still are.
+  // Joins large components of a tissue that has `too_many` more of them than at rest. Returns how many are still too
+  // many.
   std::int64_t preserve_connectivity(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     find_stretches(label);
     const std::vector<bool> is_torn = torn(label, parts);
@@ -89,8 +95,8 @@ class Mending {
     return too_many;
   }
 
-  // Joins a part to another one of its tissue; false where there is no way.
-  //   along_trace  as shortest_bridge takes it
+  // Joins a component to another one of its tissue. Returns false where no bridge between them is possible.
+  //   along_trace  see shortest_bridge
   bool bridge_from(Label label, int part, bool along_trace) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const std::optional<Bridge> bridge = shortest_bridge(label, part, along_trace);
@@ -100,7 +106,7 @@ class Mending {
     return false;
   }
 
-  // Of each part, whether another one comes from the same rest part as some of its voxels.
+  // Returns for each posed component whether another one comes from the same component at rest.
   std::vector<bool> torn(Label label, const std::vector<Part>& parts) const {
     std::map<int, std::vector<size_t>> of_rest_part;
     for (size_t i = 0; i < parts.size(); ++i)
@@ -111,7 +117,7 @@ class Mending {
     return torn;
   }
 
-  // The rest parts that some voxels of a part come from.
+  // Returns the rest components that a few sampled voxels of a posed component come from.
   std::set<int> sources(Label label, int part) const {
     const auto& stretches = stretches_.at(part);
     std::set<int> from;
@@ -122,7 +128,8 @@ class Mending {
     return from;
   }
 
-  // Rigid parts that were just too small to count gave themselves a few voxels by the grid: they give them back.
+  // Shrinks components of bone tissue below 50 voxels again whose rest component is smaller than 50: resampling alone
+  // gave them a few voxels more.
   void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
       const auto from = sources(label, parts[i].component);
@@ -133,7 +140,8 @@ class Mending {
     }
   }
 
-  // Gives what lies deepest in another rigid tissue. False when there is nothing left to give.
+  // Gives voxels of a component to other bone tissue until it has fewer than 50, first those that touch the other
+  // tissue most. Returns false when no voxel is left to give.
   bool pare(Label label, int part) {
     const std::vector<glm::ivec3> voxels = voxels_of(part);
     while (of_posed_.voxels[part] >= kSmallestPart) {
@@ -155,7 +163,7 @@ class Mending {
     return true;
   }
 
-  // The component of the neighbours of a tissue, -1 when there are several.
+  // Returns the component of `tissue` that touches voxel v; -1 when there is none or there are several.
   int only_component(const glm::ivec3& v, Label tissue) const {
     int found = -1;
     for (const glm::ivec3& step : neighbours()) {
@@ -167,7 +175,7 @@ class Mending {
     return found;
   }
 
-  // Parts that lost a few voxels to the grid get them back.
+  // Fills up components that lost a few voxels to the grid and fell below 50 voxels.
   void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
     find_stretches(label);
     std::set<int> found;
@@ -189,11 +197,13 @@ class Mending {
     }
   }
 
-  // Takes the voxels that lie deepest in the part's bays. False when there are none left to take.
+  // Takes voxels into a component until it has 50, first those that touch it most. Returns false when no voxel is left
+  // to take.
   bool fill_up(Label label, int part) {
     std::vector<glm::ivec3> voxels = voxels_of(part);
     while (of_posed_.voxels[part] < kSmallestPart) {
-      std::map<std::int64_t, int> touches;  // of voxels around the part
+      // For each voxel around the component, the number of the component's voxels that touch it.
+      std::map<std::int64_t, int> touches;
       for (const glm::ivec3& v : voxels)
         for (const glm::ivec3& step : neighbours())
           if (posed_.grid.contains(v + step) && posed_.at(v + step) != label) ++touches[posed_.grid.index(v + step)];
@@ -230,15 +240,15 @@ class Mending {
     return taken != taken_.end() ? taken->second : component_at(of_posed_, posed_, v);
   }
 
-  // Breadth first from the whole part; each layer is one voxel of bridge more. Smaller pieces of the tissue are crossed
-  // for nothing.
-  //   along_trace  a longer bridge may be built, of voxels that all come from beside the tissue: a thin sheet that the
-  //   pose
-  //                stretched ran there, and fell between the voxels' centres
+  // Returns the shortest bridge from a component to another large component of its tissue, by breadth-first search that
+  // starts at the whole component. Each layer of the search is one more voxel of bridge; crossing small components of
+  // the tissue costs nothing.
+  //   along_trace  allows a longer bridge if all its voxels come from beside the tissue at rest: there the pose has
+  //                stretched a thin sheet so that it falls between the voxel centres
   std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
-    std::unordered_map<std::int64_t, std::int64_t>
-        came_from;  // of voxels outside the part, those that cannot be taken too
+    // The predecessor of each visited voxel outside the component, also of voxels that cannot be taken.
+    std::unordered_map<std::int64_t, std::int64_t> came_from;
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
     for (int length = 0; length <= longest && !layer.empty(); ++length) {
@@ -284,7 +294,7 @@ class Mending {
     int begin, end, y, z;
   };
 
-  // Where the label lies, by component.
+  // Collects the voxel runs of those components of a label that have 25 voxels or more.
   void find_stretches(Label label) {
     stretches_.clear();
     const int height = posed_.grid.size.y;
@@ -304,7 +314,8 @@ class Mending {
     return voxels;
   }
 
-  // Soft tissue takes from soft tissue, bone tissue from bone tissue, and whole bones from soft tissue.
+  // Returns whether a tissue may take a voxel. Soft tissue takes voxels from soft tissue, bone tissue from bone tissue,
+  // and whole bones from soft tissue.
   bool can_take(const glm::ivec3& v, Label taker) const {
     const Label label = tissue_.at(v);
     const bool may_give = label && (in_tissue_ ? soft_[label] == soft_[taker] : soft_[label] != 0);
@@ -329,12 +340,12 @@ class Mending {
     return rest_part(label, voxel_at(posed_.grid, start)) == rest_part(label, end);
   }
 
-  // The rest part nearest to where a posed voxel comes from, -1 when there is none about.
+  // Returns the component at rest nearest to the rest point of a posed voxel, -1 when there is none within 8 voxels.
   int rest_part(Label label, const glm::ivec3& posed_voxel) const {
     return nearest_component(of_rest_, rest_, label, rest_point_(posed_voxel));
   }
 
-  // Whether a voxel would also join a third part.
+  // Returns whether voxel v touches a third large component of the label, which it would join as well.
   bool joins_another(const glm::ivec3& v, Label label, int part, int other) const {
     return std::any_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
       if (posed_.at_or_air(v + step) != label) return false;
@@ -343,7 +354,7 @@ class Mending {
     });
   }
 
-  // False, and nothing changed, when the voxels of the bridge cannot all be spared together.
+  // Takes all voxels of a bridge into the tissue. Changes nothing and returns false when they cannot all be taken.
   bool build(const Bridge& bridge, Label label, int part) {
     std::vector<std::pair<glm::ivec3, Label>> changed;
     for (const glm::ivec3& v : bridge.voxels) {
@@ -367,17 +378,20 @@ class Mending {
   LabelVolume& posed_;
   const LabelVolume &rest_, &tissue_;
   const LabelSet& soft_;
-  const bool in_tissue_;  // voxels are taken from the parts' own volume
+  // Whether `posed` and `tissue` are the same volume. Otherwise `posed` holds whole rig bones.
+  const bool in_tissue_;
   const RestPoint& rest_point_;
-  Components of_posed_;  // as they were before the first bridge, but for the parts' sizes
+  Components of_posed_;  // voxel runs before the first bridge; the sizes are kept up to date
   const Components& of_rest_;
-  std::map<int, std::vector<Stretch>> stretches_;  // of the present label's parts
-  std::vector<int> joined_;                        // component it was joined to; itself where it was not
-  std::unordered_map<std::int64_t, int> taken_;    // component of voxels in bridges
+  std::map<int, std::vector<Stretch>> stretches_;  // voxel runs of the current label, by component
+  std::vector<int> joined_;  // index of the component that each component was joined to, or its own index
+  std::unordered_map<std::int64_t, int> taken_;  // component of each taken voxel, by voxel index
   std::vector<glm::ivec3> bridges_;
-  std::unordered_map<std::int64_t, std::optional<glm::ivec3>>
-      comes_from_;                           // rest voxels of what was traced; none once there are too many
-  std::unordered_set<std::int64_t> barred_;  // voxels that the present part's bridges may not take
+  // Rest voxel of each posed voxel that was tried for a long bridge, by voxel index. Once more than kTraced voxels were
+  // tried, further entries are empty.
+  std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;
+  // Voxels that bridges of the current component may not take.
+  std::unordered_set<std::int64_t> barred_;
 };
 
 }  // namespace
@@ -389,7 +403,7 @@ std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, 
   const std::int64_t parted = part_bones(posed, connected_components(posed, bone_rows.posed, &asked), rest,
                                          connected_components(rest, bone_rows.rest, &asked), soft, rest_point);
   Components of_posed = connected_components(posed, rows.posed);
-  // Soft tissue that hangs together was not torn.
+  // A soft tissue with one large component is not torn, so only soft tissues with several are examined.
   for (const auto& [label, parts] : large_parts(of_posed)) asked[label] |= parts.size() > 1;
   const Components of_rest = connected_components(rest, rows.rest, &asked);
   return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());

@@ -25,7 +25,8 @@ class Seconds {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Finite elements move rigidly what their mesh does not hold, for which every blend is the same.
+// Returns the blend of a method. With finite elements, tissue outside the mesh moves rigidly, for which every blend
+// gives the same result.
 Blend blend_of(const Method& method) {
   const Blend* blend = std::get_if<Blend>(&method);
   return blend ? *blend : Blend::Linear;
@@ -35,19 +36,19 @@ bool settles_flesh(const Method& method) {
   return std::holds_alternative<Blend>(method) && rule_of(std::get<Blend>(method)).settles_flesh;
 }
 
-// Whether two places of the body can come to lie in one voxel: not when every bone moves alike.
+// Returns whether two regions of the body may overlap in a voxel. They cannot where all bones have the same motion.
 bool can_fold(const std::vector<RigidTransform>& motions) {
   return std::any_of(motions.begin(), motions.end(), [&](const RigidTransform& m) {
     return m.rotation != motions[0].rotation || m.translation != motions[0].translation;
   });
 }
 
-// Cells that reach beyond the output grid.
+// Counts the tissue voxels of bricks (blocks of 8^3 voxels) that reach beyond the output grid.
 std::int64_t count_dropped(const PosedLattice& lattice, const PosedTets* tets, const VoxelRange& range) {
   const FixedPoint low = range.low * kFixedOne - kFixedOne / 2, high = range.high * kFixedOne + kFixedOne / 2;
   std::int64_t dropped = 0;
   for (std::int64_t b = 0; b < std::ssize(lattice.tissue().bricks()); ++b) {
-    if (tets && tets->shares(b)) continue;  // the grid holds all of it (output_grid)
+    if (tets && tets->shares(b)) continue;  // output_grid has made room for all tets
     const auto& box = lattice.bounds(b);
     if (glm::any(glm::lessThan(box.low, low - kFixedOne)) || glm::any(glm::greaterThan(box.high, high + kFixedOne)))
       dropped += lattice.tissue().bricks()[b].count();
@@ -62,7 +63,7 @@ void tell(const FemShape& shape, DeformReport& report) {
   report.seconds_solve = shape.seconds_solve;
 }
 
-// A body whose bones are rigid, and everything about it that does not hang on the pose.
+// A body with rigid bones, and all data of it that do not depend on the pose.
 struct RigidBody {
   const LabelVolume& volume;
   const TissueTable& tissues;
@@ -83,7 +84,8 @@ struct RigidBody {
   }
 };
 
-//   shape  by finite elements, where anything bends
+// Returns the posed volume of one pose.
+//   shape  the solved shape of finite elements, or null
 Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
                     const Method& method, const ResampleSettings& settings, Progress& progress) {
   const Seconds seconds;

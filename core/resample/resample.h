@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one entry from a pose to a posed label volume. Deformation is cells with rest and posed vertices (deform/lattice,
-// and by finite elements deform/posed_tets), rasterized to the inverse map (deform/inverse_map); labels are then read
-// from the rest volume, so there are no holes to fill and the rest pose gives back the input bit for bit. Bones are
-// painted rigidly by every method.
+// Turns a pose into a posed label volume; the one entry for all methods. A deformation is a set of cells with rest and
+// posed vertices (deform/lattice, and by finite elements deform/posed_tets). The cells are rasterized to the inverse
+// map (deform/inverse_map), and labels are read through it from the rest volume. So there are no holes to fill, and the
+// rest pose gives back the input bit for bit. Every method paints bones rigidly.
 #pragma once
 
 #include <functional>
@@ -26,52 +26,59 @@ namespace limber {
 using Method = std::variant<Blend, Fem>;
 
 struct ResampleSettings {
-  bool nearest = false;  // labels by the nearest rest voxel instead of the largest interpolated membership; no mending
-  bool mass_exact =
-      false;  // soft tissues get their rest volumes by moving borders (tissue_volumes.h); not with `nearest`
-  double mass_limit_percent = 3;       // a soft tissue that would have to change by more is refused
-  std::optional<double> spacing;       // mm, isotropic output spacing; none keeps the input's
-  bool displacement = false;           // also return the displacement field
-  bool jacobian = false;               // also return det of the posed-from-rest map
-  bool overlap = false;                // also return where the body claims a voxel twice
-  const GreyVolume* grey = nullptr;    // moved by the same map
-  std::shared_ptr<const Seams> seams;  // across which tissue does not hang together; none: all that touches does
+  // true: reads labels from the nearest rest voxel, without repairs; false: by the largest interpolated membership.
+  bool nearest = false;
+  // true: gives soft tissues their rest volumes by moving borders (tissue_volumes.h); not with `nearest`.
+  bool mass_exact = false;
+  // With mass_exact, Error is thrown when a soft tissue would have to change by more, %.
+  double mass_limit_percent = 3;
+  std::optional<double> spacing;     // mm, isotropic output spacing; none keeps the input's
+  bool displacement = false;         // also return the displacement field
+  bool jacobian = false;             // also return det of the Jacobian of the map from rest to the pose
+  bool overlap = false;              // also return the voxels in which regions of the body overlap
+  const GreyVolume* grey = nullptr;  // grey values to move together with the labels; nullptr: none
+  // Faces across which tissue is not connected. Null: all touching tissue is connected.
+  std::shared_ptr<const Seams> seams;
 };
 
-// What it took to give soft tissues their rest volumes.
+// Report of the correction that gave soft tissues their rest volumes (mass_exact).
 struct MassExactReport {
   struct Tissue {
-    std::int64_t wanted = 0, before = 0, after = 0;  // posed voxels
+    // Numbers of posed voxels: wanted, before the correction, and after it.
+    std::int64_t wanted = 0, before = 0, after = 0;
   };
   std::map<Label, Tissue> tissues;
   std::int64_t changed_voxels = 0;
 };
 
-// What the resampling itself saw; compare() adds what two volumes tell.
+// Counts and times of one resampling. Metrics that need only the two volumes are computed by compare().
 struct DeformReport {
   std::int64_t tissue_voxels = 0;
   std::int64_t dropped_voxels = 0;       // tissue voxels whose image lies outside the output grid
   std::int64_t new_hole_voxels = 0;      // posed voxels inside the image of a tissue cell that carry no label
-  std::int64_t overlap_voxels = 0;       // posed voxels claimed by cells that are no neighbours at rest
-  std::int64_t bone_overlap_voxels = 0;  // posed voxels claimed by two rig bones' bone tissue
-  std::int64_t mended_voxels =
-      0;  // given to a neighbouring tissue where the pose had torn it: skin, connected parts (preserve_connectivity.h)
-  std::int64_t new_skin_voxels = 0;            // flesh that a seam or a stretch laid bare, and that is skin now
-  std::int64_t filled_air_voxels = 0;          // of hollows that the pose closed or made larger
-  std::vector<std::int64_t> overlap_by_label;  // [65536], rest voxels that lost their place, by label
+  std::int64_t overlap_voxels = 0;       // posed voxels in which cells overlap that are no neighbours at rest
+  std::int64_t bone_overlap_voxels = 0;  // posed voxels in which bone tissue of two rig bones overlaps
+  // Number of voxels that were moved to another tissue to repair skin, connected components (preserve_connectivity.h)
+  // and volumes.
+  std::int64_t mended_voxels = 0;
+  std::int64_t new_skin_voxels = 0;    // voxels made skin because a seam or a stretch exposed flesh or bone
+  std::int64_t filled_air_voxels = 0;  // air voxels filled in hollows that the pose closed or made larger
+  // Size 65536, by label: number of overlapping voxels that the label lost to another tissue.
+  std::vector<std::int64_t> overlap_by_label;
   struct BoneResidual {
     std::string name;
-    double rigid_residual_mm = 0;  // largest distance of a bone voxel from where the bone's motion takes its rest point
-    std::int64_t voxels = 0;       // posed bone tissue voxels of this rig bone
+    // Largest distance of a posed bone voxel from the position to which the bone's motion takes its rest point.
+    double rigid_residual_mm = 0;
+    std::int64_t voxels = 0;  // posed voxels of bone tissue of this rig bone
   };
-  std::vector<BoneResidual> bones;              // those with bone tissue
-  std::optional<SettledFlesh::Report> settled;  // by mixed blending, where anything bends
-  std::map<Label, std::int64_t>
-      kept_organs;  // voxels that small organs were given, or gave, to keep their volume (organ_volumes.h)
+  std::vector<BoneResidual> bones;              // rig bones with posed bone tissue
+  std::optional<SettledFlesh::Report> settled;  // only with mixed blending, and only where something bends
+  // Voxels that organs gained (positive) or lost (negative) to keep their volume (organ_volumes.h).
+  std::map<Label, std::int64_t> kept_organs;
   std::optional<MassExactReport> mass_exact;
-  std::optional<MeshReport> mesh;  // by finite elements, where anything bends
-  std::optional<SolveReport> solve;
-  std::optional<double> seconds_mesh, seconds_solve;
+  std::optional<MeshReport> mesh;                     // only with finite elements, and only where something bends
+  std::optional<SolveReport> solve;                   // only with finite elements, and only where something bends
+  std::optional<double> seconds_mesh, seconds_solve;  // only with finite elements, and only where something bends
   double seconds_deform = 0, seconds_rasterize = 0;
 };
 
@@ -80,21 +87,23 @@ struct Posed {
   DeformReport report;
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
   ZeroedVector<float> jacobian;          // on the output grid; zero in air
-  ZeroedVector<Label>
-      overlap;  // on the output grid; 1 where two places of tissue claim the voxel, 2 where two bones do
+  // On the output grid. 1: tissue overlaps in the voxel, 2: bone tissue of two bones overlaps.
+  ZeroedVector<Label> overlap;
   GreyVolume grey;
-  std::shared_ptr<const FemShape> shape;  // by finite elements, where anything bends (fem_shape.h)
+  // Only with finite elements, and only where something bends (fem_shape.h).
+  std::shared_ptr<const FemShape> shape;
 };
 
-// Throws Error when mass_exact would have to change a soft tissue of 5000 voxels or more by more than
-// mass_limit_percent. By finite elements a pose that cannot be reached ends where report.solve says.
+// Returns the posed volume. With finite elements, a pose may be out of reach: then the result is the last pose reached
+// on the way from rest, and report.solve says so. Throws Error when mass_exact would have to change a soft tissue of
+// 5000 voxels or more by more than mass_limit_percent.
 Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                const SkinWeights& weights, const Pose& pose, const Method& method,
                const ResampleSettings& settings = {}, Progress& progress = no_progress());
 
-// The same for a run of poses, as the frames of a motion, handed over one after the other with their place in the list.
-// Finite elements mesh once for all of them and start each from the shape of the one before (fem_shape.h); what of a
-// pose could not be reached, the next one starts from.
+// Resamples a sequence of poses, such as the frames of a motion, and calls on_posed with the index and the result of
+// each. Finite elements mesh once for all poses and start each solve from the shape that the solve before it reached
+// (fem_shape.h), even where that shape falls short of its pose.
 void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                        const SkinWeights& weights, const std::vector<Pose>& poses, const Method& method,
                        const ResampleSettings& settings,

@@ -13,12 +13,14 @@ namespace limber {
 
 namespace {
 
-constexpr int kBlock = 8;  // voxels: who asks for many points soon asks for those around them as well
-constexpr int kMany = 3;   // points of a block: where more are asked for the whole block is traced
+// Edge of a block, voxels. A caller that asks for many points soon asks for the points beside them too.
+constexpr int kBlock = 8;
+// Number of points of a block that are traced singly. After them the whole block is traced.
+constexpr int kMany = 3;
 
 static_assert(RestPoints::kTile.x <= 64, "a row's tissue is the bits of one word");
 
-// Bit x for the voxel at first + x of the map, of at most 64.
+// Returns 64 bits of which bit x says whether the map's voxel at first + x is covered; count is at most 64.
 std::uint64_t covered_bits(const InverseMap& map, std::int64_t first, std::int64_t count) {
   std::array<std::uint8_t, 64> covered{};
   for (std::int64_t x = 0; x < count; ++x) covered[x] = map.is_covered(first + x);
@@ -26,7 +28,7 @@ std::uint64_t covered_bits(const InverseMap& map, std::int64_t first, std::int64
   for (int byte = 0; byte < 8; ++byte) {
     std::uint64_t eight;
     std::memcpy(&eight, &covered[8 * byte], sizeof eight);
-    bits |= (eight * 0x0102040810204080 >> 56) << (8 * byte);  // the lowest bits of eight bytes, side by side
+    bits |= (eight * 0x0102040810204080 >> 56) << (8 * byte);  // packs the lowest bits of eight bytes into one byte
   }
   return bits;
 }
@@ -94,7 +96,7 @@ glm::vec3 RestPoints::traced(const glm::ivec3& voxel) {
   return block.rest[in.x + std::size_t(extent.x) * (in.y + std::size_t(extent.y) * in.z)];
 }
 
-// x fastest; 0 where there is no tissue.
+// Returns the rest points of all voxels of a range, x fastest; 0 where there is no tissue.
 std::vector<glm::vec3> RestPoints::trace_all(const VoxelRange& range) const {
   InverseMap map;
   map.has_volume_ratio = false;

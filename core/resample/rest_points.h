@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the voxels of a posed volume come from. The inverse map exists tile by tile only. Its rest points are kept as
-// far as there is room; the others are traced anew where they are asked for.
+// Finds the rest point of every voxel of a posed volume. The inverse map is computed and dropped tile by tile, so its
+// rest points are stored as far as there is room. The others are computed again when they are asked for.
 #pragma once
 
 #include <atomic>
@@ -19,26 +19,28 @@ class RestPoints {
   // Sets `map` to the inverse map of a range of voxels of the output lattice.
   using Trace = std::function<void(InverseMap& map, const VoxelRange& range)>;
 
-  // The edges of the tiles that keep() is given, but for the last ones.
+  // Largest size of the tiles that are given to keep(), voxels. Tiles at the upper ends of the grid may be smaller.
   static constexpr glm::ivec3 kTile{64, 64, 32};
 
-  //   output  the posed volume, in voxels of the output lattice      room  rest points to be kept, 12 bytes each
+  //   output  voxels of the posed volume on the output lattice
+  //   room    upper limit on the number of stored rest points, 12 bytes each
   RestPoints(const VoxelRange& output, std::int64_t room, Trace trace);
 
-  // Keeps the rest points of one tile, if there is room; several threads may call it for different tiles.
+  // Stores the rest points of one tile if there is room. Several threads may call it for different tiles.
   void keep(const InverseMap& tile);
 
-  // The rest point of a voxel of the posed volume; 0 where there is no tissue.
+  // Returns the rest point of a voxel of the posed volume; 0 where there is no tissue.
   glm::dvec3 at(const glm::ivec3& voxel);
 
  private:
   struct Row {
-    std::uint64_t has_tissue = 0;  // bit x
-    std::int64_t first = 0;        // place in points_, where x fastest the tissue voxels follow
+    std::uint64_t has_tissue = 0;  // bit x: voxel x of the row has tissue
+    // Index in points_ of the row's first tissue voxel. The row's other tissue voxels follow along x.
+    std::int64_t first = 0;
   };
   struct Block {
-    int asked = 0;
-    std::vector<glm::vec3> rest;  // once many were asked for; x fastest
+    int asked = 0;                // number of points asked for so far
+    std::vector<glm::vec3> rest;  // all points of the block, x fastest; empty until many were asked for
   };
 
   std::int64_t tile_at(const glm::ivec3& voxel) const;
@@ -52,8 +54,8 @@ class RestPoints {
   std::int64_t room_;
   std::atomic<std::int64_t> used_ = 0;
   std::unique_ptr<glm::vec3[]> points_;
-  std::vector<std::vector<Row>> tiles_;             // y fastest; none where it was not kept
-  std::unordered_map<std::int64_t, Block> blocks_;  // traced; by the lowest voxel's place
+  std::vector<std::vector<Row>> tiles_;             // rows of each tile, y fastest; empty: the tile is not stored
+  std::unordered_map<std::int64_t, Block> blocks_;  // traced blocks, by the index of their lowest voxel
 };
 
 }  // namespace limber

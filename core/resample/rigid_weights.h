@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bone tissue must follow one rig bone wholly. Weights made by hand or by other programs may not: then the bones of the
-// volume are separated, and each follows the rig bone it hugs.
+// Makes the weights of bone tissue rigid: every bone voxel must follow one rig bone alone. Weights made by hand or by
+// other programs may not be rigid. Then the bones of the volume are separated, and each follows the rig bone that it
+// surrounds.
 #pragma once
 
 #include "core/base/progress.h"
@@ -11,7 +12,8 @@
 
 namespace limber {
 
-//   is_bone  per label        returns  the weights themselves where their bone tissue is rigid already
+// Returns weights that are rigid in bone tissue; the given weights where they are rigid already.
+//   is_bone  1 for each label that is bone tissue
 SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue,
                              const TissueTable& tissues, const LabelSet& is_bone, const Armature& armature,
                              Progress& progress = no_progress());

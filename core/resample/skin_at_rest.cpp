@@ -10,12 +10,16 @@ namespace limber {
 
 namespace {
 
-constexpr double kSkinReach = 3;  // voxels below air: as deep as what touches a thin skin from below can lie
-constexpr int kFurthestSkin = 8;  // voxels: as far as skin is looked for
-constexpr double kCoarse = 2;     // times as far apart as voxels in them are slices whose steps are surface
-constexpr int kClosed = 9;        // times as many voxels of the surface are skin as are not
+// Depth below air of the deepest voxel that touches a thin skin from below, voxels.
+constexpr double kSkinReach = 3;
+// Distance within which skin is searched, voxels.
+constexpr int kFurthestSkin = 8;
+// Ratio of largest to smallest voxel spacing above which a volume counts as coarse slices.
+constexpr double kCoarse = 2;
+// Skin counts as closed when the surface has more than this many skin voxels per bare voxel.
+constexpr int kClosed = 9;
 
-// Of rest points, which lie in tissue; std::floor would be a call.
+// Returns the voxel of a rest point. Rest points lie in tissue, so truncation suffices; std::floor would be a call.
 glm::ivec3 voxel_of(const glm::dvec3& rest_point) { return glm::ivec3(rest_point + 1.5) - 1; }
 
 }  // namespace
@@ -60,7 +64,8 @@ bool SkinAtRest::is_bare(const glm::ivec3& voxel) const {
   return label && soft_[label] && !skin_[label] && touches_air(volume_, voxel) && touches_outside(voxel);
 }
 
-// Depth counts from any air; from hollows inside the body it does not count here.
+// Returns whether a voxel lies deep below the outside air. Unlike in TissueDepth, air that the body encloses does not
+// count.
 bool SkinAtRest::is_deep(const glm::ivec3& voxel) const {
   if (depth_.at_voxel(voxel) > deep_) return true;
   if (enclosed_air_.empty()) return false;
@@ -107,7 +112,7 @@ Label SkinAtRest::skin_over(const glm::dvec3& rest_point) const {
 
 std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, const LabelSet& skin) {
   std::int64_t covered = 0;
-  // From where there is skin outwards; where none is beside, it is looked for further away.
+  // Skin spreads from existing skin layer by layer. Where no voxel lies beside skin, skin is searched further away.
   for (int reach = 1; reach <= kFurthestSkin && !bare.empty();) {
     std::vector<glm::ivec3> left;
     std::vector<std::pair<glm::ivec3, Label>> layer;

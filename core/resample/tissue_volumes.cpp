@@ -13,16 +13,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kEach = 0.1;  // cost of a voxel for its own sake: a way over few tissues is better than one over many
-constexpr std::int64_t kFrozen = 2 * kSmallestPart;  // voxels: smaller parts might come to count, or cease to
-constexpr int kRounds = 8;                           // over moves that had no place when it was their turn
+// Cost that is added to every move, so that a path over few tissues is preferred to one over many.
+constexpr double kEach = 0.1;
+// Connected components with fewer voxels keep their size: a change could take them across 50 voxels, and only
+// components of at least 50 voxels are counted.
+constexpr std::int64_t kFrozen = 2 * kSmallestPart;
+// Upper limit on the rounds. Each round tries again the moves that were not possible before.
+constexpr int kRounds = 8;
 const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-// From one tissue to another one.
+// The possible moves (changes of a voxel's label) from one tissue to another one.
 struct Border {
-  std::vector<BorderMove> moves;    // rising by cost
-  size_t next = 0;                  // those before it were made, or
-  std::vector<BorderMove> refused;  // have no place now, but might when others were made
+  std::vector<BorderMove> moves;    // sorted by rising cost
+  size_t next = 0;                  // index of the next move to try
+  std::vector<BorderMove> refused;  // moves that are not possible now, but may be after other moves
 };
 
 class Exchange {
@@ -49,7 +53,8 @@ class Exchange {
           borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
   }
 
-  // Where the body may grow: air beside soft tissue, best where it is nearly surrounded.
+  // Adds the moves by which the body may grow: they turn air beside soft tissue into tissue. They are cheapest where
+  // the air voxel is nearly surrounded by tissue.
   void add_air() {
     const glm::ivec3 size = posed_.grid.size;
     glm::ivec3 v;
@@ -78,7 +83,7 @@ class Exchange {
     for (int round = 0; round < kRounds && (moved || new_layer); ++round) {
       if (new_layer && missing_.at(0) < 0) add_air();
       moved = exchange();
-      // Another layer of air only where the one before has given what it could.
+      // Another layer of air is added only when no move of the layer before is left.
       new_layer = !moved && !new_layer;
       if (new_layer) std::erase_if(borders_, [](const auto& border) { return border.first.first == 0; });
     }
@@ -87,7 +92,7 @@ class Exchange {
   }
 
  private:
-  // The change of one voxel, or of two where skin moves with what lies under it.
+  // The change of one voxel's label. A move has one change, or two where skin moves with the tissue under it.
   struct Change {
     std::int64_t at;
     Label to;
@@ -95,7 +100,7 @@ class Exchange {
   using Changes = std::vector<Change>;
   using Way = std::vector<Label>;
 
-  // Every move that there is a place for, cheapest ways first. False where there is none.
+  // Makes every possible move, along the cheapest paths first. Returns false where none is possible.
   bool exchange() {
     for (auto& [_, border] : borders_)
       std::sort(border.moves.begin(), border.moves.end(), [](const BorderMove& a, const BorderMove& b) {
@@ -110,8 +115,8 @@ class Exchange {
     return moved;
   }
 
-  // Soft tissue that is to give, with what it can give to and at which cost [Bellman-Ford, the graph has a dozen
-  // places].
+  // Returns the cheapest path from a tissue with surplus voxels to a tissue that lacks voxels, by the algorithm of
+  // Bellman and Ford: the graph has only a dozen nodes.
   std::optional<Way> cheapest_way() {
     struct Step {
       double cost;
@@ -153,7 +158,7 @@ class Exchange {
   std::optional<float> next_cost(Border& border) {
     for (; border.next < border.moves.size(); ++border.next) {
       const BorderMove& move = border.moves[border.next];
-      if (move.to != 0 && posed_.voxels[move.at] != move.from) continue;  // changed hands already
+      if (move.to != 0 && posed_.voxels[move.at] != move.from) continue;  // the voxel has another label by now
       if (!changes(move).empty()) return move.cost;
       border.refused.push_back(move);
     }
@@ -164,7 +169,8 @@ class Exchange {
     bool moved = false;
     for (size_t i = 0; i + 1 < way.size(); ++i) {
       Border& border = borders_.at({way[i], way[i + 1]});
-      if (!next_cost(border)) break;  // a step before it took its place; what came so far waits here
+      // An earlier move of the path prevents this one. The voxels moved so far stay in this tissue.
+      if (!next_cost(border)) break;
       const BorderMove move = border.moves[border.next++];
       for (const Change& change : changes(move)) make(change);
       ++missing_[move.from];
@@ -198,10 +204,12 @@ class Exchange {
     return std::nullopt;
   }
 
-  // Where a body has skin, what lies bare is where it was cut off, or a nail: it neither grows nor shrinks there.
+  // Returns whether a tissue may grow into air or shrink from it. On a body with skin only skin may: bare flesh is a
+  // cut surface or a nail there, and stays as it is.
   bool may_meet_air(Label label) const { return has_skin_ ? skin_[label] != 0 : label && soft_[label]; }
 
-  // What has to change for it; nothing where that would tear, join, open or enclose something.
+  // Returns the label changes that a move needs; none where they would tear or join a tissue, open the skin or enclose
+  // air.
   Changes changes(const BorderMove& move) {
     const glm::ivec3 v = voxel_at(posed_.grid, move.at);
     if (move.from == 0) return grow(v, move.to);
@@ -209,7 +217,7 @@ class Exchange {
     return may_change(v, move.to) ? Changes{{move.at, move.to}} : Changes{};
   }
 
-  // One voxel from its own soft tissue to another one. Skin that lies bare stays, and so does what would lie bare.
+  // Returns whether a voxel may change from one soft tissue to another. At air, skin stays skin and flesh stays flesh.
   bool may_change(const glm::ivec3& v, Label to) const {
     const Label from = posed_.at(v);
     return !(touches_air(posed_, v) && skin_[from] != skin_[to]) && may_lose(v) && may_gain(v, to);
@@ -223,7 +231,8 @@ class Exchange {
     return can_join(posed_, v, label) && parts_.voxels[*part_beside(v, label)] >= kFrozen;
   }
 
-  // Air becomes tissue, or skin does and the skin under it what lies there.
+  // Returns the changes by which the tissue `gain` grows by one voxel and air voxel v is filled. Where skin lies
+  // between them, v becomes skin, and the skin voxel under v becomes `gain`.
   Changes grow(const glm::ivec3& v, Label gain) {
     if (!air_can_change(posed_, v)) return {};
     for (const glm::ivec3& step : kFaces) {
@@ -240,7 +249,8 @@ class Exchange {
     return {};
   }
 
-  // Tissue becomes air, and the one voxel that it covered becomes skin where it was that.
+  // Returns the changes by which the tissue `loss` shrinks by one voxel and voxel v becomes air. Where v is skin over
+  // `loss`, the one voxel that it covers becomes skin.
   Changes shrink(const glm::ivec3& v, Label loss) {
     const Label own = posed_.at(v);
     if (!may_meet_air(own) || !touches_air(posed_, v) || !air_can_change(posed_, v) || !may_lose(v)) return {};
@@ -252,17 +262,18 @@ class Exchange {
     posed_.at(v) = 0;
     const bool fits = may_lose(laid_bare[0]) && may_gain(laid_bare[0], own);
     posed_.at(v) = own;
-    // The second first: it takes its part from the skin that goes.
+    // The covered voxel changes first, since it joins the component of the skin voxel, which becomes air afterwards.
     return fits ? Changes{{posed_.grid.index(laid_bare[0]), own}, {posed_.grid.index(v), 0}} : Changes{};
   }
 
   LabelVolume& posed_;
   const LabelSet &soft_, &skin_;
   bool has_skin_ = false;
-  Components parts_;  // as they were, but for their sizes
-  std::unordered_map<std::int64_t, int> part_of_changed_;
-  std::map<Label, std::int64_t> missing_;              // of those wanted; air takes or gives what is over
-  std::map<std::pair<Label, Label>, Border> borders_;  // by giver and taker
+  // Connected components of the initial volume. Their sizes are kept up to date, their voxel runs are not.
+  Components parts_;
+  std::unordered_map<std::int64_t, int> part_of_changed_;  // component of each changed voxel, by voxel index
+  std::map<Label, std::int64_t> missing_;  // voxels that each tissue lacks; air takes or gives the difference
+  std::map<std::pair<Label, Label>, Border> borders_;  // by the pair of giving and taking tissue
   std::int64_t changed_ = 0;
 };
 

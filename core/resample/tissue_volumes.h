@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives soft tissues the volumes they should have by moving the borders between them, voxel by voxel: the fewest, and
-// those that are least sure of their tissue. Reading labels on a turned grid takes voxels from layers and cords of one
-// voxel; and blending loses tissue where a joint folds. Bones are never touched.
+// Gives soft tissues their wanted volumes by moving the borders between them. It changes as few voxels as possible, and
+// takes those first whose tissue is least certain. Reading labels on a rotated grid takes voxels from layers and cords
+// of one voxel, and blending loses tissue where a joint folds. Bones are never changed.
 //
-// Tissues with too many voxels and such with too few are the sources and sinks of a flow whose edges are the borders
-// between tissues; each unit of it is one voxel that changes hands, the next cheapest path first (successive shortest
-// paths, as in [Ahuja, Magnanti & Orlin, Network Flows, 1993, 9.7], without taking back). Air has any number of voxels:
-// a body that is too small grows, one that is too large shrinks, and its skin keeps its thickness: what lies under it
-// grows, and skin moves up.
+// Tissues with too many voxels are the sources of a flow, tissues with too few its sinks, and the borders between
+// tissues its edges. Each unit of flow changes the label of one voxel, and the cheapest path comes first (successive
+// shortest paths, as in [Ahuja, Magnanti & Orlin, Network Flows, 1993, 9.7], without undoing earlier paths). Air is a
+// source or sink of any size: a body that is too small grows, and one that is too large shrinks. Skin keeps its
+// thickness: the tissue under it grows, and the skin moves outwards.
 //
-// No part of a tissue (26-connected) is torn, joined to another, made or lost, no air is enclosed, and no skin opened.
-// Parts of about 50 voxels keep their size, so that as many count as before (metrics.h).
+// No connected component of a tissue (26-connected) is torn, joined to another, created or lost, no air is enclosed,
+// and no skin is opened. Components smaller than 100 voxels keep their size, so that the number of components of 50
+// voxels or more stays the same (metrics.h).
 #pragma once
 
 #include <map>
@@ -20,21 +21,22 @@
 
 namespace limber {
 
-// A voxel that may change hands.
+// A voxel at a border that may change its label.
 struct BorderMove {
-  std::int64_t at;  // of the posed volume
+  std::int64_t at;  // index in the posed volume
   Label from, to;   // soft tissues, or air
-  float cost;       // how much surer it is of its own tissue, a difference of memberships [0, 1]
+  float cost;       // membership of `from` minus membership of `to`, [0, 1]
 };
 
 struct TissueVolumes {
-  std::int64_t changed = 0;               // voxels
-  std::map<Label, std::int64_t> missing;  // wanted less what there is, of tissues that did not get what was wanted
+  std::int64_t changed = 0;               // number of label changes
+  std::map<Label, std::int64_t> missing;  // wanted minus present voxels, of each tissue that missed its wanted volume
 };
 
-//   posed   voxels of soft tissue change; voxels of air too where all that is wanted is not as much as there is
-//   wanted  voxels of each soft tissue; one that is not named keeps what it has
-//   moves   between soft tissues, and of soft tissue to air; those of air are found here
+// Moves the borders of soft tissues until they have the wanted volumes.
+//   posed   voxels of soft tissue change; voxels of air too, where the wanted total differs from the present one
+//   wanted  number of voxels of each soft tissue; tissues without an entry keep their number
+//   moves   possible moves between soft tissues and from soft tissue to air; moves from air are found here
 TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted,
                                   const std::vector<BorderMove>& moves, const LabelSet& soft, const LabelSet& skin);
 

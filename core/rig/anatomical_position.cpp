@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kTells = 0.3;  // of a bone's length, across a hinge's axis: what is less does not tell an angle
-constexpr double kAskew = std::numbers::pi / 6;
+constexpr double kTells = 0.3;  // least length of a unit direction, seen along the hinge's axis, to read an angle
+constexpr double kAskew = std::numbers::pi / 6;  // oblique bones up to this angle count as straight, radians
 
 glm::dvec3 direction(const Bone& bone) {
   const glm::dvec3 along = bone.tail - bone.head;
@@ -17,8 +17,8 @@ glm::dvec3 direction(const Bone& bone) {
   return length > 0 ? along / length : glm::dvec3(0);
 }
 
-// Limbs that are straight in the anatomical position. Nothing is known of a bone without a role: it is one where it
-// goes on from its parent.
+// Returns whether a bone is in line with its parent in the anatomical position. A bone without a role counts as in line
+// if it begins at its parent's tail.
 bool straightens(const Armature& armature, int bone, const std::optional<JointRole>& role) {
   if (!role) {
     const Bone& b = armature.bones[bone];
@@ -30,7 +30,7 @@ bool straightens(const Armature& armature, int bone, const std::optional<JointRo
     case BodyPart::Shank:
     case BodyPart::Hand:
     case BodyPart::Toes: return true;
-    // A metacarpal does not go on from the hand: a thumb's stands off, the others fan out.
+    // A metacarpal is not in line with the hand: the thumb's sticks out, and the others spread.
     case BodyPart::Thumb: return role->index > 1;
     case BodyPart::Index:
     case BodyPart::Middle:
@@ -44,15 +44,15 @@ bool runs_askew(BodyPart part) {
   return part == BodyPart::Toes || part == BodyPart::Foot || part == BodyPart::Neck || part == BodyPart::Head;
 }
 
-// The rotation vector that turns one unit direction into another the shortest way; zero for opposite ones, which leave
-// the way open.
+// Returns the rotation vector of the shortest rotation from one unit direction to another; zero if these are opposite,
+// since the shortest rotation is not unique then.
 glm::dvec3 shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
   const double sine = glm::length(axis);
   return sine > 1e-9 ? axis * (std::atan2(sine, glm::dot(from, to)) / sine) : glm::dvec3(0);
 }
 
-// From the pelvis to the neck; zero where the rig has no trunk.
+// Returns the unit direction of the spine, upwards; zero if the rig has no spine.
 glm::dvec3 trunk(const Armature& armature) {
   const auto roles = roles_of(armature);
   glm::dvec3 up(0);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far joints stand from the anatomical position where the rig is at rest, told by the directions of its bones.
-// Usual ranges of motion are counted from that position [AAOS, Joint Motion: Method of Measuring and Recording, 1965:
-// the neutral zero method], while a rig's limits are counted from rest: a body that was scanned with a bent elbow rests
-// at 60 degrees of flexion.
-//   hinge     the straight limb: the bone in line with its parent, seen along the hinge's axis
-//   shoulder  the arm hangs along the trunk              hip    the thigh in line with the trunk
-//   wrist, neck, head  in line with the parent           ankle  the foot at a right angle to the shank
-// Toes, feet, necks and heads run askew in a body that stands straight; up to 30 degrees of that are taken for
-// straight. Radians; axes in the world at rest.
+// Computes the angles of joints at rest, relative to the anatomical position, from the directions of the rig's bones.
+// Usual ranges of motion are measured from the anatomical position [AAOS, Joint Motion: Method of Measuring and
+// Recording, 1965: the neutral zero method], but a rig's limits are relative to rest: a body that was scanned with a
+// bent elbow may have 60 degrees of flexion at rest. In the anatomical position, the bone that moves at a
+//    hinge              is in line with its parent, seen along the hinge's axis: the limb is straight
+//    shoulder, hip      is in line with the trunk, and points down
+//    wrist, neck, head  is in line with its parent
+//    ankle              is at a right angle to the shank
+// Toes, feet, necks and heads are oblique in a body that stands straight; up to 30 degrees count as straight. Angles
+// are in radians, axes in the world at rest.
 #pragma once
 
 #include <optional>
@@ -18,21 +19,23 @@
 
 namespace limber {
 
-// The roles of an armature's bones, by their names.
+// Returns the anatomical roles of an armature's bones, from their names.
 std::vector<std::optional<JointRole>> roles_of(const Armature& armature);
 
-// The angle of a hinge at rest about that unit axis, -pi .. pi: 0 is straight. Nothing where its bones run along the
-// axis, so that they do not tell, and for a bone without parent or of a part of the body that has no straight position.
+// Returns the angle of a hinge at rest about a unit axis, -pi .. pi; 0 is straight. Returns nothing if the bone has no
+// parent, if the body has no straight position for it, or if the bone or its parent is nearly parallel to the axis, so
+// that the angle is undetermined.
 std::optional<double> told_hinge_angle(const Armature& armature, int bone, const glm::dvec3& axis);
-// The same, 0 for nothing.
+// Returns the angle of a hinge at rest as told_hinge_angle() does, but 0 where that function returns nothing.
 double hinge_angle_at_rest(const Armature& armature, int bone, const glm::dvec3& axis);
 
-// A ball's swing at rest as a rotation vector, from the anatomical position of that part of the body; zero for other
-// parts, and where the bones that it is told by are missing: a shoulder without a trunk.
+// Returns the swing of a ball joint at rest, relative to its anatomical position, as a rotation vector. Returns zero if
+// the body part has no anatomical position, or if bones that define it are missing, such as the trunk for a shoulder.
 glm::dvec3 ball_swing_at_rest(const Armature& armature, int bone, BodyPart part);
 
-// Either, by the kind of the bone's limits and its name: a rotation vector, to be added to the rotation vector that
-// turns the bone from rest to get the anatomical angles.
+// Returns the angle of a hinge, or the swing of a ball joint, at rest as a rotation vector; the type of the bone's
+// limits and its name decide which. Added to the rotation vector of a rotation from rest, it gives the anatomical
+// angles.
 glm::dvec3 turn_at_rest(const Armature& armature, int bone);
 
 }  // namespace limber

@@ -13,9 +13,9 @@ namespace limber {
 namespace {
 constexpr int kMostBones = 4096;
 
-// Farther from the origin, a millimetre is lost in rounding.
+// Largest coordinate of a position. Further away, rounding would exceed a millimetre.
 constexpr double kFarthestMm = 1e9;
-// False also for what is no number.
+// Returns whether a position is finite and within the largest coordinate; false also for NaN.
 bool near_enough(const glm::dvec3& v) {
   return std::abs(v.x) <= kFarthestMm && std::abs(v.y) <= kFarthestMm && std::abs(v.z) <= kFarthestMm;
 }
@@ -71,7 +71,7 @@ Armature parents_first(std::vector<Bone> bones, const std::string& where) {
   }
   if (ordered) return {std::move(bones)};
 
-  // Depth first from the roots; what is never reached stands in a circle.
+  // Visits bones depth first from the roots. Bones that are never reached are part of a cycle.
   std::vector<std::vector<int>> children(count);
   std::vector<int> ready, order, place(count);
   for (int i = count; i-- > 0;) (bones[i].parent < 0 ? ready : children[bones[i].parent]).push_back(i);
@@ -98,7 +98,8 @@ glm::dmat3 rest_axes(const Bone& bone) {
   const double length = glm::length(along);
   const glm::dvec3 y = length > 0 ? along / length : glm::dvec3(0, 1, 0);
 
-  // The shortest turn from +y to the bone [Blender, vec_roll_to_mat3]; straight down, a half turn about z.
+  // The axes follow the shortest rotation from +y to the bone [Blender, vec_roll_to_mat3], or half a turn about z if
+  // the bone points along -y.
   glm::dmat3 axes(1);
   const double theta = 1 + y.y;
   if (theta > 1e-9) {
@@ -133,7 +134,7 @@ glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const glm::dvec3 a = parent.tail - parent.head, b = bone.tail - bone.head;
   const double lengths = glm::length(a) * glm::length(b);
   const glm::dvec3 axis = glm::cross(a, b);
-  // sin 10 degrees: below it the direction of the axis is mostly noise.
+  // The axis is mostly noise if the bones are bent by less than 10 degrees.
   if (lengths == 0 || glm::length(axis) < lengths * std::sin(10 * std::numbers::pi / 180))
     throw Error("the bone is nearly straight with its parent, so its flex axis is not known", bone.name, remedy);
   return glm::normalize(axis);

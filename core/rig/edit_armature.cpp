@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouching = 1e-4;  // mm: ends so near each other are one joint
+constexpr double kTouching = 1e-4;  // in mm: largest distance of a connected bone's head from its parent's tail
 
 std::vector<bool> marked(const Armature& armature, const std::vector<int>& bones) {
   std::vector<bool> marks(armature.bones.size(), false);
@@ -27,7 +27,7 @@ glm::dvec3& end_of(Armature& armature, const BoneEnd& end) {
   return end.tail ? armature.bones[end.bone].tail : armature.bones[end.bone].head;
 }
 
-// The shortest turn from one direction to another; none where one of them is nothing.
+// Returns the shortest rotation from one direction to another; the identity if one of them is zero.
 glm::dquat shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   const double lengths = glm::length(from) * glm::length(to);
   if (lengths == 0) return {1, 0, 0, 0};
@@ -40,7 +40,7 @@ glm::dquat shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::normalize(glm::dquat(1 + cosine, axis.x, axis.y, axis.z));
 }
 
-// The bone's own axes and those of its limits, after its direction changed.
+// Rotates the bone's own axes and those of its limits along with its direction, which has changed since `before`.
 void turn_along(Bone& bone, const Bone& before) {
   const glm::dvec3 from = before.tail - before.head, to = bone.tail - bone.head;
   if (glm::length(glm::cross(from, to)) <= 1e-12 * glm::length(from) * glm::length(to) && glm::dot(from, to) > 0)
@@ -50,14 +50,14 @@ void turn_along(Bone& bone, const Bone& before) {
   if (bone.limits.axis != glm::dvec3(0)) bone.limits.axis = glm::normalize(turn * bone.limits.axis);
 }
 
-// The next bone above that is not marked; -1 for none.
+// Returns the nearest ancestor that is not marked; -1: none.
 int unmarked_above(const Armature& armature, const std::vector<bool>& marks, int bone) {
   int parent = armature.bones[bone].parent;
   while (parent >= 0 && marks[parent]) parent = armature.bones[parent].parent;
   return parent;
 }
 
-// "Arm" of "Arm.002".
+// Removes a number at the end of a name: "Arm.002" becomes "Arm".
 std::string without_number(const std::string& name) {
   const auto dot = name.rfind('.');
   const bool numbered = dot != std::string::npos && dot > 0 && dot + 1 < name.size() &&
@@ -93,7 +93,7 @@ bool is_connected(const Armature& armature, int bone) {
 }
 
 std::vector<BoneEnd> joint_of(const Armature& armature, const BoneEnd& end) {
-  // The joint belongs to the bone whose tail lies there.
+  // Finds the bone whose tail lies at the joint.
   const int above = end.tail ? end.bone : is_connected(armature, end.bone) ? armature.bones[end.bone].parent : -1;
   if (above < 0) return {end};
   std::vector<BoneEnd> ends = {{above, true}};
@@ -139,7 +139,7 @@ Armature with_bone(const Armature& armature, const std::string& name, int parent
 Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec3& to) {
   const Bone& bone = armature.bones.at(from.bone);
   Armature next = with_bone(armature, bone.name, from.tail ? from.bone : bone.parent, place_of(armature, from), to);
-  // Its x axis stays as near to the old one as it can.
+  // Sets the roll so that the new bone's x axis is as near to the old bone's as possible.
   Bone& added = next.bones.back();
   added.roll = roll_of(added, shortest_turn(bone.tail - bone.head, added.tail - added.head) * rest_axes(bone)[0]);
   return next;
@@ -165,11 +165,12 @@ Armature without_bones(const Armature& armature, const std::vector<int>& bones) 
 Armature dissolved(const Armature& armature, const std::vector<int>& bones) {
   const std::vector<bool> marks = marked(armature, bones);
   Armature next = armature;
-  // From the ends of the chains on, so that a run of bones hands its last tail up.
+  // Walks from the ends of the chains to the roots, so that through several removed bones in a row the last tail is
+  // passed on upwards.
   for (int bone = static_cast<int>(marks.size()); bone-- > 0;) {
     if (!marks[bone] || !is_connected(armature, bone)) continue;
     const int parent = armature.bones[bone].parent;
-    // Where others hang on the same joint it stays.
+    // The joint stays where it is if other bones meet there too.
     if (joint_of(armature, {bone, false}).size() > 2) continue;
     const Bone before = next.bones[parent];
     next.bones[parent].tail = next.bones[bone].tail;
@@ -205,7 +206,7 @@ Armature subdivided(const Armature& armature, const std::vector<int>& bones, int
 Armature duplicated(const Armature& armature, const std::vector<int>& bones) {
   Armature next = armature;
   std::map<int, int> copy_of;
-  // Parents first, whatever the order of the list.
+  // Copies parents before their children, whatever the order of `bones`.
   std::vector<int> sorted = bones;
   std::sort(sorted.begin(), sorted.end());
   for (const int bone : sorted) {
@@ -261,7 +262,7 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
     all.at(bone).parent = parent;
     if (join == Join::KeepOffset) continue;
     const glm::dvec3 by = armature.bones.at(parent).tail - armature.bones[bone].head;
-    // All that hangs on it goes along.
+    // Moves all descendants too.
     std::vector<bool> goes(all.size(), false);
     goes[bone] = true;
     for (int b = 0; b < std::ssize(armature.bones); ++b) {
@@ -271,7 +272,7 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
       all[b].head += by;
       all[b].tail += by;
     }
-    // Exactly, so that they are one joint.
+    // Puts the head exactly at the parent's tail, so that both are one joint.
     all[bone].head = armature.bones[parent].tail;
   }
   return parents_first(std::move(all), "reparented rig");
@@ -302,7 +303,8 @@ Armature with_flipped_direction(const Armature& armature, const std::vector<int>
     all[bone].roll = roll_of(all[bone], axes[0]);
     all[bone].parent = -1;
   }
-  // A chain that is flipped whole hangs on its other end; of two children the first carries it.
+  // Within a flipped chain, parents become children. If a bone has two flipped children, the first of them becomes its
+  // parent.
   for (int bone = std::ssize(all) - 1; bone >= 0; --bone)
     if (const int parent = armature.bones[bone].parent; marks[bone] && parent >= 0 && marks[parent])
       all[parent].parent = bone;
@@ -334,7 +336,7 @@ Armature mirrored_bones(const Armature& armature, const std::vector<int>& bones)
     to = mirror_image(from, plane);
     to.name = from.name;
   }
-  // Both sides of a pair change names only together.
+  // The two bones of a pair exchange their names only if both are mirrored.
   for (const int bone : bones)
     if (const auto name = mirrored_name(armature.bones[bone].name)) {
       const auto other = armature.find(*name);

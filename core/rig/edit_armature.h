@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of a skeleton at rest, as in Blender's edit mode. A rig goes in, a new one comes out: parents before children,
-// every name its own, what is not named in the edit left as it was. New bones stand at the end. A bone is connected to
-// its parent while its head lies on the parent's tail; the ends that meet there are one joint and move together.
+// Edits a skeleton at rest, as in Blender's edit mode. Each function takes a rig and returns a new one with parents
+// before children and unique names. Bones that an edit does not concern stay unchanged. New bones come last. A bone is
+// connected to its parent if its head lies on the parent's tail; the ends that meet there are one joint and move
+// together.
 //
-// Edits that reorder or drop bones are followed by name (bones_of), so that poses and weights can follow them.
+// Edits may reorder or remove bones. bones_of() finds by name where each bone came from, so that poses and weights can
+// be carried over.
 #pragma once
 
 #include <functional>
@@ -23,67 +25,72 @@ struct BoneEnd {
 
 const glm::dvec3& place_of(const Armature& armature, const BoneEnd& end);
 bool is_connected(const Armature& armature, int bone);
-// Every end that moves with this one, itself included.
+// Returns all bone ends that are one joint with this end, including itself.
 std::vector<BoneEnd> joint_of(const Armature& armature, const BoneEnd& end);
 
-// The name itself, or with the first free number behind it ("Arm.001") where it is taken.
+// Returns the name, or the name with the first free number ("Arm.001") if it is taken.
 std::string free_name(const Armature& armature, const std::string& name);
 
-// Each joint of `ends` once, to where `to` takes it. A bone that is turned by it takes its own axes and those of its
-// limits along, by the shortest turn.
+// Moves each joint of `ends` once, from p to to(p). If a bone's direction changes, its own axes and those of its limits
+// are rotated along, by the shortest rotation.
 Armature with_moved_ends(const Armature& armature, const std::vector<BoneEnd>& ends,
                          const std::function<glm::dvec3(const glm::dvec3&)>& to);
 
-// At the end; `parent` -1 for none.
+// Adds a bone. `parent` is the index of its parent; -1: a root.
 Armature with_bone(const Armature& armature, const std::string& name, int parent, const glm::dvec3& head,
                    const glm::dvec3& tail);
-// A child from the bone's tail to that point; from its head a sibling.
+// Adds a bone from a bone end to a point: a child of that bone if the end is its tail, a sibling if it is its head.
 Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec3& to);
-// A bone from one end to another: a child of the bone whose tail it leaves, else a sibling; a root whose head it
-// reaches hangs on it. Throws Error where the ends meet.
+// Adds a bone between two bone ends: a child of the first end's bone if that end is a tail, else a sibling. If the new
+// bone ends at the head of a root of another chain, it becomes the parent of that root. Throws Error if both ends are
+// at one position.
 Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to);
-// Their children hang on the next bone above that stays. Throws Error when none would be left.
+// Removes bones. The parent of their children becomes the nearest ancestor that stays. Throws Error if no bone would be
+// left.
 Armature without_bones(const Armature& armature, const std::vector<int>& bones);
-// As without_bones; where a bone was connected its parent reaches on to its tail, so that the chain stays whole.
+// Removes bones as without_bones() does. If a removed bone is connected to its parent, extends the parent to the
+// removed bone's tail, so that the chain has no gap.
 Armature dissolved(const Armature& armature, const std::vector<int>& bones);
-// Each in so many equal parts [2, 100]; the limits stay with the first.
+// Splits each bone into `parts` equal pieces, [2, 100]; the first piece keeps the limits.
 Armature subdivided(const Armature& armature, const std::vector<int>& bones, int parts = 2);
-// Copies at the same places, at the end, in the order of `bones`.
+// Adds copies of the bones at the same positions, after all other bones, in the order of their indices.
 Armature duplicated(const Armature& armature, const std::vector<int>& bones);
-// Throws Error for an empty name.
+// Renames a bone; adds a number if the name is taken. Throws Error for an empty name.
 Armature renamed(const Armature& armature, int bone, const std::string& name);
 
-// What all the names of a list go through, in this order.
+// The changes that are applied to each name, in this order.
 struct NameChange {
-  std::string find, replace;  // every occurrence; nothing where `find` is empty
+  std::string find, replace;  // replaces every occurrence; none if `find` is empty
   bool other_side = false;    // "Arm.L" becomes "Arm.R"; a name without a side stays
   std::string prefix, suffix;
 };
-// Throws Error where a name would be empty or belong to two bones.
+// Applies the changes to the names of bones. Throws Error if a name would be empty or equal that of another bone.
 Armature with_names_changed(const Armature& armature, const std::vector<int>& bones, const NameChange& change);
 
 enum class Join { Connected, KeepOffset };
-// Connected, a bone moves to the parent's tail with all that hangs on it. Throws Error where a bone would hang on
-// itself.
+// Sets the parent of bones. With Join::Connected, each bone moves to the parent's tail, with all its descendants.
+// Throws Error if a bone would become its own ancestor.
 Armature parented(const Armature& armature, const std::vector<int>& bones, int parent, Join join);
 Armature unparented(const Armature& armature, const std::vector<int>& bones);
-// Cut loose from all other bones.
+// Removes the parent links between `bones` and all other bones.
 Armature separated(const Armature& armature, const std::vector<int>& bones);
-// Head and tail change places; a chain runs the other way.
+// Exchanges head and tail of bones, and reverses the parent-child order of the chains that they form.
 Armature with_flipped_direction(const Armature& armature, const std::vector<int>& bones);
-// About their own y axes, radians.
+// Rotates bones about their own y axes by an angle in radians.
 Armature rolled(const Armature& armature, const std::vector<int>& bones, double angle);
-// Their own z axes as near to that direction as they come; a bone along it stays.
+// Rolls bones so that their own z axes point as near to a direction as possible. A bone along that direction stays
+// unchanged.
 Armature with_z_towards(const Armature& armature, const std::vector<int>& bones, const glm::dvec3& direction);
-// To the other side of the rig, with the names of that side where they are free.
+// Moves bones to their mirror image on the other side of the rig. Gives them the names of that side if these are free.
 Armature mirrored_bones(const Armature& armature, const std::vector<int>& bones);
-// What was changed from `before` to `after` happens to the bones on the other side too, where they were left alone; new
-// bones of one side are added on the other.
+// Applies the changes from `before` to `after` also to the bones on the other side of the rig, unless those were
+// changed themselves. New bones of one side are also added on the other.
 Armature with_mirrored_changes(const Armature& before, const Armature& after);
 
-// For each bone of `after`, which one it was: the one of the same name; -1 for a new one.
+// Returns, for each bone of `after`, the index of the bone of `before` with the same name; -1: a new bone.
 std::vector<int> bones_of(const Armature& before, const Armature& after);
-// New bones are at rest.
+// Returns the pose carried over to an edited rig; new bones are at rest.
+//   bones  the result of bones_of()
 Pose carried(const Pose& pose, const std::vector<int>& bones);
 
 }  // namespace limber

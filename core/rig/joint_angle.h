@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a joint's limits say of a turn about one axis: the anatomical angle that the turn changes, and how far it may
-// go. A hinge has one angle, a ball its twist about the bone and its swing across it; which of them is meant is told by
-// the axis nearest to the turn's. Angles count from the anatomical position where `at_rest` tells how far rest is from
-// it (anatomical_position.h), else from rest. Radians; axes and rotations as in joint_limits.h.
+// Reads the anatomical angle of a joint that a rotation about one axis changes, and the range that the joint's limits
+// allow. A hinge has one angle. A ball has a twist about the bone and a swing across it; the rotation's axis decides
+// which of them is read. Angles are relative to the anatomical position if `at_rest` gives the joint's angle at rest
+// (anatomical_position.h), else relative to rest. Angles are in radians; axes and rotations are as in joint_limits.h.
 #pragma once
 
 #include <optional>
@@ -16,24 +16,27 @@ struct JointReading {
   enum class Kind { Flexion, Swing, Twist, Fixed };
   Kind kind = Kind::Fixed;
   double angle = 0, minimum = 0, maximum = 0;
-  double sense = 1;  // by what a turn of 1 about the axis changes the angle: 1 or -1
+  double sense = 1;  // sign of the angle's change for a positive rotation about the axis: 1 or -1
 };
 
-const char* name_of(JointReading::Kind kind);  // "Flexion"
+const char* name_of(JointReading::Kind kind);  // such as "Flexion"
 
-//   axis  unit
-// Nothing for a joint without limits, or a turn across a hinge.
+// Returns the angle that a rotation about `axis` changes. Returns nothing for a joint without limits, or if the axis is
+// too far from a hinge's.
+//   axis     unit axis of the rotation
+//   at_rest  turn_at_rest(), or zero for angles relative to rest
 std::optional<JointReading> read_joint(const Bone& bone, const glm::dquat& rotation, const glm::dvec3& axis,
                                        const glm::dvec3& at_rest = glm::dvec3(0));
 
-// "Flexion 54.0° of 150°", and beyond an end "Flexion -21.5°, beyond 0° by 21.5°".
+// Returns text such as "Flexion 54.0 of 150", or beyond a limit "Flexion -21.5, beyond 0 by 21.5"; each number has a
+// degree sign.
 std::string text_of(const JointReading& reading);
 
-// "0° to 150°": what may be read.
+// Returns the allowed range as text such as "0 to 150", with degree signs.
 std::string range_text(const JointReading& reading);
 
-// By what a rotation breaks the limits, a hinge's angle and what is turned across it apart: "beyond 0° by 83.1°, 34.5°
-// across"; "" where it is within.
+// Returns text about how far a rotation exceeds the limits; empty if it does not. For a hinge, the excess of its angle
+// and the rotation across its axis are separate: "beyond 0 by 83.1, 34.5 across", with degree signs.
 std::string excess_text(const Bone& bone, const glm::dquat& rotation, const glm::dvec3& at_rest);
 
 }  // namespace limber

@@ -17,7 +17,8 @@ bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 char lower(char c) { return is_upper(c) ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// "LHipJoint" -> l hip joint, "finger2-1.L" -> finger 2 1 l, "mixamorig:LeftArm" -> left arm
+// Splits a name into words in lower case. "LHipJoint" becomes l, hip; "finger2-1.L" becomes finger, 2, 1, l;
+// "mixamorig:LeftArm" becomes left, arm.
 Words words_of(std::string_view name) {
   if (const size_t colon = name.rfind(':'); colon != name.npos && colon + 1 < name.size())
     name.remove_prefix(colon + 1);
@@ -31,17 +32,17 @@ Words words_of(std::string_view name) {
     else words.emplace_back(1, lower(c));
   }
 
-  // Words that only say whose skeleton or what kind of object it is.
+  // Words that only name the kind of skeleton or object, and not a part of the body.
   static const std::set<std::string, std::less<>> kNoise = {"mixamorig", "bip",       "biped",     "bone",    "def",
                                                             "org",       "character", "cc",        "jnt",     "joint",
                                                             "phalange",  "phalanx",   "vertebrae", "vertebra"};
   const Words all = words;
   std::erase_if(words, [&](const std::string& word) { return kNoise.contains(word); });
   if (all.size() > 2 && all[0] == "cc" && all[1] == "base") words.erase(words.begin());
-  // VRoid's "J_Bip_L_Hand", "J_Bip_C_Hips": C is the middle.
+  // VRoid's names are "J_Bip_L_Hand" or "J_Bip_C_Hips", where C means the middle.
   if (all.size() > 2 && all[0] == "j" && all[1] == "bip")
     words.erase(words.begin(), words.begin() + (words.size() > 2 && all[2] == "c" ? 2 : 1));
-  // "Bip01", "Character1": the number goes with the word.
+  // In "Bip01" or "Character1" the number belongs to the removed word.
   if (all.size() > 2 && kNoise.contains(all[0]) && is_digit(all[1][0]) && !words.empty()) words.erase(words.begin());
   return words.empty() ? all : words;
 }
@@ -57,7 +58,7 @@ BodySide take_side(Words& words) {
   return BodySide::Middle;
 }
 
-// One meaning, or several of which the first that fits counts.
+// The meaning of a word in the dictionary. Words such as Shoulder, Hip and Leg are ambiguous; part_of() decides.
 enum class Word {
   Pelvis,
   Root,
@@ -166,7 +167,7 @@ const std::map<std::string, Word, std::less<>>& dictionary() {
   return kWords;
 }
 
-// ---- fingers
+// ---- Names of fingers.
 
 std::optional<BodyPart> finger_of(const std::string& word) {
   static const std::map<std::string, BodyPart, std::less<>> kFingers = {
@@ -181,7 +182,8 @@ bool starts_with_any(std::string_view word, std::initializer_list<std::string_vi
   return std::any_of(beginnings.begin(), beginnings.end(), [&](std::string_view b) { return word.starts_with(b); });
 }
 
-// "HandIndex2", "InHandIndex", "IndexMetacarpal", "MiddleMiddlePhalange", "index_01", "finger2-1", "metacarpal1"
+// Returns the role of a finger from names such as "HandIndex2", "InHandIndex", "IndexMetacarpal",
+// "MiddleMiddlePhalange", "index_01", "finger2-1" and "metacarpal1"; nothing if the name is not that of a finger.
 std::optional<JointRole> finger_role(const Words& words, BodySide side) {
   for (size_t i = 0; i < words.size(); ++i) {
     auto finger = finger_of(words[i]);
@@ -216,7 +218,7 @@ std::optional<JointRole> finger_role(const Words& words, BodySide side) {
   return std::nullopt;
 }
 
-// ---- everything else
+// ---- Names of all other parts of the body.
 
 struct Meaning {
   BodySide side = BodySide::Middle;
@@ -225,7 +227,7 @@ struct Meaning {
 };
 
 Meaning meaning_of(const std::string& name) {
-  // MakeHuman puts a helper "__UpLeg_L" before "UpLeg_L".
+  // MakeHuman puts a helper "__UpLeg_L" before "UpLeg_L"; the helper gets no role.
   if (name.starts_with("__")) return {};
   Words words = words_of(name);
   Meaning meaning;
@@ -233,14 +235,14 @@ Meaning meaning_of(const std::string& name) {
   meaning.finger = finger_role(words, meaning.side);
   if (meaning.finger) return meaning;
 
-  // "end", "nub", "tip" and leaves like them carry no motion.
+  // Joints named "end", "nub", "tip" and the like are ends of chains without motion of their own, and get no role.
   for (const char* leaf : {"end", "nub", "tip", "site", "effector", "eye", "jaw"})
     if (std::find(words.begin(), words.end(), leaf) != words.end()) return meaning;
   std::string joined;
   for (const std::string& word : words)
     if (!is_digit(word[0])) joined += word;
   auto found = dictionary().find(joined);
-  // "rbuttock", "lthigh": a side without a break.
+  // In "rbuttock" or "lthigh" no separator follows the letter of the side.
   if (found == dictionary().end() && meaning.side == BodySide::Middle && joined.size() > 2 &&
       (joined[0] == 'l' || joined[0] == 'r')) {
     found = dictionary().find(std::string_view(joined).substr(1));
@@ -251,7 +253,7 @@ Meaning meaning_of(const std::string& name) {
       if (joined.find(trunk) != joined.npos)
         meaning.word = trunk == std::string_view("cervical") ? Word::Neck : Word::Trunk;
   if (found != dictionary().end()) meaning.word = found->second;
-  // CMU's "LHipJoint" lost its second word as noise.
+  // In CMU's "LHipJoint" the word "joint" was removed as noise.
   if (meaning.word == Word::Hip && name.find("HipJoint") != name.npos) meaning.word = Word::HipLink;
   return meaning;
 }
@@ -263,7 +265,7 @@ std::optional<BodyPart> part_of(Word word, const std::set<Word>& same_side) {
     case Word::Shoulder:
       if (!has_arm) return BodyPart::UpperArm;
       if (!same_side.contains(Word::Clavicle)) return BodyPart::Clavicle;
-      return std::nullopt;  // a link between the two
+      return std::nullopt;  // the joint only links clavicle and upper arm
     case Word::UpperArm: return BodyPart::UpperArm;
     case Word::Elbow: return BodyPart::Forearm;
     case Word::Hand: return BodyPart::Hand;
@@ -293,7 +295,8 @@ class Roles {
  public:
   explicit Roles(size_t count) : roles_(count) {}
 
-  // The first joint that claims a role has it: the nearest to the root.
+  // Gives a role to a joint. Returns false if the joint has a role or another joint has this role. Joints are given in
+  // order, so the one nearest to the root gets the role.
   bool give(size_t joint, const JointRole& role) {
     if (roles_[joint] || !taken_.insert(role).second) return false;
     roles_[joint] = role;
@@ -318,7 +321,8 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
     if (meanings[j].word) words[meanings[j].side].insert(*meanings[j].word);
   }
 
-  // Limbs, fingers and head. A limb without a side is one of a single arm or leg.
+  // Assigns limbs, fingers and head. Limbs without a side count only in a rig that has no sides at all, such as that of
+  // one arm.
   Roles roles(count);
   const bool has_sides = !words[BodySide::Left].empty() || !words[BodySide::Right].empty();
   std::vector<size_t> necks;
@@ -338,7 +342,7 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
     while (!roles.give(j, {BodyPart::Neck, BodySide::Middle, index})) ++index;
   }
 
-  // The pelvis: by its name, else "hip" without a side, else the root.
+  // The pelvis is the joint with a pelvis name, else "hip" without a side, else the root.
   auto give_pelvis = [&](Word word) {
     for (size_t j = 0; j < count; ++j)
       if (meanings[j].word == word && meanings[j].side == BodySide::Middle && roles.give(j, {BodyPart::Pelvis}))
@@ -347,7 +351,7 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
   };
   if (!give_pelvis(Word::Pelvis) && !give_pelvis(Word::Hip)) give_pelvis(Word::Root);
 
-  // The spine is what leads from the pelvis, or the root, up to the neck, the head or the collars.
+  // The spine is the chain from the pelvis, or the root, up to the neck, the head or the clavicles.
   int top = -1;
   for (BodyPart part : {BodyPart::Neck, BodyPart::Head, BodyPart::Clavicle, BodyPart::UpperArm})
     for (size_t j = 0; j < count && top < 0; ++j)
@@ -355,7 +359,7 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
   std::vector<size_t> spine;
   for (int j = top < 0 ? -1 : parents[top]; j >= 0 && !roles.of(j); j = parents[j])
     if (meanings[j].word == Word::Trunk || meanings[j].word == Word::Root || !meanings[j].word) spine.push_back(j);
-  // A bare root above a sibling pelvis (Root -> Spine, Root -> Hips) is no vertebra.
+  // A root whose children are spine and pelvis (Root -> Spine, Root -> Hips) does not belong to the spine.
   while (!spine.empty() && meanings[spine.back()].word != Word::Trunk) spine.pop_back();
   for (size_t k = 0; k < spine.size(); ++k)
     roles.give(spine[k], {BodyPart::Spine, BodySide::Middle, static_cast<int>(spine.size() - 1 - k)});

@@ -13,19 +13,21 @@ namespace limber {
 
 namespace {
 
-// Degrees. A hinge's range is low .. high, flexion positive; a ball's cone and twist.
+// A joint's range of motion in degrees. Hinge: the angle is in low .. high, positive in flexion. Ball: the twist is in
+// low .. high, the swing within `cone`.
 struct Range {
   const char* joint;
   BodyPart part;
-  int index;  // of the JointRole; -1 for any
+  int index;  // JointRole::index; -1: any
   bool hinge;
   double low, high;
   double cone;
-  glm::dvec3 towards{0};  // where flexion leads a hinge
+  glm::dvec3 towards{0};  // hinge: direction in which flexion moves the bone
 };
 
-constexpr double kBentBack =
-    15 * 3.14159265358979 / 180;  // so far against its axis no limb is bent that bends one way only
+// Angle in radians by which a limb may be bent at rest against its only direction of flexion. If it is bent further,
+// the hinge's axis has the wrong sign.
+constexpr double kBentBack = 15 * 3.14159265358979 / 180;
 
 constexpr glm::dvec3 kFront(0, -1, 0), kBack(0, 1, 0), kDown(0, 0, -1);
 
@@ -59,7 +61,7 @@ std::optional<int> range_of(const JointRole& role) {
   return std::nullopt;
 }
 
-// How many bones make the joint together.
+// Returns the number of bones that form the joint together and share its range.
 int sharers(const Armature& armature, const Range& range) {
   const bool neck = range.part == BodyPart::Neck || range.part == BodyPart::Head;
   if (!neck && range.part != BodyPart::Spine) return 1;
@@ -70,7 +72,8 @@ int sharers(const Armature& armature, const Range& range) {
   return std::max(1, count);
 }
 
-// A collar bone bears a third of lifting the arm: two degrees of the shoulder come with one of the shoulder blade.
+// Returns whether the rig has a clavicle above the bone. The clavicle does one third of raising the arm: for every two
+// degrees at the shoulder joint, the shoulder blade turns by one.
 bool has_collar_bone(const Armature& armature, int bone) {
   const auto roles = roles_of(armature);
   for (int above = armature.bones[bone].parent; above >= 0; above = armature.bones[above].parent)
@@ -84,7 +87,7 @@ glm::dvec3 hinge_axis(const Armature& armature, int index, const glm::dvec3& tow
   try {
     return flex_axis(armature, index);
   } catch (const Error&) {
-    // Straight with its parent, or without one.
+    // The bone is in line with its parent, or has none.
     const glm::dvec3 axis = glm::cross(bone.tail - bone.head, towards);
     const double length = glm::length(axis), bone_length = glm::distance(bone.head, bone.tail);
     return length > 0.1 * bone_length ? axis / length : rest_axes(bone)[0];

@@ -16,7 +16,7 @@ bool is_separator(char c) { return c == '.' || c == '_' || c == '-' || c == ' ' 
 
 constexpr std::pair<const char*, const char*> kWords[] = {{"Left", "Right"}, {"left", "right"}, {"LEFT", "RIGHT"}};
 
-// A side written out: at the start of a word.
+// Exchanges a side that is spelt out ("Left", "right") at the start of a word.
 std::optional<std::string> by_word(const std::string& name) {
   for (const auto& [left, right] : kWords)
     for (const auto& [word, other] : {std::pair{left, right}, std::pair{right, left}})
@@ -37,7 +37,8 @@ char other_letter(char c) {
   }
 }
 
-// A side of one letter: between separators, or a capital before a capital at the start.
+// Exchanges a side that is one letter: between separators, or a capital at the start of the name that another capital
+// follows.
 std::optional<std::string> by_letter(const std::string& name) {
   for (std::size_t at = name.size(); at-- > 0;) {
     const char other = other_letter(name[at]);
@@ -55,8 +56,8 @@ std::optional<std::string> by_letter(const std::string& name) {
 
 JointLimits mirrored(const JointLimits& limits, const MirrorPlane& plane) {
   JointLimits other = limits;
-  // A hinge's axis mirrors like a turn, so that its range stays; a ball's like a direction, so that its twist turns
-  // round.
+  // A hinge's axis is mirrored like a rotation vector, so that its range stays the same. A ball's axis is mirrored like
+  // a direction, so that its range of twist is reversed.
   if (limits.type == JointLimits::Type::Hinge) other.axis = -plane.direction(limits.axis);
   if (limits.type == JointLimits::Type::Ball) {
     other.axis = plane.direction(limits.axis);
@@ -80,14 +81,14 @@ std::vector<int> mirror_pairs(const Armature& armature) {
   for (std::size_t b = 0; b < armature.bones.size(); ++b) {
     const auto name = mirrored_name(armature.bones[b].name);
     const auto found = name ? bone_of.find(*name) : bone_of.end();
-    // Both must name each other.
+    // Two bones are a pair only if each name is the mirror image of the other.
     const bool agreed = found != bone_of.end() && mirrored_name(found->first) == armature.bones[b].name;
     pairs.push_back(agreed ? found->second : static_cast<int>(b));
   }
   return pairs;
 }
 
-// S R(a, angle) S = R(-S a, angle) for a reflection S.
+// For a reflection S and a rotation R about the axis a, S R(a, angle) S = R(-S a, angle).
 glm::dquat MirrorPlane::rotation(const glm::dquat& q) const {
   const glm::dvec3 v = -direction({q.x, q.y, q.z});
   return {q.w, v.x, v.y, v.z};
@@ -103,7 +104,8 @@ MirrorPlane mirror_plane(const Armature& armature) {
     all += (bone.head + bone.tail) / (2.0 * static_cast<double>(pairs.size()));
     if (!mirrored_name(bone.name)) sideless += (bone.head + bone.tail) / 2.0, ++without_side;
     if (pairs[b] <= static_cast<int>(b)) continue;
-    // Which of two sides is named first does not matter: all pairs are made to point one way.
+    // Turns the vectors between the bones of all pairs to the same side, so that the order of a pair's bones does not
+    // matter.
     const Bone& other = armature.bones[pairs[b]];
     const glm::dvec3 between = other.head + other.tail - bone.head - bone.tail;
     across += glm::dot(between, across) < 0 ? -between : between;

@@ -24,7 +24,7 @@ constexpr int kMostBones = 4096;
 
 glm::dvec3 lps_from_ras(const glm::dvec3& p) { return {-p.x, -p.y, p.z}; }
 
-// Reads a legacy VTK file word by word, and by lines where names may hold spaces.
+// Reads a legacy VTK file word by word, and line by line where names may contain spaces.
 class VtkText {
  public:
   VtkText(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
@@ -33,7 +33,7 @@ class VtkText {
     throw Error(what, where_ + ", line " + std::to_string(line_), what_to_do);
   }
 
-  // Empty at the end.
+  // Returns the next word; empty at the end of the text.
   std::string_view word() {
     skip_space();
     const size_t begin = place_;
@@ -41,7 +41,7 @@ class VtkText {
     return text_.substr(begin, place_ - begin);
   }
 
-  // The next line that is not blank, without spaces around it.
+  // Returns the next line that is not blank, without spaces at its ends.
   std::string_view line() {
     skip_space();
     size_t end = text_.find_first_of("\r\n", place_);
@@ -84,7 +84,7 @@ class VtkText {
   int line_ = 1;
 };
 
-// VTK writes bytes that would break a line as %XX.
+// Decodes a name: VTK writes bytes that would break a line as %XX.
 std::string decoded(std::string_view name) {
   std::string plain;
   for (size_t i = 0; i < name.size(); ++i) {
@@ -123,7 +123,7 @@ struct VtkArmature {
 
 void read_points(VtkText& in, VtkArmature& read) {
   const int count = in.count("points", 2 * kMostBones);
-  in.word();  // the type
+  in.word();  // skips the numbers' type
   for (int i = 0; i < count; ++i) {
     const double x = in.number("POINTS"), y = in.number("POINTS"), z = in.number("POINTS");
     read.points.push_back(lps_from_ras({x, y, z}));
@@ -141,7 +141,7 @@ void read_lines(VtkText& in, VtkArmature& read) {
   }
 }
 
-// The arrays of a FIELD; those that do not make the rest pose are read past.
+// Reads the arrays of a FIELD. Skips those that the rest pose does not need.
 void read_field(VtkText& in, VtkArmature& read) {
   in.word();
   const int arrays = in.count("arrays", 1000);
@@ -222,10 +222,10 @@ Armature parse_bender_vtk(const std::string& text, const std::string& where) {
   return armature;
 }
 
-// ---- .arm
+// ---- Reading .arm files.
 
 namespace {
-// A bone's own frame at its tail, in which its children are given; RAS.
+// A bone's own coordinate frame at its tail, RAS. Heads and tails of its children are given in this frame.
 struct ArmFrame {
   glm::dquat axes{1, 0, 0, 0};
   glm::dvec3 tail{0};
@@ -239,7 +239,8 @@ struct ArmReader {
   glm::dvec3 scale{1};
   bool armature_seen = false;
   std::vector<Bone> bones;
-  std::string what, what_to_do;  // of the first mistake; the parser cannot be left by an exception
+  // The message of the first mistake. It is stored, since an exception must not pass through the C parser.
+  std::string what, what_to_do;
 
   void refuse(const std::string& mistake, const std::string& remedy) {
     if (what.empty()) what = mistake, what_to_do = remedy;
@@ -253,7 +254,7 @@ const char* attribute(const char** attributes, std::string_view key) {
   return nullptr;
 }
 
-// Exactly `count` finite numbers; else the reader stops.
+// Parses exactly `count` finite numbers. Stops the reader with an error message if the text is anything else.
 std::array<double, 4> numbers_of(ArmReader& reader, const char* text, int count, const char* key) {
   std::array<double, 4> values{};
   const std::string_view all = text ? text : "";
@@ -263,7 +264,7 @@ std::array<double, 4> numbers_of(ArmReader& reader, const char* text, int count,
     while (place != end && std::isspace(static_cast<unsigned char>(*place))) ++place;
     if (i == count) break;
     const auto [stop, error] = std::from_chars(place, end, values[i]);
-    // Numbers too small to hold are zero and stand in real files.
+    // Numbers that are too small for a double count as zero; they occur in real files.
     const bool tiny = error == std::errc::result_out_of_range && std::abs(values[i]) < 1;
     if ((error != std::errc() && !tiny) || !std::isfinite(values[i]) || std::abs(values[i]) > 1e9) place = nullptr;
     if (!place) break;
@@ -345,7 +346,7 @@ Armature parse_bender_arm(const std::string& text, const std::string& where) {
   return armature;
 }
 
-// ---- writing
+// ---- Writing .vtk files.
 
 std::string bender_vtk_text(const Armature& armature) {
   const int count = static_cast<int>(armature.bones.size());
@@ -366,7 +367,7 @@ std::string bender_vtk_text(const Armature& armature) {
 
   text += "\nCELL_DATA " + n + "\nFIELD FieldData 5\nTransforms 12 " + n + " double\n";
   for (int i = 0; i < count; ++i) text += "1 0 0 0 1 0 0 0 1 0 0 0\n";
-  // A tenth of its length beside a bone is a radius that shows well.
+  // Writes a tenth of the bone's length as its radius, which is easy to see.
   text += "EnvelopeRadiuses 1 " + n + " double\n";
   for (const Bone& bone : armature.bones) text += digits(0.1 * glm::length(bone.tail - bone.head)) + "\n";
   text += "Parenthood 1 " + n + " vtkIdType\n";

@@ -18,14 +18,14 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// ---- types of properties [glTF 2.0, chapter 5]
+// ---- The types of the properties of glTF objects [glTF 2.0, chapter 5].
 
 enum class Kind { Text, Number, Whole, Yes, Numbers, Wholes, Object, Objects };
 
 struct Property {
   std::string_view owner, key;
   Kind kind;
-  std::string_view inner = {};  // owner of what is inside
+  std::string_view inner = {};  // `owner` of the properties of the objects in this value
   bool required = false;
 };
 
@@ -168,7 +168,9 @@ constexpr std::string_view kind_name(Kind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-// `place` reads like meshes[0].primitives.
+// Checks that the properties of an object have the types of kProperties. Throws Error if not.
+//   owner  type of the object, as in kProperties
+//   place  path of the object in the file, such as meshes[0].primitives
 void check_types(const Json& object, std::string_view owner, const std::string& place, const std::string& where) {
   for (const Property& property : kProperties) {
     if (property.owner != owner) continue;
@@ -188,7 +190,7 @@ void check_types(const Json& object, std::string_view owner, const std::string& 
   }
 }
 
-// ---- the container
+// ---- The binary container (.glb).
 
 std::uint32_t u32_at(const std::string& bytes, size_t at) {
   std::uint32_t value = 0;
@@ -223,7 +225,7 @@ Chunks chunks_of_glb(const std::string& bytes, const std::string& where) {
   return chunks;
 }
 
-// Bytes that a buffer has inside this file; none can be said for one in a file beside it.
+// Checks that each buffer inside this file has all its bytes. Buffers in other files are not checked.
 void check_buffers(const Json& gltf, const Chunks& chunks, bool is_binary, const std::string& where) {
   if (!gltf.contains("buffers")) return;
   for (size_t i = 0; i < gltf["buffers"].size(); ++i) {
@@ -248,7 +250,7 @@ void check_buffers(const Json& gltf, const Chunks& chunks, bool is_binary, const
   }
 }
 
-// ---- nodes
+// ---- Nodes of the scene.
 
 size_t size_of(const Json& gltf, const char* list) { return gltf.contains(list) ? gltf[list].size() : 0; }
 
@@ -294,8 +296,8 @@ glm::dmat4 parent_from_node(const Json& node, const std::string& where) {
 
 struct Nodes {
   std::vector<int> parent;
-  std::vector<glm::dvec3> place;  // of each node's origin, LPS mm
-  std::vector<size_t> order;      // parents before children
+  std::vector<glm::dvec3> place;  // position of each node's origin, LPS mm
+  std::vector<size_t> order;      // all nodes, parents before their children
 };
 
 Nodes place_nodes(const Json& gltf, const std::string& where) {
@@ -329,7 +331,7 @@ Nodes place_nodes(const Json& gltf, const std::string& where) {
   return nodes;
 }
 
-// ---- summaries
+// ---- Rig and counts.
 
 Armature armature_of_skin(const Json& gltf, const Json& skin, const Nodes& nodes, const std::string& where) {
   std::vector<int> bone_of(nodes.parent.size(), -1);
@@ -341,7 +343,7 @@ Armature armature_of_skin(const Json& gltf, const Json& skin, const Nodes& nodes
     joints.push_back(node);
   }
 
-  // The bone above is the nearest joint above: other nodes may stand between.
+  // The parent of a bone is its nearest ancestor that is a joint: other nodes may lie between the two.
   std::vector<int> bone_above(nodes.parent.size(), -1);
   for (size_t node : nodes.order)
     if (const int parent = nodes.parent[node]; parent >= 0)
@@ -363,7 +365,7 @@ Armature armature_of_skin(const Json& gltf, const Json& skin, const Nodes& nodes
   for (size_t b = 0; b < bones.size(); ++b) {
     Bone& bone = bones[b];
     bone.tail = children[b] ? sum[b] / double(children[b]) : bone.head;
-    // An end goes on as its parent came, a third as far.
+    // A bone without children extends the line from its parent's head to its own head, by a third of that length.
     if (bone.tail == bone.head && bone.parent >= 0) bone.tail = bone.head + (bone.head - bones[bone.parent].head) / 3.0;
     if (bone.tail == bone.head) bone.tail = bone.head + glm::dvec3(0, 0, 10);
   }

@@ -11,7 +11,7 @@
 namespace limber {
 
 namespace {
-// The next word of the line, which it shortens; empty at its end.
+// Removes the first word from the line and returns it; empty at the end of the line.
 std::string_view take_word(std::string_view& line) {
   const size_t begin = line.find_first_not_of(" \t\v\f");
   if (begin == line.npos) return line = {};
@@ -56,7 +56,7 @@ ObjSummary parse_obj_summary(const std::string& text, const std::string& where) 
       int corners = 0;
       for (std::string_view corner = take_word(line); !corner.empty(); corner = take_word(line), ++corners) {
         std::int64_t vertex = 0;
-        // Numbered from 1, or backwards from the last by -1.
+        // Vertex numbers start at 1; negative ones count backwards from the last vertex, which is -1.
         if (!read_number(corner.substr(0, corner.find('/')), vertex) || vertex == 0 || vertex < -summary.vertices)
           refuse("a face has a corner that is no vertex", "correct the file");
         largest_corner = std::max(largest_corner, vertex);

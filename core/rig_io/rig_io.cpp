@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Far more than 4096 bones need.
+// Upper limit on the size of a file, in bytes: far more than 4096 bones need.
 constexpr std::uint64_t kMostBytes = 64 << 20;
 
 std::string extension_of(const Path& path) {
@@ -29,7 +29,7 @@ std::string extension_of(const Path& path) {
   return extension;
 }
 
-// ---- numbers
+// ---- Reading and writing numbers.
 
 double number(const Json& value, const std::string& key, const std::string& where) {
   if (!value.is_number()) throw Error("\"" + key + "\" is not a number", where, "give a finite number");
@@ -53,14 +53,14 @@ glm::dvec3 unit_axis(const glm::dvec3& axis, const std::string& where) {
   const double length = glm::length(axis);
   if (!(length > 1e-9) || !std::isfinite(length))
     throw Error("an axis has no direction", where, "give three finite numbers, not all zero");
-  // An axis that was written as unit is kept to the bit.
+  // Keeps an axis that is already a unit vector, bit for bit.
   return std::abs(length - 1) < 1e-15 ? axis : axis / length;
 }
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 double radians(double degrees) { return degrees * kRadiansPerDegree; }
 
-// Degrees that read back as exactly these radians where such a number exists.
+// Returns an angle in degrees that converts back to exactly these radians, if there is such a number.
 double degrees_of(double angle) {
   const double middle = angle / kRadiansPerDegree;
   double below = middle, above = middle;
@@ -73,7 +73,7 @@ double degrees_of(double angle) {
   return middle;
 }
 
-// ---- limits
+// ---- Joint limits.
 
 JointLimits limits_of(const Json& value, const std::string& where) {
   if (!value.is_object() || !value.contains("type") || !value["type"].is_string())
@@ -128,9 +128,9 @@ Json json_of(const JointLimits& limits) {
   return {{"type", "free"}};
 }
 
-// ---- bones
+// ---- Bones and coordinates.
 
-// What turns the file's coordinates into LPS mm: a factor per axis.
+// Returns the factor per axis that converts the file's coordinates to LPS mm.
 glm::dvec3 lps_mm_from_file(const Json& rig, const std::string& where) {
   auto word = [&](const char* key, const char* fallback) -> std::string {
     if (!rig.contains(key)) return fallback;
@@ -163,7 +163,7 @@ Bone bone_of(const Json& value, const glm::dvec3& scale, const std::string& wher
 }
 
 std::string armature_json_text(const Armature& armature) {
-  // One bone a line: a rig is read by people too.
+  // Writes each bone on its own line, since people read rigs too.
   std::string text = "{\"space\": \"LPS\", \"unit\": \"mm\", \"bones\": [";
   for (size_t i = 0; i < armature.bones.size(); ++i) {
     const Bone& bone = armature.bones[i];

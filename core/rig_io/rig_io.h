@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rigs from and to files.
+// Reads rigs from files and writes them.
 //
-//   .json  ours: {"space": "LPS", "unit": "mm", "bones": [{"name", "parent": name | null, "head": [3], "tail": [3],
-//          "roll"?: radians, "limits"?: LIMITS}]}. Space RAS and units cm and m are turned to LPS mm on reading. Bones
-//          may stand in any order; parents are put before their children. LIMITS is one of
+//   .json  Limber's own: {"space": "LPS", "unit": "mm", "bones": [{"name", "parent": name | null, "head": [3],
+//          "tail": [3], "roll"?: radians, "limits"?: LIMITS}]}. Space RAS and units cm and m are converted to LPS mm on
+//          reading. Bones may be in any order; they are sorted to have parents before children. LIMITS is one of
 //            {"type": "free"}   {"type": "fixed"}
 //            {"type": "hinge", "axis": [3], "minimum_degrees": d, "maximum_degrees": d}
-//            {"type": "ball", "axis"?: [3] (of twist), "cone_degrees": d, "twist_minimum_degrees": d,
-//            "twist_maximum_degrees": d}
-//   .vtk   Bender's armatures, RAS mm turned to LPS (core/rig_io/bender_rig.h)
-//   .arm   the XML that Bender's Blender script wrote, turned the same way
-//   .bvh   the hierarchy at rest as a rig: Y up, turned to LPS by (x, -z, y), in the file's own unit taken as mm
-//   .gltf  .glb: the joints of the first skin at rest: Y up in metres, turned to LPS mm; read only
+//            {"type": "ball", "axis"?: [3] (the twist axis), "cone_degrees": d, "twist_minimum_degrees": d,
+//             "twist_maximum_degrees": d}
+//   .vtk   Bender's armatures, converted from RAS mm to LPS (core/rig_io/bender_rig.h)
+//   .arm   the XML of Bender's Blender script, also converted from RAS mm to LPS; read only
+//   .bvh   the hierarchy at rest as a rig: Y up, converted to LPS by (x, -z, y); the file's unit is taken as mm
+//   .gltf, .glb  the joints of the first skin at rest: Y up in metres, converted to LPS mm; read only
 #pragma once
 
 #include <string>
@@ -28,17 +28,18 @@ struct ArmatureFile {
   std::vector<std::string> warnings;
 };
 
-// By extension and content. Throws Error with file, place and what to do.
+// Reads a rig in the format of the path's extension. Throws Error with the file, the line or bone, and what to do.
 ArmatureFile read_armature_file(const Path& path);
 inline Armature read_armature(const Path& path) { return read_armature_file(path).armature; }
 
-// The same from a text that was read already; `where` names it in errors.
+// Parses a rig in Limber's JSON format.
+//   where  names the text in error messages
 Armature parse_armature_json(const std::string& text, const std::string& where);
 
-// By extension: .json keeps everything; .vtk keeps names, parents, heads and tails; .bvh the same, with tails as the
-// first child's offset or as an End Site. Throws Error for another extension.
+// Writes a rig in the format of the path's extension. .json keeps everything. .vtk and .bvh keep names, parents, heads
+// and tails; .bvh stores a tail as the first child's offset or as an End Site. Throws Error for other extensions.
 void write_armature(const Armature& armature, const Path& path);
-// Throws Error when no rig can be written under this name.
+// Throws Error if no rig can be written to this path.
 void check_armature_writable(const Path& path);
 
 }  // namespace limber

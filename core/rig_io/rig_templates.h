@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rigs that come with the program, in assets/rigs: our own JSON, with the ranges of motion of the common joints as
-// limits [AAOS 1965]. Limbs are right ones; auto_fit turns them into left ones where it has to.
+// Lists and reads the template rigs that come with the program, in assets/rigs. They are in Limber's JSON format, with
+// the ranges of motion of common joints as limits [AAOS 1965]. Templates of a single limb are for the right side of the
+// body; auto_fit mirrors them if needed.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@
 namespace limber {
 
 struct RigTemplate {
-  std::string name;   // "adult", as the command line says it
-  std::string label;  // "Adult body"
+  std::string name;   // such as "adult", for the command line
+  std::string label;  // such as "Adult body", for the user interface
   std::string about;
 };
 
 const std::vector<RigTemplate>& rig_templates();
 bool is_rig_template(const std::string& name);
 
-// Throws Error for a name that is none of them, and names those there are.
+// Reads a template rig. Throws Error for an unknown name; the message lists the known ones.
 Armature rig_template(const std::string& name);
 
 }  // namespace limber

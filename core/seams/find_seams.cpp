@@ -20,30 +20,35 @@ namespace limber {
 
 namespace {
 
-constexpr double kBandShare = 0.2;     // of the limb's first bone: how far from where limbs meet the cut may lie
-constexpr double kWidestBand = 50;     // mm
-constexpr double kNarrowestBand = 4;   // of the longest voxel edge
-constexpr std::int64_t kGrain = 64;    // bricks a block of a parallel loop
-constexpr std::int64_t kNodes = 4096;  // of a band, likewise
+constexpr double kBandShare =
+    0.2;  // half width of the band (the tissue in which the cut may lie), as a share of the limb's first bone
+constexpr double kWidestBand = 50;     // upper limit on the half width of the band, mm
+constexpr double kNarrowestBand = 4;   // lower limit on the half width of the band, in longest voxel edges
+constexpr std::int64_t kGrain = 64;    // bricks per block of a parallel loop
+constexpr std::int64_t kNodes = 4096;  // voxels of the band per block of a parallel loop
 constexpr int kCostUnit = 1024;
-constexpr double kBridge = 0.5;  // cost of a bridge between two skins: half of theirs, and less towards its middle
+constexpr double kBridge = 0.5;  // cost of cutting a bridge (see is_bridge()) at its border; connective tissue costs 1
 
-// What it costs to cut through a tissue, relative to connective tissue. Skin costs the same: where it is only drawn at
-// the air, the sheet between two limbs goes over into connective tissue, and its middle is meant.
+// Cost of cutting through the tissues of each Layer, relative to connective tissue. Skin costs as much as connective
+// tissue. Where skin is segmented only at the air, the sheet of skin between two limbs continues as connective tissue,
+// and the cut should follow the middle of both.
 constexpr std::array<double, kLayers> kCostOfLayer{1, 3, 6, 12};
 double cost_of(TissueKind kind) { return kCostOfLayer[static_cast<int>(layer_of(kind))]; }
 
 bool is_sheet(TissueKind kind) { return layer_of(kind) == Layer::Sheet; }
 
-// Of a voxel of the band: it is the limb's, it is not, or the cut decides.
+// To which side of the cut a voxel of the band belongs: to the limb, to what the limb touches, or the cut decides
+// (Free).
 enum class Side { Limb, Other, Free };
 
-// The edges of a voxel in a CutGraph: down along x, y, z, then up along z, y, x. Edge 5 - k leads back over edge k.
+// Numbers of a voxel's six edges in a CutGraph: 0, 1, 2 lead to lower x, y, z; 3, 4, 5 to higher z, y, x. Edge 5 - k is
+// the reverse of edge k.
 constexpr int edge_up(int axis) { return 5 - axis; }
 constexpr int axis_of(int edge) { return edge < 3 ? edge : 5 - edge; }
 constexpr std::int32_t kCertain = 1 << 30;
 
-// What labels say of limbs. Only kinds that are found all over the body are named so; "head" of an organ is part of it.
+// Returns the limb in a tissue's name, as in "Muscle, arms"; nothing when there is none. Ignores the names of bones and
+// organs, because "head" there may mean a part of the bone or organ.
 std::optional<LimbName> limb_of_tissue(const Tissue& tissue) {
   if (is_bone(tissue.kind) || tissue.kind == TissueKind::Organ || tissue.kind == TissueKind::Brain) return std::nullopt;
   return limb_named(tissue.name);
@@ -89,7 +94,7 @@ class SeamFinder {
   struct Node {
     glm::ivec3 voxel;
     std::int64_t place;
-    float way;  // mm, from where the limbs meet
+    float way;  // mm, length of the path through tissue to where the limbs meet
   };
 
   struct Border {
@@ -103,11 +108,11 @@ class SeamFinder {
     return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone];
   }
 
-  // Every voxel goes to the bone nearest to it through tissue whose name does not contradict.
+  // Assigns every voxel to the bone nearest to it through tissue, among the bones that the tissue's name allows.
   void spread_bones() {
     bone_ = held_by_;
     std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
-    std::vector<Label> label;  // only where some label names a limb
+    std::vector<Label> label;  // label of each tissue voxel; empty when no label names a limb
     if (std::any_of(named_.begin(), named_.end(), [](const auto& name) { return name.has_value(); }))
       label.resize(tissue_.size());
     TissueFront front(volume_, tissue_);
@@ -128,7 +133,7 @@ class SeamFinder {
         });
   }
 
-  // How the free surface of the flesh of some bones is layered.
+  // Returns the usual depths of tissue layers below the skin at the air, measured on the voxels of the given bones.
   SkinLayers skin_layers(const std::vector<bool>& of_bones) {
     if (!rays_) rays_ = skin_rays(volume_, tissue_, kind_);
     return SkinLayers(*rays_, volume_.grid.spacing,
@@ -143,8 +148,9 @@ class SeamFinder {
 
   TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }
 
-  // Tissue that skin shuts off from every bone lies between the skins of two limbs: a scan that could not part them has
-  // filled the air there. Nothing is a bridge where no skin is.
+  // Finds all tissue that is not a bridge: what is connected to bones without crossing skin. A bridge is tissue that
+  // skin separates from every bone. It lies between the skins of two limbs, where a segmentation that could not
+  // separate the limbs has filled the air. A volume without skin has no bridges.
   void find_bridges() {
     TissueSet flesh(tissue_);
     std::atomic<bool> has_skin = false;
@@ -162,14 +168,16 @@ class SeamFinder {
     return has_skin_ && !inside_.contains(v) && kind_at(v) != TissueKind::Skin;
   }
 
-  // body(place, voxel) for all tissue, on several threads that share no brick.
+  // Calls body(list index, voxel) for all tissue voxels on several threads. Voxels of one brick are visited by one
+  // thread.
   template <class Body>
   void for_bricks(const Body& body) const {
     parallel_for(std::ssize(tissue_.bricks()), kGrain,
                  [&](std::int64_t begin, std::int64_t end) { tissue_.for_each(begin, end, body); });
   }
 
-  // body(direction, voxel there, its place) for the tissue that a voxel hangs together with.
+  // Calls body(direction, neighbour, the neighbour's list index) for each tissue voxel that shares a face with v,
+  // unless a seam cuts the face.
   template <class Body>
   void for_each_joined(const glm::ivec3& v, const Body& body) const {
     for (int direction = 0; direction < 6; ++direction) {
@@ -191,7 +199,8 @@ class SeamFinder {
     return bone_[place] != kSoft && limb.may_touch[bone_[place]];
   }
 
-  // The voxels at which tissue of different bones meets, and of some others; by place.
+  // Lists the voxels that share a face with a voxel of another bone, sorted by list index. Later uses check each of
+  // them again, so the list may contain too many.
   void find_borders() {
     if (limbs_.empty()) return;
     const auto bricks = std::ssize(tissue_.bricks());
@@ -210,7 +219,7 @@ class SeamFinder {
     });
     for (const std::vector<Border>& some : found) borders_.insert(borders_.end(), some.begin(), some.end());
   }
-  // Where the band's voxels changed sides there are others.
+  // Adds the voxels of the band that share a face with a voxel of another bone, now that the cut has changed bones.
   void add_borders() {
     const auto before = std::ssize(borders_);
     for (std::size_t n = 0; n < band_.size(); ++n) {
@@ -238,7 +247,8 @@ class SeamFinder {
     band_.clear();
   }
 
-  // The tissue around the free faces where the limb meets what it may touch.
+  // Finds the band: the tissue near faces at which the limb meets what it may touch, in its free part (limbs.h). The
+  // cut is searched within the band.
   void find_band(const Limb& limb) {
     std::vector<std::int32_t> open;
     for (const auto& [v, place] : borders_) {
@@ -279,7 +289,8 @@ class SeamFinder {
     }
   }
 
-  // Which of the band's voxels hang together, and which hang together with others too.
+  // Stores which voxels of the band are connected, and marks the ends of the band: voxels that are also connected to
+  // tissue outside of it.
   void link_band() {
     std::array<std::int32_t, 6> none;
     none.fill(-1);
@@ -293,8 +304,9 @@ class SeamFinder {
       });
   }
 
-  // Of each voxel of the band that is of a sheet, how many steps lie between it and what is not: largest in the middle.
-  //   is_of_sheet  tells it of a node
+  // Returns for each voxel of the band its depth inside a sheet: the distance to the nearest voxel of the band outside
+  // the sheet, in shortest voxel edges; 0 outside the sheet.
+  //   is_of_sheet  returns whether a voxel of the band is in a sheet
   template <class IsOfSheet>
   std::vector<float> depth_in_sheets(const IsOfSheet& is_of_sheet) const {
     std::vector<float> depth(band_.size(), std::numeric_limits<float>::infinity());
@@ -319,8 +331,9 @@ class SeamFinder {
     return depth;
   }
 
-  // What it costs to cut through each voxel of the band. In a bridge the depth counts by its third power: a bridge is
-  // short, and its middle is meant.
+  // Returns the cost of cutting through each voxel of the band. The cost falls with the depth inside a sheet, so that
+  // the cut follows the sheet's middle. In a bridge it falls with the third power of the depth, because a bridge is
+  // short.
   std::vector<double> costs() const {
     const std::vector<float> in_sheet =
         depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
@@ -333,13 +346,14 @@ class SeamFinder {
     return cost;
   }
 
-  // What it costs that a voxel becomes the surface of the limb, or of what it touches.
+  // Cost of a cut that makes a voxel part of the limb's surface, or of the surface of what the limb touches.
   struct SurfaceCost {
     double of_limb, of_other;
   };
 
-  // Of a surface that lies inward of it: more where fat or muscle lies nearer to it than to free skin. Bone tells
-  // nothing of that: it is near the skin of a hand and deep in a thigh.
+  // Returns the cost of a cut that makes v a surface voxel, where `inward` is the direction into the flesh. The cost is
+  // higher than `own_cost` when fat or muscle lies less deep below this surface than it does below skin at the air.
+  // Bone is ignored, because it lies near the skin in a hand but deep in a thigh.
   SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& of_limb,
                               const SkinLayers& of_other) const {
     const int axis = inward >> 1, reach = std::max(of_limb.reach(axis), of_other.reach(axis));
@@ -359,7 +373,8 @@ class SeamFinder {
     return cost;
   }
 
-  // Bones, tissue whose name tells, and the band's ends stay what they are.
+  // Sets the side of each voxel of the band: fixed for bones, for tissue whose name tells the limb and for the band's
+  // ends, Side::Free for the others.
   void find_sides(const Limb& limb) {
     const auto limb_name =
         limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
@@ -387,7 +402,7 @@ class SeamFinder {
       for (int axis = 0; axis < 3; ++axis) {
         const int up = edge_up(axis), down = 5 - up;
         const std::int32_t m = beside_[n][up];
-        if (m < 0 || (side_[n] != Side::Free && side_[m] != Side::Free)) continue;  // nothing to decide
+        if (m < 0 || (side_[n] != Side::Free && side_[m] != Side::Free)) continue;  // both sides are fixed
         const SurfaceCost here = cost_as_surface(cost[n], band_[n].voxel, 2 * axis, of_limb, of_other);
         const SurfaceCost beyond = cost_as_surface(cost[m], band_[m].voxel, 2 * axis + 1, of_limb, of_other);
         const double unit = kCostUnit * area[axis] / smallest;
@@ -404,8 +419,8 @@ class SeamFinder {
     return min_cut(std::move(graph));
   }
 
-  // What changes sides follows the bone of what is around it there. A fragment of one side that hangs on nothing else
-  // of it goes with the other.
+  // Assigns each voxel that the cut moved to the other side to the bone of a neighbour on that side. A fragment that is
+  // connected to no fixed voxel of its side goes to the other side.
   void take_sides(const Limb& limb, const std::vector<std::uint8_t>& inside) {
     std::vector<bool> settled(band_.size());
     std::vector<std::int32_t> open;
@@ -449,20 +464,20 @@ class SeamFinder {
   const Armature& armature_;
   const std::vector<Limb> limbs_;
   Seams seams_;
-  std::vector<TissueKind> kind_;                // by label
-  std::vector<std::optional<LimbName>> named_;  // by label
+  std::vector<TissueKind> kind_;                // kind of each label
+  std::vector<std::optional<LimbName>> named_;  // limb in the name of each label
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
-  std::vector<std::uint16_t> held_by_, bone_;  // by place
-  std::vector<std::int32_t> node_of_;          // by place, -1 outside the band
+  std::vector<std::uint16_t> held_by_, bone_;  // bone of each tissue voxel; held_by_: only bone tissue
+  std::vector<std::int32_t> node_of_;          // index in band_ of each tissue voxel; -1: not in the band
   std::vector<Node> band_;
-  std::vector<std::array<std::int32_t, 6>> beside_;  // by node of the band and edge; -1 for none
-  std::vector<bool> is_end_;                         // by node of the band
-  std::vector<Side> side_;                           // by node of the band
+  std::vector<std::array<std::int32_t, 6>> beside_;  // neighbour in band_ of each voxel of the band, by edge; -1: none
+  std::vector<bool> is_end_;                         // #band_: connected to tissue outside the band
+  std::vector<Side> side_;                           // #band_
   std::vector<Border> borders_;
   bool has_skin_ = false;
-  TissueSet inside_;                          // bones, and what hangs together with them without skin between
-  std::optional<std::vector<SkinRay>> rays_;  // once they are asked for
+  TissueSet inside_;                          // bones, and the tissue connected to them without crossing skin
+  std::optional<std::vector<SkinRay>> rays_;  // computed at first use
 };
 
 }  // namespace

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the seams of a body: where different limbs touch at rest (hand and thigh, thigh and thigh, arm and chest,
-// finger and finger). Tissue goes to the rig bone nearest to it through the body. Where two limbs meet that way, far
-// from where they spring from each other, the surface between them is the cheapest cut through the tissue around: along
-// skin where there is skin, else through connective tissue and fat in preference to muscle and organs, by the smallest
-// area, and in the middle of a sheet. Both sides of the cut should be layered as free skin of the same limbs is, so
-// skin that is left of only one of the two goes with the fat that it lies on (skin_layers.h). Tissue that skin shuts
-// off from every bone is a bridge between two skins; it is cut in its middle. Labels that name a limb ("Muscle, arms")
-// settle which one they belong to.
+// Finds the seams of a body: the voxel faces at which different limbs touch at rest (hand and thigh, thigh and thigh,
+// arm and chest, finger and finger). Each tissue voxel is assigned to the rig bone nearest to it through tissue. Where
+// two limbs touch, the surface between them is the cheapest cut through the tissue around. The cut is cheap along skin,
+// then through connective tissue, then through fat, and expensive through muscle and organs. Of cuts through the same
+// tissue, one with a small area and in the middle of a sheet is cheapest. On both sides of the cut, fat and muscle
+// should lie as deep as below the skin at the air of these limbs. So skin that is left of only one limb goes to the
+// limb on whose fat it lies (skin_layers.h). Tissue that skin separates from every bone is a bridge between two skins,
+// and is cut in its middle. A label that names a limb ("Muscle, arms") decides to which limb its tissue belongs.
 //
-// Where limbs are grown together by nature there is no seam: along the first part of an arm, a thigh or a finger
-// (kGrownTogether of the bone that it begins with). The bones' roles come from the rig's names (rig/joint_names.h); a
-// rig whose names mean nothing has no seams.
+// There is no seam where a limb naturally is one with the body: along the first part of an arm, a thigh or a finger
+// (the share Limb::grown_together of its first bone). The limbs are found by the names of the rig's bones
+// (rig/joint_names.h); a rig whose names are not recognized has no seams.
 #pragma once
 
 #include "core/base/progress.h"

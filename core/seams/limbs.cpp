@@ -9,13 +9,15 @@ namespace limber {
 
 namespace {
 
-// Shares of the first bone. Armpit and crotch lie a quarter of the way down; the web between fingers half of the way.
+// Shares of the length of a limb's first bone along which the limb is naturally one with the body
+// (Limb::grown_together). Armpit and crotch lie a quarter of the way down the bone, the web between fingers half of the
+// way.
 constexpr double kLimbGrownTogether = 0.3;
 constexpr double kFingerGrownTogether = 0.6;
 
 using Roles = std::vector<std::optional<JointRole>>;
 
-// A bone whose name means nothing belongs to what its parent belongs to.
+// Returns the anatomical role of each bone. A bone whose name is not recognized gets its parent's role.
 Roles roles_of(const Armature& armature) {
   std::vector<std::string> names;
   std::vector<int> parents;
@@ -34,7 +36,7 @@ bool is_digit(BodyPart part) {
          part == BodyPart::Little;
 }
 
-// Beyond the palm.
+// Returns whether a bone with this role lies in a finger or thumb beyond the palm.
 bool is_free_digit(const JointRole& role) {
   return is_digit(role.part) && role.index >= (role.part == BodyPart::Thumb ? 2 : 1);
 }
@@ -81,7 +83,7 @@ Limb arm_or_leg(const Armature& armature, const Roles& roles, LimbName name, Bod
                          [&](const JointRole& role) { return limb_name_of(role) == name && role.side == side; });
   limb.grown_together = kLimbGrownTogether;
   for (size_t b = 0; b < roles.size(); ++b) {
-    // The flesh of hip and buttock is one with the thigh.
+    // A leg may not touch the trunk, because the flesh of hip and buttock is continuous with the thigh.
     const bool is_neighbour = name == LimbName::Legs && roles[b] && limb_name_of(*roles[b]) == LimbName::Trunk;
     limb.may_touch.push_back(roles[b] && !limb.has_bone[b] && !is_neighbour);
   }
@@ -141,8 +143,8 @@ std::optional<LimbName> limb_named(std::string_view tissue_name) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](unsigned char c) { return c == '_' ? ' ' : static_cast<char>(std::tolower(c)); });
   const auto ends_with = [&](std::string_view ending) { return name.ends_with(ending); };
-  // A single word after a comma means the limb; after another word it may be the head of a muscle or the neck of an
-  // organ.
+  // "arm", "head" and other singular words mean a limb only after a comma. Elsewhere they may mean the head of a muscle
+  // or the neck of an organ.
   if (ends_with(" arms") || ends_with(", arm")) return LimbName::Arms;
   if (ends_with(" legs") || ends_with(", leg")) return LimbName::Legs;
   if (ends_with(", trunk") || ends_with(", torso")) return LimbName::Trunk;

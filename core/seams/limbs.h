@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which limbs a rig has, by the roles of its bones, and which limb the name of a tissue means.
+// Determines the limbs of a rig from the anatomical roles of its bones, and the limb that the name of a tissue states.
 #pragma once
 
 #include <optional>
@@ -11,25 +11,28 @@
 
 namespace limber {
 
-// A part of the body that other parts may touch without being one with them.
+// A limb or finger. Other parts of the body may touch it without being connected to it.
 struct Limb {
-  std::vector<bool> has_bone;   // #bones of the rig
-  int root = -1;                // the bone that it begins with, where the rig has it
-  double grown_together = 0;    // share of the root's length along which it is one with its neighbours by nature
-  std::vector<bool> may_touch;  // #bones of the rig: what it can lie against
+  std::vector<bool> has_bone;  // #bones of the rig: true for bones of the limb
+  int root = -1;               // the limb's first bone; -1: not in the rig
+  double grown_together =
+      0;  // share of the root bone's length, from its head, along which the limb is naturally one with the body
+  std::vector<bool> may_touch;  // #bones of the rig: true for bones that the limb can touch
 };
 
-// Arms and legs, then fingers and thumbs. None where the bones' names mean nothing known.
+// Returns the rig's arms and legs, then its thumbs and fingers; none when no bone's name is recognized.
 std::vector<Limb> limbs_of(const Armature& armature);
 
-// Whether a point belongs to the part of the limb that is free by nature, told by the bone of the limb nearest to it.
+// Returns whether a point lies in the free part of the limb: beyond the part of its root bone that is naturally one
+// with the body. Points nearest to another bone of the limb always do.
 bool is_free(const Limb& limb, const Armature& armature, const glm::dvec3& point);
 
 enum class LimbName { Arms, Legs, Trunk, Head };
 
-// Of names like "Muscle, arms" and "Residual tissue of the legs"; none where a name says nothing of it.
+// Returns the limb that a tissue's name states, as in "Muscle, arms" or "Residual tissue of the legs"; nothing when it
+// states none.
 std::optional<LimbName> limb_named(std::string_view tissue_name);
-// #bones; none where a bone's name and its parents' mean nothing known.
+// Returns the limb of each bone; nothing for a bone when neither its name nor any ancestor's is recognized.
 std::vector<std::optional<LimbName>> limb_of_bones(const Armature& armature);
 
 }  // namespace limber

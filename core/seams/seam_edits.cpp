@@ -9,10 +9,10 @@ namespace limber {
 
 namespace {
 
-// In voxels: a blade that lies exactly upon centres of voxels would neither pass between them nor miss them.
+// Offset in voxels by which blades are moved. A blade exactly through voxel centres would lie on neither side of them.
 constexpr glm::dvec3 kAside(1.17e-4, 2.31e-4, 3.43e-4);
 
-// Whether the line from a to b, along one voxel axis, passes a triangle.
+// Returns whether the line segment from a to b, which is parallel to a voxel axis, passes through a triangle.
 bool passes(const glm::dvec3& a, const glm::dvec3& b, const std::array<glm::dvec3, 3>& triangle) {
   const auto volume = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r, const glm::dvec3& s) {
     return glm::dot(glm::cross(q - p, r - p), s - p);

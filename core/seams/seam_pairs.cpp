@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kEnd = 8;  // voxels: as far as the end of a seam takes its name from beside it
+constexpr double kEnd = 8;  // voxels; settle_ends() copies the bones of a face over at most this distance
 
 const char* word_for(BodyPart part) {
   switch (part) {
@@ -42,7 +42,7 @@ const char* word_for(BodyPart part) {
 }
 
 std::string words_for(const JointRole& role) {
-  // The first bone of a finger lies in the palm.
+  // The first bone of a finger (index 0) lies in the palm.
   const bool in_palm = role.index == 0 && role.part >= BodyPart::Index && role.part <= BodyPart::Little;
   const std::string part = in_palm ? "hand" : word_for(role.part);
   return role.side == BodySide::Left ? "left " + part : role.side == BodySide::Right ? "right " + part : part;
@@ -50,10 +50,10 @@ std::string words_for(const JointRole& role) {
 
 struct Face {
   glm::dvec3 middle;
-  int lower, upper;  // bones, -1 for none
+  int lower, upper;  // bones nearest to the two voxels of the face, -1: none
 };
 
-// Whether a seam can lie between the two bones: one belongs to a limb that may touch the other.
+// Returns whether a seam can lie between the face's two bones: whether one belongs to a limb that may touch the other.
 bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   if (face.lower < 0 || face.upper < 0) return false;
   return std::any_of(limbs.begin(), limbs.end(), [&](const Limb& limb) {
@@ -62,8 +62,8 @@ bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   });
 }
 
-// Around the end of a seam the nearest bone of both sides may be of one limb: such faces lie between what those beside
-// them do.
+// Corrects the bones of faces at the ends of seams. There, the bones nearest to both voxels of a face may belong to one
+// limb. Such a face gets the bones of the nearest face between bones that may touch, at most `reach` mm away.
 void settle_ends(std::vector<Face>& faces, const std::vector<Limb>& limbs, double reach) {
   std::vector<Face> settled;
   for (const Face& face : faces)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Between which parts of the body seams lie, for a user to read: "left hand" and "left thigh", 1204 faces.
+// Lists for the user the parts of the body between which seams lie, such as "left hand" and "left thigh", 1204 faces.
 #pragma once
 
 #include <string>
@@ -13,17 +13,17 @@
 namespace limber {
 
 struct SeamPair {
-  std::string first, second;  // parts of the body where the rig's names mean some, else names of bones
+  std::string first, second;  // parts of the body, or names of bones that are not recognized
   std::int64_t faces = 0;
-  glm::dvec3 middle{0};  // world, mm: the face nearest to their mean
+  glm::dvec3 middle{0};  // middle of the face nearest to the faces' mean position, world, mm
 };
 
-// A bone's part of the body, "left hand"; its own name where that means nothing known.
+// Returns for each bone its part of the body, as in "left hand", or its own name when that is not recognized.
 std::vector<std::string> body_parts_of(const Armature& armature);
 
-// By most faces. Each side of a face belongs to the bone nearest to it through tissue, which the way does not leave
-// across a seam.
-//   parts  of the same volume and armature
+// Returns the pairs of body parts that seams separate, those with most faces first. Each of a face's two voxels belongs
+// to the bone nearest to it through tissue, on a path that crosses no seam.
+//   parts  bone parts of the same volume and armature
 std::vector<SeamPair> seam_pairs(const Seams& seams, const LabelVolume& volume, const TissueVoxels& tissue,
                                  const Armature& armature, const BoneParts& parts, Progress& progress = no_progress());
 

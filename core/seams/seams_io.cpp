@@ -11,9 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kSamePlace = 1e-3;  // mm
+// Grids are the same when their corners differ by at most this, mm per voxel of the longest axis.
+constexpr double kSamePlace = 1e-3;
 
-// Of each label of the file, which faces it means.
+// Returns for each label of the file which faces it marks as cut: the sum of 1, 2 and 4 (seams_io.h), which is the
+// label's file value.
 std::vector<int> faces_by_label(const TissueTable& tissues, const Path& path) {
   std::vector<int> faces(65536, 0);
   for (const Tissue& tissue : tissues.tissues) {

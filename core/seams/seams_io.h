@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams to and from files: a label volume on the body's grid whose voxels say which of their faces are cut, the sum of
-// 1 for the face towards higher x, 2 towards higher y, 4 towards higher z (voxel axes). So any program that shows label
-// volumes shows them.
+// Writes seams to files and reads them. The file is a label volume on the body's grid, so that any program that shows
+// label volumes shows seams. The value of a voxel tells which of its faces are cut: it is the sum of 1 for the face
+// towards higher x, 2 towards higher y and 4 towards higher z (voxel axes).
 #pragma once
 
 #include "core/base/file.h"
@@ -13,8 +13,8 @@ namespace limber {
 
 void write_seams(const Seams& seams, const Grid& grid, const Path& path);
 
-// Only faces between two tissue voxels of `volume` count.
-// throws Error for what is no such file, another grid, and values that are no sum of 1, 2 and 4
+// Reads seams; ignores faces that are not between two tissue voxels of `volume`. Throws Error for a file of another
+// kind, for a grid other than the volume's, and for values that are not a sum of 1, 2 and 4.
 Seams read_seams(const Path& path, const LabelVolume& volume, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kDeepest = 30;                  // mm: what lies deeper says nothing of the surface
-constexpr std::int64_t kFewestRays = 200;        // along an axis
-constexpr double kUsual = 0.5, kUnusual = 0.05;  // of the rays
+constexpr double kDeepest = 30;  // length of a ray, mm; tissue deeper than this tells nothing about the surface
+constexpr std::int64_t kFewestRays = 200;        // with fewer rays along an axis, surprise() is 0
+constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of the rays at which surprise() is 0 and 1
 
 }  // namespace
 
@@ -34,12 +34,13 @@ Layer layer_of(TissueKind kind) {
 
 namespace {
 
-// A ray's length along an axis, voxels.
+// Returns the length of rays along an axis, in voxels.
 int steps_along(const glm::dvec3& spacing, int axis) {
   return std::clamp(static_cast<int>(kDeepest / spacing[axis]), 2, int{std::numeric_limits<std::uint16_t>::max()});
 }
 
-//   inward  direction of the ray: 0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
+// Casts a ray inward from a skin voxel. Returns nothing when the ray meets air or never leaves the skin.
+//   inward  direction of the ray, 0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
 std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueKind>& kind, glm::ivec3 voxel,
                             int inward) {
   const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume.grid.spacing, axis);
@@ -58,7 +59,7 @@ std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueK
 
 std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue,
                                const std::vector<TissueKind>& kind) {
-  constexpr std::int64_t kGrain = 64;  // bricks a block of a parallel loop
+  constexpr std::int64_t kGrain = 64;  // bricks per block of a parallel loop
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<std::vector<SkinRay>> found((bricks + kGrain - 1) / kGrain);
   parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How deep fat and muscle lie below free skin: on an arm of 3 mm voxels fat begins one or two voxels below the air,
-// muscle two or three. Where two limbs touch, the surface of each ought to look the same. Muscle right below a cut
-// tells that the cut lies too deep on that side, and skin that lies on the fat of one limb and on the muscle of the
-// other is the skin of the first. So every body says itself whose the tissue between two limbs is.
+// Measures how deep fat and muscle lie below skin at the air. On an arm of 3 mm voxels, for example, fat begins one or
+// two voxels below the air, muscle two or three. Where two limbs touch, the surface of each should have the same
+// layers. When muscle lies right below a cut, the cut is too deep on that side. Skin that lies on the fat of one limb
+// and on the muscle of the other belongs to the first. So the skin at the air of a body tells to which limb the tissue
+// between two limbs belongs.
 //
-// Depths are counted in voxels along an axis, on rays that come from the air and go in through skin.
+// Depths are counted in voxels on rays along a voxel axis, which start at the air and enter the body through skin.
 #pragma once
 
 #include <array>
@@ -17,29 +18,32 @@
 
 namespace limber {
 
-// Tissues by how deep they lie. Sheet: skin and connective tissue; Deep: bone, organs and all that is not flesh.
+// The layers of tissue below the air, by depth. Sheet: skin and connective tissue. Deep: bone, organs and all other
+// kinds below muscle.
 enum class Layer : std::uint8_t { Sheet, Fat, Muscle, Deep };
 constexpr int kLayers = 4;
 
 Layer layer_of(TissueKind kind);
 
-// Where a ray that goes in through skin meets fat, muscle and what is deeper.
+// A ray that enters the body through skin, with the depths at which it first meets fat, muscle and deeper tissue.
 struct SkinRay {
-  std::int64_t place;  // of the skin in the list of tissue voxels
+  std::int64_t place;  // index of the skin voxel in the list of tissue voxels
   std::uint8_t axis;
-  std::array<std::uint16_t, kLayers>
-      first;  // voxels below the air's face; for a layer that is not met, the ray's length
+  // Depth below the face at the air, in voxels, at which the ray first meets each layer or a deeper one; the ray's
+  // length when it meets none.
+  std::array<std::uint16_t, kLayers> first;
 };
 
-// All rays through the skin of a body. One that comes out again or never leaves the skin says nothing and is left out.
-//   kind  by label
+// Returns one ray for each skin face at the air of a body. Rays that reach air again or never leave the skin are left
+// out.
+//   kind  tissue kind of each label
 std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue,
                                const std::vector<TissueKind>& kind);
 
 class SkinLayers {
  public:
-  //   rays     of one body, whose voxels have this spacing, mm
-  //   is_of    (place) -> whether the skin there counts
+  // Counts the rays for whose skin voxel (index in the tissue list) `is_of` returns true.
+  //   spacing  voxel size of the body, mm
   template <class IsOf>
   SkinLayers(const std::vector<SkinRay>& rays, const glm::dvec3& spacing, const IsOf& is_of) : SkinLayers(spacing) {
     for (const SkinRay& ray : rays)
@@ -47,12 +51,13 @@ class SkinLayers {
     finish();
   }
 
-  // How unusual it is that a layer or what lies deeper is met within `steps` voxels along an axis below the air's face:
-  // 0 where half of the rays meet it there, 1 where a twentieth or fewer do. 0 where too few rays were counted to tell.
+  // Returns how unusual it is, [0, 1], that `layer` or a deeper one lies at most `steps` voxels below the air on a ray
+  // along an axis. It is 0 when half or more of the counted rays meet the layer there, and 1 when a twentieth or fewer
+  // do. Returns 0 when too few rays were counted.
   double surprise(int axis, Layer layer, int steps) const {
     return steps < reach_[axis] ? surprise_[axis][static_cast<int>(layer)][steps] : 0;
   }
-  // Voxels along an axis from which on nothing surprises.
+  // Returns the depth along an axis, in voxels, from which on surprise() is 0 for every layer.
   int reach(int axis) const { return reach_[axis]; }
 
  private:
@@ -62,7 +67,8 @@ class SkinLayers {
 
   std::array<int, 3> steps_{}, reach_{};
   std::array<std::int64_t, 3> rays_{};
-  std::array<std::array<std::vector<std::int64_t>, kLayers>, 3> met_;  // by axis, layer and depth
+  // Number of rays, by axis, layer and the depth at which they first meet the layer.
+  std::array<std::array<std::vector<std::int64_t>, kLayers>, 3> met_;
   std::array<std::array<std::vector<double>, kLayers>, 3> surprise_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a brush fades from its centre (1) to its rim (0).
+// The falloff curve of a brush: its strength from the centre (1) to the rim (0), stored as a table.
 #pragma once
 
 #include <array>
@@ -15,19 +15,19 @@ enum class FalloffShape { Smooth, Sphere, Root, Sharp, Linear, Constant };
 class Falloff {
  public:
   Falloff(FalloffShape shape = FalloffShape::Smooth);
-  // A curve through points (distance as a share of the radius, cover), both [0, 1], distances growing; smooth between
-  // points without overshooting [Fritsch & Carlson 1980], level before the first and after the last. At least one
-  // point.
+  // Makes a curve through points (distance as a share of the brush radius, strength), both [0, 1], with ascending
+  // distances. It is smooth between points without overshooting [Fritsch & Carlson 1980]. It is constant before the
+  // first point and after the last. Needs at least one point.
   explicit Falloff(std::span<const glm::dvec2> points);
 
-  // share [0, 1] of the radius
+  //   share  distance from the centre as a share of the radius, [0, 1]
   float operator()(float share) const {
     const float at = share * kSteps;
     const int step = at < kSteps - 1 ? static_cast<int>(at) : kSteps - 1;
     return table_[step] + (at - static_cast<float>(step)) * (table_[step + 1] - table_[step]);
   }
-  // Of many distances at once: strength times the falloff of distance * per_radius (1 and more: the rim), in 1/65535,
-  // rounded.
+  // Computes the strength of the brush at many distances: `strength` times the falloff at distance * per_radius (1 and
+  // more: the rim), rounded to 1/65535.
   //   distance, covers  #count each
   void covers(const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) const;
   bool operator==(const Falloff&) const = default;

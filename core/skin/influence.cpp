@@ -15,7 +15,8 @@ Influence rigid_influence(int bone) {
 }
 
 Influence quantize(const std::vector<std::pair<int, double>>& weights) {
-  // The best four by weight; of equal weights the lower bone, so that the result does not depend on the order given.
+  // Selects the four largest weights. Of equal weights it takes the one of the bone with the lower index, so that the
+  // order of the input does not matter.
   std::array<std::pair<int, double>, 4> best;
   int count = 0;
   for (const auto& candidate : weights) {

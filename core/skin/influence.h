@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which bones a tissue voxel follows, and by how much: up to four, in whole numbers of 1/65535 that sum to exactly
-// 65535.
+// The influence of bones on a tissue voxel: up to four bones with their weights, whole numbers in 1/65535 that sum to
+// exactly 65535.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace limber {
 constexpr int kFullWeight = 65535;
 
 struct Influence {
-  std::array<std::uint16_t, 4> bone{};    // by falling weight; 0 where the weight is 0
-  std::array<std::uint16_t, 4> weight{};  // in 1/65535, sum exactly kFullWeight
+  std::array<std::uint16_t, 4> bone{};    // bone indices in descending order of weight; 0 where the weight is 0
+  std::array<std::uint16_t, 4> weight{};  // in 1/65535; the sum is exactly kFullWeight
 
   bool operator==(const Influence&) const = default;
   double of(int b) const {
@@ -26,8 +26,8 @@ struct Influence {
 
 Influence rigid_influence(int bone);
 
-// The four largest of `weights` (any length, not negative, need not sum to one), rounded so that the sum is exact.
-// A sum of zero is a mistake of the caller.
+// Returns the four largest of `weights`, rounded so that their sum is exactly kFullWeight. The input has any number of
+// weights with any sum. None may be negative, and a sum of zero throws std::logic_error.
 Influence quantize(const std::vector<std::pair<int, double>>& weights);
 
 }  // namespace limber

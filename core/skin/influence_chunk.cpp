@@ -11,7 +11,7 @@ namespace {
 
 using Bones = std::array<std::uint16_t, 4>;
 
-// The sets of bones that occur, in the order of their first voxels.
+// Collects the different sets of bones of a brick, numbered in the order in which they first occur.
 class BoneSets {
  public:
   int place_of(const Bones& bones) {
@@ -54,7 +54,7 @@ InfluenceChunk::InfluenceChunk(std::span<const Influence> influences)
   std::memcpy(bytes.get(), sets.numbers().data(), records_);
   std::uint8_t* at = bytes.get() + records_;
   for (std::size_t i = 0; i < influences.size(); ++i) {
-    std::memcpy(at, &set[i], set_bytes_);  // little end first
+    std::memcpy(at, &set[i], set_bytes_);  // the lowest byte of the index comes first
     at += set_bytes_;
     std::memcpy(at, &influences[i].weight[1], 2 * std::size_t{weights_});
     at += 2 * weights_;
@@ -68,7 +68,8 @@ InfluenceChunk::InfluenceChunk(std::size_t count, const Influence& all)
 
 namespace {
 
-// Records of one shape.
+// Unpacks the records of voxels. All records have the same number of bytes for the index of the bone set, and the same
+// number of weights.
 template <int kSetBytes, int kWeights>
 struct Records {
   const std::uint8_t *sets, *first;
@@ -76,10 +77,12 @@ struct Records {
     const std::uint8_t* record = first + place * (kSetBytes + 2 * kWeights);
     std::uint16_t set = 0;
     std::memcpy(&set, record, kSetBytes);
-    // Two numbers written whole: written in parts they would be waited for where they are read whole.
+    // Writes each array of four numbers as one 64 bit value: if the numbers were written one by one, a following 64 bit
+    // read would stall.
     std::uint64_t bones, others;
     std::memcpy(&bones, sets + set * sizeof(Bones), sizeof bones);
-    std::memcpy(&others, record + kSetBytes, sizeof others);  // what lies behind is masked
+    // This may read beyond the end of the record. The next line masks what does not belong to it.
+    std::memcpy(&others, record + kSetBytes, sizeof others);
     others &= (std::uint64_t{1} << (16 * kWeights)) - 1;
     const std::uint64_t weights =
         (kFullWeight - ((others & 0xffff) + (others >> 16 & 0xffff) + (others >> 32))) | others << 16;
@@ -88,7 +91,8 @@ struct Records {
   }
 };
 
-// body(records) of the shape there is; false where it is a rare one.
+// Calls body(records) with the Records type that fits the layout. Returns false for a rare layout that has no such
+// type.
 template <class Body>
 bool with_records(int set_bytes, int weights, const std::uint8_t* sets, const std::uint8_t* first, const Body& body) {
   switch (set_bytes * 4 + weights) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The influences of one brick, packed and never changed. In a brick few sets of bones occur, and most voxels follow one
-// or two bones: each set is held once, a voxel holds which set is its own and the weights but the first, which is what
-// the others leave of one. That is 0 to 8 bytes a voxel where an Influence has 16. Nothing is lost.
+// The influences of the voxels of one brick (8^3 voxels), packed and immutable. A brick has few different sets of
+// bones, and most voxels follow one or two bones. So each set of bones is stored once. A voxel stores the index of its
+// set and all weights but the first; the first is 1 minus the others. That takes 0 to 8 bytes per voxel instead of 16,
+// without loss.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +22,15 @@ namespace limber {
 class InfluenceChunk {
  public:
   InfluenceChunk() = default;
-  // Each sum is exactly kFullWeight: std::logic_error otherwise.
+  // Throws std::logic_error if a sum of weights is not exactly kFullWeight.
   explicit InfluenceChunk(std::span<const Influence> influences);
   InfluenceChunk(std::size_t count, const Influence& all);
 
   std::size_t size() const { return count_; }
   bool empty() const { return count_ == 0; }
   Influence operator[](std::size_t i) const {
-    // Without jumps, and what lies behind a record (kBehind) is read and masked.
+    // This code has no branches: it reads beyond the end of the record (kBehind makes room for it), and masks the bytes
+    // that do not belong to the record.
     const std::uint8_t* at = bytes_.get() + records_ + i * stride_;
     const std::size_t set = read<std::uint16_t>(at) & ((1u << (8 * set_bytes_)) - 1);
     const std::uint64_t others = read<std::uint64_t>(at + set_bytes_) & ((std::uint64_t{1} << (16 * weights_)) - 1);
@@ -38,7 +40,7 @@ class InfluenceChunk {
   }
   Influence front() const { return (*this)[0]; }
 
-  // One after the other, as they are read.
+  // An iterator that unpacks one influence at a time.
   class Iterator {
    public:
     using iterator_category = std::input_iterator_tag;
@@ -67,9 +69,9 @@ class InfluenceChunk {
   Iterator begin() const { return {this, 0}; }
   Iterator end() const { return {this, count_}; }
 
-  // Writes size() influences.
+  // Unpacks all size() influences.
   void unpack(Influence* influences) const;
-  // Those at `places`.
+  // Unpacks the influences at the indices `places` of the brick.
   void unpack(std::span<const std::uint16_t> places, Influence* influences) const;
   operator std::vector<Influence>() const {
     std::vector<Influence> influences(count_);
@@ -94,20 +96,22 @@ class InfluenceChunk {
     return number;
   }
 
-  std::unique_ptr<const std::uint8_t[]> bytes_;  // the sets, then a record a voxel
-  std::uint32_t records_ = 0;                    // where they begin
+  // The sets of bones, then one record per voxel, then kBehind unused bytes.
+  std::unique_ptr<const std::uint8_t[]> bytes_;
+  std::uint32_t records_ = 0;  // byte offset of the first record
   std::uint16_t count_ = 0;
-  std::uint8_t set_bytes_ = 0, weights_ = 0, stride_ = 0;  // of a record
+  // Layout of a record: number of bytes of the set's index, number of weights, and length in bytes.
+  std::uint8_t set_bytes_ = 0, weights_ = 0, stride_ = 0;
 };
 
-// A brick's influences, packed or not. What is looked at must outlive the view.
+// A view of a brick's influences, which may be packed or not. The influences must outlive the view.
 class InfluenceView {
  public:
   InfluenceView() = default;
   InfluenceView(const InfluenceChunk& packed) : packed_(&packed) {}
   InfluenceView(const std::vector<Influence>& plain) : plain_(plain.data()) {}
   Influence operator[](std::size_t i) const { return plain_ ? plain_[i] : (*packed_)[i]; }
-  // The whole brick, of `count`.
+  // Unpacks the whole brick, which holds `count` influences.
   void unpack(std::size_t count, Influence* influences) const {
     if (plain_) std::copy_n(plain_, count, influences);
     else packed_->unpack(influences);

@@ -9,8 +9,8 @@ namespace {
 
 using Target = std::array<std::pair<int, double>, 8>;
 
-// The computed weights of the bones, and of the others what they had, scaled to the rest. Unused entries have no
-// weight.
+// Returns the weights of one voxel after the merge. The chosen bones get their computed weights. The other bones keep
+// their old weights, scaled to the rest, or get computed ones if they had none. Unused entries have weight 0.
 Target target_of(const Influence& before, const Influence& computed, const BoneSet& chosen) {
   Target target{};
   int count = 0;

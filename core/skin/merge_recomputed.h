@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights that were computed anew, taken over in part: for some bones, in a region, under locks. What is not asked for
-// stays as it was painted, as far as sums allow.
+// Merges newly computed weights into existing ones, only for some bones or only in a region. All other weights stay as
+// they were painted, as far as the sums allow.
 #pragma once
 
 #include "core/skin/weight_edits.h"
 
 namespace limber {
 
-//   computed  of the same body and bones
-//   bones     get their computed weight; the others share what that leaves as they did before (where they had nothing,
-//   as
-//             computed). Empty: all bones.
-// A locked bone keeps its weight; the others share what it leaves.
+// Returns `weights` with the computed weights of `bones` (empty: of all bones). The other bones share the rest in
+// proportion to their old weights, or to their computed weights where they had none. A locked bone keeps its weight.
+//   computed  weights of the same body and bones
 WeightEdit recomputed(const WeightedBody& body, const SkinWeights& weights, const SkinWeights& computed,
                       const std::vector<int>& bones = {}, const EditScope& scope = {.rigid_bone_tissue = false});
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weights of voxels beside each other: a brick and the six around it, looked at without searching for each voxel.
+// The weights of a brick (8^3 voxels) and of the voxels that touch it, unpacked into one array, so that the neighbours
+// of a voxel are found without a search.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@ namespace limber {
 
 class WeightsAround {
  public:
-  // chunk(brick) is an InfluenceView.
+  //   chunk  a function (brick index) -> InfluenceView of this brick
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
     const TissueVoxels::Brick& own = tissue.bricks()[brick];
@@ -33,7 +34,7 @@ class WeightsAround {
       if (corner[axis] < 0 || corner[axis] >= tissue.grid_size()[axis]) continue;
       const int beside = tissue.brick_at(corner);
       if (beside < 0) continue;
-      // Of its voxels those that touch.
+      // Of the neighbouring brick only the layer of voxels that touches this brick is needed.
       const int layer = d & 1 ? 0 : kBrick - 1;
       Mask touching{};
       for (int z = 0; z < kBrick; ++z)
@@ -45,8 +46,9 @@ class WeightsAround {
     }
   }
 
-  // Those of the up to six neighbours through faces that are tissue, and not beyond a seam.    cell  in the brick, [0,
-  // 7]
+  // Finds the influences of the face neighbours (up to six) of a voxel that are tissue and not on the other side of a
+  // seam. Returns their number.
+  //   cell  the voxel's position in the brick, [0, 7] along each axis
   int beside(const glm::ivec3& cell, std::array<Influence, 6>& found) const {
     const Influence* here = &around_[place(cell)];
     int count = 0, direction = 0;
@@ -66,10 +68,10 @@ class WeightsAround {
   static int place(const glm::ivec3& cell) { return cell.x + 1 + kSide * (cell.y + 1 + kSide * (cell.z + 1)); }
   static bool is_tissue(const Influence& influence) { return std::bit_cast<std::uint64_t>(influence.weight) != 0; }
 
-  // The voxels in `wanted`, each at its cell and `shift`.
+  // Copies the influences of the voxels in `wanted`. Their positions in the array are shifted by `shift` voxels.
   void copy(const TissueVoxels::Brick& brick, const InfluenceView& influences, const glm::ivec3& shift,
             const Mask& wanted) {
-    std::size_t before = 0;  // tissue voxels of the slices below
+    std::size_t before = 0;  // number of tissue voxels in the slices below
     for (int z = 0; z < kBrick; ++z) {
       const std::uint64_t all = brick.mask[z];
       const bool whole = wanted[z] == all;
@@ -84,12 +86,13 @@ class WeightsAround {
     }
   }
 
-  glm::ivec3 corner_{0};                                   // of the brick
-  const Seams* seams_ = nullptr;                           // where one is near
-  std::array<Influence, kSide * kSide * kSide> around_{};  // no weights where there is no tissue
+  glm::ivec3 corner_{0};          // lowest corner of the brick, in voxels
+  const Seams* seams_ = nullptr;  // null: no seam is near this brick
+  // Influences of the brick and its neighbours; all weights are 0 where there is no tissue.
+  std::array<Influence, kSide * kSide * kSide> around_{};
 };
 
-// Weights of several voxels added up, each times a factor.
+// A weighted sum of the influences of several voxels, as pairs of bone and weight.
 using WeightSum = std::vector<std::pair<int, double>>;
 
 inline void add_to(WeightSum& sum, const Influence& influence, double factor) {

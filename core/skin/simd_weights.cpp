@@ -11,22 +11,22 @@ namespace limber {
 
 namespace {
 
-// Written once for four and for eight voxels at a time; where the processor has AVX2 eight are taken. Every helper is
-// inlined, so that it is compiled for the processor that its caller is compiled for.
+// The code below is written once for four and for eight voxels at a time. It processes eight if the processor has AVX2.
+// Every helper is inlined, so that it is compiled for the same processor as its caller.
 #define LIMBER_INLINE [[gnu::always_inline]] inline
-#pragma GCC diagnostic ignored "-Wpsabi"  // no vector is handed to a function that is called
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are only passed to inlined functions
 
 static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::little);
 
 struct Four {
   using Lanes = std::int32_t __attribute__((vector_size(16)));
   using Numbers = double __attribute__((vector_size(32)));
-  // A voxel a row.
+  // Loads four voxels, one into each row.
   LIMBER_INLINE static void load(const Influence* from, Lanes* row) { std::memcpy(row, from, 4 * sizeof *row); }
   LIMBER_INLINE static void store(const Lanes* row, Influence* to) {
     std::memcpy(static_cast<void*>(to), row, 4 * sizeof *row);
   }
-  // Columns from rows.
+  // Transposes a matrix of 4 x 4 numbers.
   LIMBER_INLINE static void transpose(Lanes* row) {
     const Lanes a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
                 b = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
@@ -42,7 +42,7 @@ struct Four {
 struct Eight {
   using Lanes = std::int32_t __attribute__((vector_size(32)));
   using Numbers = double __attribute__((vector_size(64)));
-  // Two voxels a row, four apart, so that each half is transposed by itself.
+  // Loads two voxels into each row: voxels i and i + 4 into row i. Each half can then be transposed by itself.
   LIMBER_INLINE static void load(const Influence* from, Lanes* row) {
     for (int i = 0; i < 4; ++i) {
       Four::Lanes low, high;
@@ -72,11 +72,13 @@ struct Eight {
 };
 
 constexpr std::int32_t kLow = 0xffff, kHigh = ~kLow;
-// Keys less 2^31, since machines compare numbers with a sign.
+// Keys have 2^31 subtracted, since vector comparisons are signed.
 constexpr std::int32_t kBias = std::numeric_limits<std::int32_t>::min(),
-                       kLeast = 0x10000 ^ kBias;  // of those that have a weight
+                       kLeast = 0x10000 ^ kBias;  // smallest key of an influence whose weight is not 0
 
-// A voxel's keys: a weight above what its bone leaves of 65535. In falling order they are its influences in theirs.
+// The influences of several voxels, as four keys for each voxel. A key has the weight in its upper 16 bits and 65535 -
+// bone in its lower 16 bits. Descending keys therefore have the order of influences: by descending weight, then by
+// bone.
 template <class Width>
 struct Voxels {
   using Lanes = typename Width::Lanes;
@@ -86,7 +88,7 @@ struct Voxels {
   LIMBER_INLINE explicit Voxels(const Influence* influences) {
     Lanes row[4];
     Width::load(influences, row);
-    Width::transpose(row);  // two bones or two weights in each
+    Width::transpose(row);  // now each row contains two bones, or two weights, of every voxel
     key[0] = (row[2] << 16 | (~row[0] & kLow)) ^ kBias;
     key[1] = ((row[2] & kHigh) | ((~row[0] >> 16) & kLow)) ^ kBias;
     key[2] = (row[3] << 16 | (~row[1] & kLow)) ^ kBias;
@@ -94,7 +96,7 @@ struct Voxels {
   }
 
   LIMBER_INLINE void write(Influence* influences) const {
-    // Bone 0 where there is no weight.
+    // Sets the bone to 0 where the weight is 0.
     Lanes k[4];
     for (int i = 0; i < 4; ++i) k[i] = (key[i] ^ kBias ^ kLow) & (key[i] >= kLeast);
     Lanes row[4] = {(k[0] & kLow) | k[1] << 16, (k[2] & kLow) | k[3] << 16, ((k[0] >> 16) & kLow) | (k[1] & kHigh),
@@ -104,7 +106,7 @@ struct Voxels {
   }
 
   LIMBER_INLINE Lanes weight(int i) const { return ((key[i] ^ kBias) >> 16) & kLow; }
-  // All ones where it is of this bone and has a weight.
+  // Returns, for each voxel, all bits set if influence i belongs to this bone and its weight is not 0; else 0.
   LIMBER_INLINE Lanes is_of(int i, std::int32_t bone_key) const {
     return ((key[i] & kLow) == bone_key) & (key[i] >= kLeast);
   }
@@ -134,24 +136,26 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   voxels.sort();
   Lanes now;
   for (std::size_t i = 0; i < sizeof(Lanes) / 4; ++i) now[i] = weights[i];
-  Lanes own[4], rest[4], had{}, found{};  // all ones where the bone stands; the weights to scale
+  Lanes own[4], rest[4], had{}, found{};  // own: all bits set at the painted bone; rest: weights of the others
   for (int i = 0; i < 4; ++i) {
     own[i] = voxels.is_of(i, bone_key);
     found |= own[i];
     had |= voxels.weight(i) & own[i];
   }
   const Lanes same = had == now;
-  own[3] |= ~found;  // of four others the smallest makes room
+  own[3] |= ~found;  // a bone that the voxel does not have replaces the one with the smallest weight
   for (int i = 0; i < 4; ++i) rest[i] = voxels.weight(i) & ~own[i];
   const Lanes others = kFullWeight - now, sum = rest[0] + rest[1] + rest[2] + rest[3];
   const Numbers factor = __builtin_convertvector(others, Numbers) / __builtin_convertvector(sum - (sum == 0), Numbers);
-  // The largest takes what the rounding of the others leaves, which is never less than nothing: they are two at most.
+  // The largest of the other weights takes the remainder of rounding. It is never negative, since at most two other
+  // weights are rounded.
   Lanes made[4] = {Lanes{}, scaled<Width>(rest[1] & ~own[0], factor), scaled<Width>(rest[2], factor),
                    scaled<Width>(rest[3], factor)};
   const Lanes left = others - made[1] - made[2] - made[3];
   made[0] = left & ~own[0];
   made[1] |= left & own[0];
-  // A bone that had everything is the first, and its heir the second.
+  // In a voxel where the bone had all the weight, the bone is the first influence. Its fallback bone becomes the
+  // second.
   const Lanes nobody = sum == 0;
   voxels.key[1] = (voxels.key[1] & ~nobody) | (heir_key & nobody);
   for (int i = 0; i < 4; ++i) {
@@ -208,7 +212,7 @@ std::int32_t key_of_bone(int bone) { return kLow - bone; }
 
 void check_groups(std::size_t influences, std::size_t weights) {
   if (influences != weights || influences % kWeightLanes != 0)
-    throw std::logic_error("weight_lanes: no whole number of groups");
+    throw std::logic_error("simd_weights: no whole number of groups");
 }
 
 }  // namespace

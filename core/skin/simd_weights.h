@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One bone's weight set in many voxels at once: what WeightRules::set makes of one after the other where nothing is
-// locked, to the bit, without jumps, four or eight voxels together, as the processor can.
+// Sets one bone's weight in many voxels at once. The result for each voxel is bit for bit that of WeightRules::set
+// without locked bones. This code has no branches, and processes four or eight voxels at a time, as the processor
+// allows.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +11,16 @@
 
 namespace limber {
 
-constexpr int kWeightLanes = 8;  // sizes are whole multiples of this
+constexpr int kWeightLanes = 8;  // the number of voxels must be a multiple of this
 
-enum class LaneWidth { Widest, Four };  // the same comes out
+enum class LaneWidth { Widest, Four };  // both give the same result
 
-// What `bone` has in each.
+// Writes the weight of `bone` in each voxel to `weights`.
 void weights_of(std::span<const Influence> influences, int bone, std::span<std::uint16_t> weights,
                 LaneWidth width = LaneWidth::Widest);
 
-// In each the weight of `bone` becomes what is asked for; the others make room in proportion.
-//   heir  gets what the bone leaves where it had everything
+// Sets the weight of `bone` in each voxel. The other bones make room in proportion to their weights.
+//   fallback_bone  gets the rest in voxels in which `bone` had all the weight
 void set_weights(std::span<Influence> influences, int bone, int fallback_bone, std::span<const std::uint16_t> weights,
                  LaneWidth width = LaneWidth::Widest);
 

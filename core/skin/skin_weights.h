@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How tissue follows the bones: up to four bones and weights for every tissue voxel, in the brick order of
-// TissueVoxels. Weights are whole numbers of 1/65535 and sum to exactly 65535, always.
+// The skin weights of a body: up to four bones and weights for every tissue voxel, in the brick order of TissueVoxels.
+// Weights are whole numbers in 1/65535 and always sum to exactly 65535.
 //
-// The influences are stored brick by brick in shared, packed, immutable chunks, so that a copy costs one pointer a
-// brick and an edit clones only the bricks it touches.
+// The influences are stored brick by brick (8^3 voxels) in shared, packed, immutable chunks. A copy of the weights
+// therefore costs one pointer per brick, and an edit clones only the bricks that it touches.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +19,28 @@ namespace limber {
 
 class SkinWeights {
  public:
-  using Chunk = InfluenceChunk;               // one brick's, in brick order
-  using Influences = std::vector<Influence>;  // the same to be worked on
+  using Chunk = InfluenceChunk;               // the influences of one brick, in brick order
+  using Influences = std::vector<Influence>;  // the influences of one brick, unpacked for editing
 
   SkinWeights() = default;
-  // Every tissue voxel of `tissue` on bone 0.
+  // Makes weights in which every tissue voxel follows bone 0.
   SkinWeights(std::vector<std::string> bones, const TissueVoxels& tissue);
-  // Shares the chunks. Throws std::logic_error if one is null.
+  // Makes weights that share these chunks. Throws std::logic_error if a chunk is null.
   SkinWeights(std::vector<std::string> bones, std::vector<std::shared_ptr<const Chunk>> chunks);
 
   const std::vector<std::string>& bones() const { return bones_; }
   std::int64_t size() const { return size_; }
 
-  // `brick` as in TissueVoxels::bricks().
+  //   brick  index in TissueVoxels::bricks()
   const Chunk& chunk(std::int64_t brick) const { return *chunks_[brick]; }
-  // Copies of weights share the chunks that are equal in both, unless they were set.
+  // Copies of weights share a chunk until it is replaced in one of them, so equal pointers mean equal weights.
   const std::shared_ptr<const Chunk>& shared_chunk(std::int64_t brick) const { return chunks_[brick]; }
   std::int64_t chunk_count() const { return std::ssize(chunks_); }
-  // Leaves the chunk of copies as it is. Throws std::logic_error if the length differs or a sum is not exact.
+  // Replaces a brick's chunk; copies of these weights keep theirs. Throws std::logic_error if the number of influences
+  // differs or a sum of weights is not exactly kFullWeight.
   void set_chunk(std::int64_t brick, std::span<const Influence> influences);
-  // Shares the chunk that other weights of the same bones have there. Throws std::logic_error if its length differs.
+  // Makes a brick share the chunk that other weights of the same bones have for it. Throws std::logic_error if the
+  // number of influences differs.
   void share_chunk(std::int64_t brick, const SkinWeights& from);
 
   bool operator==(const SkinWeights&) const;

@@ -8,10 +8,14 @@ namespace limber {
 
 namespace {
 
-constexpr double kCell = 0.75;       // of the width: cells are no larger
-constexpr double kAtOnce = 0.5;      // of what a full cell holds, that one step moves: more would swing to and fro
-constexpr float kMostAtOnce = 0.9f;  // of what a fragment of a cell holds
-constexpr float kNothing = 1e-5f;    // of a voxel's weight
+constexpr double kCell = 0.75;  // largest edge of a cell (a block of voxels), as a share of the width of the spread
+// Share of a cell's weights that one step exchanges with its neighbours, for a cell full of tissue. A larger share
+// would oscillate.
+constexpr double kAtOnce = 0.5;
+// Largest share of a cell's weights that one step exchanges, for a cell that is only partly tissue.
+constexpr float kMostAtOnce = 0.9f;
+// Smallest weight that is kept, as a share of a voxel's full weight.
+constexpr float kNothing = 1e-5f;
 
 glm::ivec3 voxel_in_brick(int cell) { return {cell & 7, cell >> 3 & 7, cell >> 6}; }
 int cell_in_brick(const glm::ivec3& v) { return v.x + 8 * v.y + 64 * v.z; }
@@ -36,7 +40,7 @@ void SmoothWeights::spread(const std::vector<int>& bricks, double width,
   take_steps(width);
 }
 
-// Powers of two, so that cells never lie in two bricks.
+// Chooses for each axis the cell size in voxels. It is a power of two, so that no cell lies in two bricks.
 void SmoothWeights::choose_cells(double width) {
   for (int axis = 0; axis < 3; ++axis) {
     edge_[axis] = 1;
@@ -59,7 +63,7 @@ void SmoothWeights::find_cells(const std::vector<int>& bricks) {
   }
 }
 
-// What hangs together with a voxel within its block of `edge_` voxels.
+// Marks as one cell all voxels that are connected to `voxel` within its block of `edge_` voxels.
 void SmoothWeights::flood(const glm::ivec3& voxel, const TissueVoxels::Brick& brick, std::int32_t* cell_of,
                           std::int32_t cell) {
   const glm::ivec3 low = voxel / edge_ * edge_, high = low + edge_ - 1;
@@ -84,12 +88,12 @@ void SmoothWeights::flood(const glm::ivec3& voxel, const TissueVoxels::Brick& br
   }
 }
 
-// The mean over each cell.
+// Computes the mean weights of each cell.
 void SmoothWeights::sum_weights(const std::vector<int>& bricks, const std::function<InfluenceView(int)>& weights) {
   std::vector<Influence> all;
   std::vector<std::int32_t> cells;
   std::array<Influence, kVoxels> influences;
-  std::vector<int> place_of;  // by bone, in bones_
+  std::vector<int> place_of;  // for each bone: its index in bones_
   bones_.clear();
   for (std::size_t slot = 0; slot < bricks.size(); ++slot) {
     const auto count = static_cast<std::size_t>(tissue_.bricks()[bricks[slot]].count());
@@ -174,7 +178,7 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
 
 void SmoothWeights::take_steps(double width) {
   const glm::dvec3 edge = glm::dvec3(edge_) * spacing_;
-  // Means over cells and the straight lines between them spread weights, too.
+  // Averaging over cells and interpolating between them spread the weights too, so the steps have to spread them less.
   glm::dvec3 spread_by_cells(0);
   for (int axis = 0; axis < 3; ++axis)
     if (edge_[axis] > 1) spread_by_cells[axis] = edge[axis] * edge[axis] / 4;
@@ -214,9 +218,9 @@ void SmoothWeights::take_steps(double width) {
   }
 }
 
-// The cells whose middles are the corners of the box around a place in a cell; where there is none, the nearest that
-// is.
-//   towards  0 or 1 along each axis: on which side of the cell's middle
+// Returns the eight cells whose centres surround a point in `cell`. A missing cell is replaced by the nearest that
+// exists.
+//   towards  0 or 1 along each axis: the side of the cell's centre on which the point lies
 std::array<std::int32_t, 8> SmoothWeights::corners_around(std::int32_t cell, const glm::ivec3& towards) const {
   std::array<std::int32_t, 8> corner;
   corner[0] = cell;
@@ -245,7 +249,7 @@ void SmoothWeights::at(int brick, int cell, WeightSum& sum) const {
     for (std::size_t b = 0; b < bones; ++b) add(b, weight_[own * bones + b]);
     return;
   }
-  // Where in its block, from the middle, in blocks.
+  // Offset of the voxel from the centre of its cell, in cells.
   const glm::ivec3 in = voxel_in_brick(cell) & (edge_ - 1);
   const glm::vec3 off = (glm::vec3(in) + 0.5f) / glm::vec3(edge_) - 0.5f, share = glm::abs(off);
   const auto corner = corners_around(own, {off.x > 0, off.y > 0, off.z > 0});

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weights around a brush as they would be had they spread through the tissue like heat. How far is a width in
-// millimetres, so it looks the same at any spacing of voxels. Weights spread through the faces of tissue voxels, not
-// through air, and not across seams.
+// Smooths the weights around a brush by spreading them through the tissue like heat. The width of the spread is in
+// millimetres, so the result looks the same at any voxel spacing. Weights spread through the faces of tissue voxels,
+// not through air, and not across seams.
 //
-// Tissue is taken in cells of up to 8^3 voxels that are somewhat smaller than the width: each holds the mean weights of
-// voxels that hang together. Explicit steps of the heat equation spread them from cell to cell; between the middles of
-// cells weights are linear. So a dab costs about as much at 1 mm as at 2 mm.
+// The tissue is divided into cells of up to 8^3 voxels, somewhat smaller than the width. A cell has the mean weights of
+// connected voxels. Explicit steps of the heat equation spread the weights from cell to cell. Weights are then
+// interpolated linearly between the centres of cells. As a result, a dab costs about as much at 1 mm as at 2 mm.
 #pragma once
 
 #include <array>
@@ -18,22 +18,23 @@ namespace limber {
 
 class SmoothWeights {
  public:
-  // The reference is kept.
-  //   spacing  mm of a voxel along each axis
+  //   tissue   must outlive this object
+  //   spacing  size of a voxel along each axis, mm
   SmoothWeights(const TissueVoxels& tissue, const glm::dvec3& spacing);
 
-  // Spreads the weights of some bricks; nothing comes from other bricks.
-  //   bricks    as in TissueVoxels::bricks(), each once
-  //   width     mm: standard deviation of the Gauss curve that a single place spreads to along each axis
-  //   weights   (brick) -> its weights as they are
+  // Spreads the weights of some bricks. The weights of other bricks have no effect.
+  //   bricks    indices in TissueVoxels::bricks(), each at most once
+  //   width     mm: standard deviation of the Gaussian to which a single point spreads
+  //   weights   a function (brick index) -> the current weights of this brick
   void spread(const std::vector<int>& bricks, double width, const std::function<InfluenceView(int brick)>& weights);
 
-  // Adds the weights at a voxel to `sum`, which is empty, in any unit.
-  //   brick  one of the bricks that were spread last
-  //   cell   of the voxel in the brick: x + 8 y + 64 z; tissue
+  // Writes the spread weights of a tissue voxel to `sum`, which must be empty. Only their proportions matter.
+  //   brick  one of the bricks of the last spread()
+  //   cell   the voxel's index in the brick: x + 8 y + 64 z
   void at(int brick, int cell, WeightSum& sum) const;
 
-  // Whether all tissue of the bricks follows one bone alone: then there is nothing to spread.
+  // Returns whether all tissue of the bricks of the last spread() follows one bone alone, so that there is nothing to
+  // smooth.
   bool is_uniform() const { return bones_.size() < 2; }
 
  private:
@@ -43,7 +44,7 @@ class SmoothWeights {
   struct Link {
     std::int32_t from, to;
     int direction;  // 0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
-    int faces;
+    int faces;      // number of voxel faces that the two cells share
   };
 
   void choose_cells(double width);
@@ -60,16 +61,17 @@ class SmoothWeights {
 
   const TissueVoxels& tissue_;
   const glm::dvec3 spacing_;
-  glm::ivec3 edge_{1};                               // of a cell, voxels
-  std::vector<std::int32_t> slot_of_;                // by brick: its place among those that were spread, or kNone
-  std::vector<int> spread_;                          // bricks
-  std::vector<std::int32_t> cell_of_;                // by slot and voxel; kNone for air
-  std::vector<std::int32_t> voxels_in_;              // by cell
-  std::vector<std::array<std::int32_t, 6>> beside_;  // by cell and direction: with which it shares most faces, or kNone
-  std::vector<Link> links_;                          // rising by `from`
-  std::vector<std::int32_t> first_link_;             // by cell, and one more
-  std::vector<int> bones_;                           // that weigh anything here
-  std::vector<float> weight_, next_;                 // by cell and place in bones_
+  glm::ivec3 edge_{1};                   // edge lengths of a cell, in voxels
+  std::vector<std::int32_t> slot_of_;    // for each brick: its index in spread_, or kNone
+  std::vector<int> spread_;              // the bricks of the last spread()
+  std::vector<std::int32_t> cell_of_;    // for each brick in spread_ and each of its voxels: the cell; kNone for air
+  std::vector<std::int32_t> voxels_in_;  // number of voxels in each cell
+  // For each cell and direction: the neighbouring cell with which it shares most faces, or kNone.
+  std::vector<std::array<std::int32_t, 6>> beside_;
+  std::vector<Link> links_;               // sorted by `from`
+  std::vector<std::int32_t> first_link_;  // for each cell: index of its first link; one entry more at the end
+  std::vector<int> bones_;                // bones with weight in these bricks
+  std::vector<float> weight_, next_;      // for each cell: its weights for the bones in bones_
 };
 
 }  // namespace limber

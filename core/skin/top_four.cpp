@@ -10,10 +10,11 @@
 namespace limber {
 
 namespace {
-// Below this a weight is noise of the solve, in 1/65535.
+// Smallest weight that is kept, in 1/65535. Smaller weights are noise of the solver.
 constexpr int kLeastWeight = 7;
 
-// Scales the sum to exactly kFullWeight; what rounding down leaves goes to the largest.
+// Scales the weights so that their sum is exactly kFullWeight. They are rounded down, and the largest takes the
+// remainder.
 Influence normalized(Influence influence) {
   std::int64_t sum = 0;
   for (int k = 0; k < 4; ++k) sum += influence.weight[k];
@@ -40,7 +41,7 @@ BestFour::Slot& BestFour::grow_to(std::int64_t brick, std::int64_t place, int k)
 
 void BestFour::offer(std::int64_t brick, std::int64_t place, int bone, float weight) {
   const int whole = static_cast<int>(std::lround(std::clamp(weight, 0.0f, 1.0f) * kFullWeight));
-  // Of equal weights the lower bone goes first, so that the order of offers does not show.
+  // Of equal weights the one of the bone with the lower index comes first, so that the order of calls does not matter.
   const auto after = [&](int k) {
     const Slot best = at(brick, place, k);
     return whole > best.weight || (whole == best.weight && bone < best.bone);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The four largest weights of every tissue voxel while bones are solved for one after the other.
+// Collects the four largest weights of every tissue voxel, while the weights of one bone after the other are computed.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,26 @@ namespace limber {
 
 class BestFour {
  public:
-  // Kept as a reference. Memory is as much as the bricks' most mixed voxels need: 4 bytes for each bone of theirs.
+  // Keeps a reference to `tissue`. Memory: 4 bytes per voxel and slot. All voxels of a brick have as many slots as the
+  // voxel with the most bones needs, at most four.
   explicit BestFour(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size()) {
     for (std::size_t b = 0; b < bricks_.size(); ++b) bricks_[b].count = tissue.bricks()[b].count();
   }
 
-  // `brick` holds `place`; threads may work on different bricks.
-  // The weight of a bone at a place, 0 .. 1. Each bone is offered once.
+  // In these functions, `place` is a voxel's index in the list of tissue voxels, and `brick` is the brick that contains
+  // it. Threads may work on different bricks at the same time.
+  //
+  // offer() adds the weight [0, 1] of a bone at a voxel. It may be called once for each bone and voxel.
   void offer(std::int64_t brick, std::int64_t place, int bone, float weight);
-  // The voxel is rigid with `bone`.
+  // Makes the voxel follow `bone` with full weight, and no other bone.
   void hold(std::int64_t brick, std::int64_t place, int bone);
-  // The same wherever `bones`, #tissue voxels, is not `none`.
+  // Makes many voxels follow one bone each. `bones` (#tissue voxels) has the bone of each voxel, or `none` for a voxel
+  // that stays as it is.
   void hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t none);
   bool covered(std::int64_t brick, std::int64_t place) const { return at(brick, place, 0).weight > 0; }
 
-  // Normalized; every voxel must be covered. Called once: what is handed over is forgotten.
+  // Returns the normalized weights; every voxel must have a weight. May be called only once, since it frees the
+  // collected weights.
   SkinWeights weights(std::vector<std::string> bone_names);
 
  private:
@@ -34,9 +39,10 @@ class BestFour {
     std::uint16_t bone = 0, weight = 0;
   };
   struct Brick {
-    int used = 0;             // bones that a voxel has at most
-    int count = 0;            // voxels
-    std::vector<Slot> slots;  // used x #voxels, by falling weight, not normalized
+    int used = 0;   // number of slots: the largest number of bones of a voxel in this brick
+    int count = 0;  // number of tissue voxels
+    // Slot 0 of all voxels, then slot 1 ...; weights descend from slot to slot and are not normalized.
+    std::vector<Slot> slots;
   };
   Slot at(std::int64_t brick, std::int64_t place, int k) const {
     const Brick& here = bricks_[brick];
@@ -48,7 +54,7 @@ class BestFour {
   std::vector<Brick> bricks_;
 };
 
-// By index.
+// Returns the names of the armature's bones, in their order.
 std::vector<std::string> names_of_bones(const Armature& armature);
 
 }  // namespace limber

@@ -5,7 +5,8 @@ namespace limber {
 
 namespace {
 
-// Sums stay exact: whole numbers are added, and only what loses its bone is shared out anew.
+// Returns the influence with the indices of the new bones; nothing if no bone is left. The sum stays exact, and weights
+// change only where a bone was removed.
 std::optional<Influence> carried(const Influence& influence, const std::vector<int>& to) {
   std::vector<std::pair<int, double>> weights;
   for (int i = 0; i < 4; ++i) {

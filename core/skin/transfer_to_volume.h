@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights after bones were added to the rig, removed from it or put in another order.
+// Adapts weights after bones were added to the rig, removed from it or reordered.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace limber {
 
-// Weights of bones that become one are added up. Where the order stays, the influences are shared.
-//   to      #old bones: the new bone that takes over the weight; -1 for none
-//   names   of the new bones
-// Nothing where a voxel would be left without a bone.
+// Returns the weights for the new bones, or nothing if a voxel would be left without a bone. If several old bones
+// become one new bone, their weights are added. If no bone changes its index, the chunks are shared.
+//   to      for each old bone: the new bone that takes over its weight; -1: none
+//   names   names of the new bones
 std::optional<SkinWeights> carried(const SkinWeights& weights, const std::vector<int>& to,
                                    const std::vector<std::string>& names);
 

@@ -50,7 +50,8 @@ class Sampler {
     return weights_.chunk(brick)[tissue_.index_of(v) - tissue_.bricks()[brick].first];
   }
 
-  // In cubes that grow around the point; one more after the first find, which may lie in a corner.
+  // Searches cubes of growing size around the point. After the first hit it goes on to about twice that size, since the
+  // hit may lie in a corner of its cube and a nearer voxel in a larger cube.
   glm::ivec3 nearest_tissue(const glm::dvec3& voxel) const {
     const glm::ivec3 size = volume_.grid.size,
                      centre = glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), size - 1);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What any point of a body follows: the mean of the influences of the tissue voxels around it, weighted by how near
-// they are (trilinear over the eight voxels whose centres surround it), rounded to four bones. A point that no tissue
-// surrounds follows the nearest tissue voxel.
+// Interpolates the skin weights at any point of a body: trilinearly between those of the eight surrounding voxels that
+// are tissue, reduced to four bones. A point without tissue around it gets the weights of the nearest tissue voxel.
 #pragma once
 
 #include <span>
@@ -14,11 +13,12 @@ namespace limber {
 
 struct SkinAt {
   Influence influence;
-  Label label;  // of the voxel that counts most
+  Label label;  // label of the surrounding voxel with the largest share in the interpolation
 };
 
+// Returns the influence at each point. Throws Error when the volume has no tissue, std::logic_error when the weights
+// belong to another volume.
 //   points  #P, world, mm     returns  #P
-// Throws Error when the volume has no tissue; std::logic_error when the weights are another volume's.
 std::vector<SkinAt> skin_at(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                             std::span<const glm::dvec3> points);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
-constexpr std::int64_t kBricksOfStep = 2048;  // between two looks at the progress: some ten milliseconds
+constexpr std::int64_t kBricksOfStep = 2048;  // number of bricks between two progress updates: some ten milliseconds
 
 void check(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
@@ -30,7 +30,8 @@ void check_bones(const WeightedBody& body, std::span<const int> bones) {
   if (bones.empty() || !std::all_of(bones.begin(), bones.end(), in_rig)) throw std::logic_error("no bone of the rig");
 }
 
-// The bone with the most weight in the region, as heir where no relative is free.
+// Returns the unlocked bone with the most weight in the region, -1 if there is none. It is the fallback bone where no
+// relative is unlocked.
 int most_of_region(const SkinWeights& weights, const WeightedBody& body, const EditScope& scope) {
   std::vector<std::int64_t> sum(body.armature.bones.size());
   std::int64_t place = 0;
@@ -46,7 +47,7 @@ int most_of_region(const SkinWeights& weights, const WeightedBody& body, const E
   return best;
 }
 
-// Whether the tree leaves some bone without an heir.
+// Returns whether some bone has no unlocked relative that could be its fallback bone.
 bool needs_nearby(const WeightedBody& body, const WeightRules& rules) {
   for (int b = 0; b < std::ssize(body.armature.bones); ++b)
     if (rules.fallback_bone(b) < 0) return true;
@@ -67,7 +68,7 @@ LabelSet bone_labels(const WeightedBody& body) {
 
 int whole(double weight) { return static_cast<int>(std::clamp(weight, 0.0, double(kFullWeight)) + 0.5); }
 
-// Change by bricks: change(brick, chunk to write, rules, tally(place, WeightChange))
+// Counts the changed voxels, and for each locked bone the voxels that could not change because of it.
 struct Tally {
   std::int64_t changed = 0;
   std::vector<std::pair<int, std::int64_t>> blocked;
@@ -84,7 +85,7 @@ struct Tally {
   }
 };
 
-// The part of the whole work that an edit is.
+// The part of the whole progress that one edit covers, [0, 1].
 struct Share {
   double from = 0, to = 1;
 };
@@ -144,7 +145,7 @@ WeightEdit edited(const WeightedBody& body, const SkinWeights& weights, const Ed
                            const auto&) { return change(rules, influence, place, voxel); });
 }
 
-// Regions
+// ---- regions
 
 TissueRegion region_where(const TissueVoxels& tissue,
                           const std::function<bool(std::int64_t, const glm::ivec3&)>& belongs) {
@@ -190,7 +191,7 @@ TissueRegion region_of_bone(const SkinWeights& weights, const TissueVoxels& tiss
   });
 }
 
-// Edits
+// ---- edits
 
 WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind,
                    double value, double amount, const EditScope& scope) {
@@ -248,7 +249,7 @@ WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int pa
         edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
     all = std::move(once);
   }
-  // Changed is what differs in the end, not in the last pass.
+  // Counts the voxels that differ from the original weights. The last pass alone counted only its own changes.
   all.changed = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
     if (weights.shared_chunk(b) != all.weights.shared_chunk(b))
@@ -308,14 +309,16 @@ WeightEdit with_levels(const WeightedBody& body, const SkinWeights& weights, int
 
 namespace {
 
-// In cubes that grow around the point, as far as `reach`.
+// Returns the nearest voxel, at most `reach` mm away, for which `fits` returns true. Searches cubes of growing size
+// around the point.
 template <class Fits>
 std::optional<glm::ivec3> nearest_voxel(const Grid& grid, const glm::dvec3& at, double reach, const Fits& fits) {
   const glm::ivec3 centre(glm::round(glm::clamp(at, glm::dvec3(-1e6), glm::dvec3(1e6))));
   const double least_spacing = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   double best = reach * reach * (1 + 1e-9);
   std::optional<glm::ivec3> found;
-  // A voxel in a cube's shell is at least that many steps away, less the half that the centre was rounded by.
+  // A voxel in shell n (the surface of the n-th cube) is at least n - 0.5 voxels away, since the centre was rounded by
+  // up to half a voxel.
   for (int shell = 0; (shell - 0.5) * least_spacing <= std::sqrt(best); ++shell) {
     const glm::ivec3 low = glm::max(centre - shell, glm::ivec3(0)), high = glm::min(centre + shell, grid.size - 1);
     for (int z = low.z; z <= high.z; ++z)
@@ -378,7 +381,7 @@ MirrorEdit mirrored(const WeightedBody& body, const SkinWeights& weights, const 
 
 TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, const TransferSource& from,
                          const EditScope& scope, Progress& progress) {
-  // The bone of the same name, else that of the nearest ancestor.
+  // Each bone of the other rig maps to the bone of the same name, else to the bone of its nearest ancestor.
   std::vector<int> to(from.armature.bones.size(), -1);
   std::vector<bool> own(to.size(), false);
   bool any = false;

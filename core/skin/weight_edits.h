@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the weights of a whole body or a region of it, under the same rules as a stroke (normalize.h): sums stay
-// exact, locked bones keep every bit, bricks that do not change stay shared. The same for any number of threads.
+// Edits the weights of a whole body or of a region of it, by the same rules as a brush stroke (normalize.h): sums stay
+// exact, and the weights of locked bones keep every bit. Bricks that do not change stay shared with the old weights.
+// Results do not depend on the number of threads.
 #pragma once
 
 #include <functional>
@@ -17,93 +18,97 @@
 
 namespace limber {
 
-// A byte per tissue voxel in brick order, not 0 for those that belong to it.
+// A region of tissue: one byte per tissue voxel in brick order, not 0 for the voxels in the region.
 using TissueRegion = std::vector<std::uint8_t>;
 
 struct EditScope {
   BoneSet locked;
   Normalize normalize = Normalize::Unlocked;
-  bool rigid_bone_tissue = true;  // bone tissue is not changed
-  TissueRegion region;            // empty: everywhere
-  Progress* progress = nullptr;   // told how far an edit is, and ends it when it is cancelled
+  bool rigid_bone_tissue = true;  // true: bone tissue is not changed
+  TissueRegion region;            // voxels that may change; empty: all
+  Progress* progress = nullptr;   // receives the progress of an edit, and can cancel it; may be null
 };
 
 struct WeightEdit {
   SkinWeights weights;
-  std::int64_t changed = 0;  // voxels
-  std::int64_t blocked = 0;  // voxels that a lock kept from changing
-  int blocked_by = -1;       // the bone that did so most often
+  std::int64_t changed = 0;  // number of changed voxels
+  std::int64_t blocked = 0;  // number of voxels that could not change because of a locked bone
+  int blocked_by = -1;       // the locked bone that prevented most changes; -1: none
 };
 
-// Regions
+// ---- regions
 
-// Voxels for which `belongs` says so; called from several threads.
+// Returns the voxels for which `belongs` returns true. `belongs` is called from several threads.
 TissueRegion region_where(const TissueVoxels& tissue,
                           const std::function<bool(std::int64_t place, const glm::ivec3& voxel)>& belongs);
-// The tissue that hangs together with a voxel through faces, all of it or as far as it has the same label. Nothing for
-// air.
+// Returns the tissue that is connected to a voxel through faces: tissue of all labels, or only that of the voxel's own
+// label. Empty if the voxel is air.
 enum class Part { Tissue, Label };
 TissueRegion connected_part(const LabelVolume& volume, const TissueVoxels& tissue, const glm::ivec3& voxel, Part part);
 TissueRegion region_of_label(const LabelVolume& volume, const TissueVoxels& tissue, Label label);
-// Where the bone has at least that weight, (0, 1].
+// Returns the voxels in which the bone has at least the weight `least`, (0, 1].
 TissueRegion region_of_bone(const SkinWeights& weights, const TissueVoxels& tissue, int bone, double least = 0.5);
 
-// Edits. `bones` are painted as one.
+// ---- edits. Several `bones` are painted as if they were one bone: their weights are summed.
 
 enum class Flood { Add, Subtract, Set, Multiply };
 //   value   Add, Subtract, Set: [0, 1]; Multiply: 0 and more
-//   amount  [0, 1]
+//   amount  how far weights move towards the new weight, [0, 1]
 WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind,
                    double value, double amount = 1, const EditScope& scope = {});
 
 struct Gradient {
-  glm::dvec3 from{0}, to{0};  // world, mm; apart
-  bool radial = false;  // from the point `from` outwards to the distance of `to`, else along the line between them
+  glm::dvec3 from{0}, to{0};  // world, mm; must differ
+  // If true, the gradient depends on the distance from `from` and ends at the distance of `to`. Otherwise it runs along
+  // the line from `from` to `to`.
+  bool radial = false;
   double from_value = 1, to_value = 0;
   Falloff falloff = FalloffShape::Linear;
 };
 WeightEdit with_gradient(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones,
                          const Gradient& gradient, double amount = 1, const EditScope& scope = {});
 
-// Every bone's weights, towards the mean of the six neighbours.    amount  [0, 1] a pass
+// Moves every bone's weights towards the mean of the six neighbouring voxels.
+//   amount  how far weights move towards the mean in one pass, [0, 1]
 WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int passes, double amount = 1,
                     const EditScope& scope = {}, Progress& progress = no_progress());
 
 enum class Copy {
-  Replace,  // `to` gets the weight that `from` has
-  Add,      // and keeps its own
-  Move,     // and `from` gives it up
+  Replace,  // bone `to` gets the weight of bone `from`
+  Add,      // the weight of bone `from` is added to that of bone `to`
+  Move,     // the same as Add, and bone `from` loses its weight
   Swap,
 };
 WeightEdit copied(const WeightedBody& body, const SkinWeights& weights, int from, int to, Copy kind,
                   const EditScope& scope = {});
 
-// Voxel by voxel, as in normalize.h.
+// Apply WeightRules::limit, prune, quantize_to and levels (normalize.h) to every voxel.
 WeightEdit limited(const WeightedBody& body, const SkinWeights& weights, int most, const EditScope& scope = {});
 WeightEdit pruned(const WeightedBody& body, const SkinWeights& weights, double least, const EditScope& scope = {});
 WeightEdit in_steps(const WeightedBody& body, const SkinWeights& weights, int steps, const EditScope& scope = {});
 WeightEdit with_levels(const WeightedBody& body, const SkinWeights& weights, int bone,
                        const WeightRules::Levels& levels, const EditScope& scope = {});
 
-// The side that the plane's normal points to takes over what the other side has, bone by bone of the pairs
-// (mirror_pairs): each voxel from the nearest tissue of that side to its mirror image that is bone where it is bone, at
-// most `reach` away. Bodies need not be symmetric: voxels without a match keep their weights and are reported. Done
-// twice it is as done once.
+// Mirrors the weights to the side that the plane's normal points to. Left and right bones are swapped (mirror_pairs).
+// Each voxel takes the weights of the tissue voxel nearest to its mirror image, if that is at most `reach` away. Bone
+// tissue takes weights only from bone tissue. Bodies need not be symmetric: voxels without a match keep their weights
+// and are reported. Mirroring twice gives the same result as mirroring once.
 struct MirrorSettings {
   MirrorPlane plane;
-  double reach = 10;  // mm
+  double reach = 10;  // largest distance between the mirror image and the voxel whose weights are taken, mm
 };
 struct MirrorEdit : WeightEdit {
-  std::vector<std::int64_t> unmatched;  // places in the tissue list
+  std::vector<std::int64_t> unmatched;  // voxels without a match: indices in the list of tissue voxels
 };
 MirrorEdit mirrored(const WeightedBody& body, const SkinWeights& weights, const MirrorSettings& settings,
                     const EditScope& scope = {});
 
-// Weights of another volume of the same place in the world, whatever its spacing, interpolated between its voxels;
-// bones are matched by name.
+// Transfers the weights of another volume that lies at the same position in the world. The other volume may have any
+// voxel spacing, since weights are interpolated between its voxels. Bones are matched by name.
 struct TransferEdit : WeightEdit {
-  std::vector<std::string>
-      missing;  // bones of the other rig with weight that this one lacks: their nearest ancestor that it has takes over
+  // Bones of the other rig that have weight and do not exist in this rig. Their weight went to their nearest ancestor
+  // that exists in this rig.
+  std::vector<std::string> missing;
 };
 struct TransferSource {
   const LabelVolume& volume;
@@ -111,11 +116,12 @@ struct TransferSource {
   const Armature& armature;
   const SkinWeights& weights;
 };
-// Throws Error where the two rigs have no bone name in common.
+// Throws Error if the two rigs have no bone name in common.
 TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, const TransferSource& from,
                          const EditScope& scope = {}, Progress& progress = no_progress());
 
-// Any other edit: change(rules, influence, place, voxel), called from several threads, one for each voxel of the scope.
+// Applies any other edit: calls change(rules, influence, place, voxel) once for each voxel of the scope, from several
+// threads. `place` is the voxel's index in the list of tissue voxels.
 using VoxelChange = std::function<WeightChange(const WeightRules& rules, Influence& influence, std::int64_t place,
                                                const glm::ivec3& voxel)>;
 WeightEdit edited(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope,

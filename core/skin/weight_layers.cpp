@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kBricksAtOnce = 16;
 
-// Exactly the one or the other at the ends.
+// Mixes two influences. A cover of 0 gives exactly the influence `below`, a cover of 1 exactly the influence `above`.
 Influence mixed(const Influence& below, const Influence& above, double cover) {
   if (cover <= 0 || below == above) return below;
   if (cover >= 1) return above;
@@ -35,7 +35,7 @@ void cover_with(SkinWeights::Influences& chunk, const WeightLayer& layer, std::i
   for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], above[i], layer.cover(brick, i));
 }
 
-// make(brick) for the bricks for which `wanted` says so; the others are those of `from`.
+// Returns a copy of `from`, with make(brick) for each brick for which wanted(brick) is true.
 template <class Wanted, class Make>
 SkinWeights made_from(const SkinWeights& from, const Wanted& wanted, const Make& make) {
   std::vector<SkinWeights::Influences> made(from.chunk_count());
@@ -94,7 +94,7 @@ SkinWeights composed(const WeightLayers& layers) {
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
   const std::int64_t count = layers.base->chunk_count();
   if (before.base->chunk_count() != count) throw std::logic_error("layers of another body");
-  // Layers that cover nothing in a brick do not count there.
+  // Returns the index of the next layer, at `from` or above, that covers something in the brick.
   const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
     while (from < of.layers.size() &&
            (!of.layers[from]->visible || of.layers[from]->opacity == 0 || !of.layers[from]->mask[brick]))
@@ -161,7 +161,7 @@ SkinWeights canvas(const WeightLayers& layers, std::size_t index) {
 
 namespace {
 
-// A brick of a layer after its canvas was painted on.
+// A brick of a layer after painting: its weights and mask.
 struct PaintedBrick {
   SkinWeights::Influences weights;
   WeightLayer::Mask mask;
@@ -196,7 +196,7 @@ WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, cons
 
 namespace {
 
-// What comes out with that brick in the layer's place.
+// Composes all layers in one brick, with `painted` in place of what the layer itself has there.
 SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick,
                                       const PaintedBrick& painted) {
   const WeightLayer& layer = layer_at(layers, index);
@@ -237,11 +237,12 @@ SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::s
 
 namespace {
 
-// What a stroke paints in place of a layer: made(influence, cover) for each voxel, bone 0 where the layer covers
-// nothing.
+// Makes the weights that a stroke paints in place of a layer. They are made(influence, cover) for each voxel, and bone
+// 0 alone in bricks that the layer does not cover.
 template <class Made>
 SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones, const Made& made) {
-  std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;  // by length
+  // Chunks in which every voxel follows bone 0, by number of voxels.
+  std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   for (std::int64_t b = 0; b < layer.weights.chunk_count(); ++b) {
     const std::size_t count = layer.weights.chunk(b).size();
@@ -258,7 +259,7 @@ SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones,
   return {std::move(bones), std::move(chunks)};
 }
 
-// A brick that covers nothing any more is no part of the layer.
+// Stores a painted brick in the layer. If the layer covers nothing in the brick any more, the mask there becomes null.
 void put(WeightLayer& layer, std::int64_t brick, PaintedBrick painted) {
   const bool any =
       std::any_of(painted.mask.begin(), painted.mask.end(), [](std::uint16_t cover) { return cover != 0; });
@@ -287,13 +288,13 @@ WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const
   return layer;
 }
 
-// What shines through, then the bones
+// ---- layers as weights that a stroke can paint: bone kBelow first, then the bones of the layer
 
 Armature with_below(const Armature& armature) {
   Armature more;
   more.bones.push_back({.name = "what lies below", .tail = {0, 0, 1}});
   for (Bone bone : armature.bones) {
-    bone.parent += 1;  // a root's is what lies below
+    bone.parent += 1;  // a root becomes a child of the bone kBelow
     more.bones.push_back(std::move(bone));
   }
   return more;
@@ -418,7 +419,8 @@ WeightLayers merged_down(const WeightLayers& layers, std::size_t index) {
     }));
     return fewer;
   }
-  // Two covers a and b one above the other cover 1 - (1 - a)(1 - b); of that the upper has b.
+  // Two layers with covers a and b, one above the other, together cover 1 - (1 - a)(1 - b). In their mix, the upper
+  // layer has the share b / (1 - (1 - a)(1 - b)).
   const WeightLayer& lower = *layers.layers[index - 1];
   must_be_seen(lower);
   WeightLayer both = lower;

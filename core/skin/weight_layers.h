@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights in layers over a base: each has its own weights, a mask that says where and how much it covers, and an
-// opacity. The layers are put together from the bottom up, what is below shining through where a layer covers less, and
-// what comes out is normalized like any weights. Nothing below is changed by what is painted above it.
+// Layers of weights over base weights. A layer has its own weights, an opacity, and a mask that says where and how much
+// the layer covers. Layers are composed from the bottom up: where a layer covers less, more of the weights below it
+// remains. The composed weights are normalized like any weights. Painting on a layer changes nothing below it.
 //
-// Painting on a layer: a stroke (or any edit) starts from canvas(), which shows the layer where it covers and what is
-// below it elsewhere; painted_on() takes what it changed into the layer and lets the layer cover there.
+// To paint on a layer, a stroke (or any edit) starts from canvas(): the layer's own weights where it covers, and the
+// composed weights of the layers below elsewhere. Then painted_on() stores the changes in the layer, which covers fully
+// where something changed.
 #pragma once
 
 #include <memory>
@@ -17,15 +18,16 @@
 namespace limber {
 
 struct WeightLayer {
-  using Mask = std::vector<std::uint16_t>;  // one brick's, in 1/65535
+  using Mask = std::vector<std::uint16_t>;  // cover of each tissue voxel of a brick, in 1/65535
 
   std::string name;
   bool visible = true;
   double opacity = 1;  // [0, 1]
   SkinWeights weights;
-  std::vector<std::shared_ptr<const Mask>> mask;  // #bricks; null: covers nothing there
+  std::vector<std::shared_ptr<const Mask>> mask;  // for each brick; null: the layer covers nothing there
 
-  // What it covers, [0, 1], as seen.    i  in the brick's chunk
+  // Returns the visible cover at a voxel, [0, 1]: mask times opacity, 0 for a hidden layer.
+  //   i  the voxel's index in the brick's chunk
   double cover(std::int64_t brick, std::size_t i) const {
     return visible && mask[brick] ? opacity * (*mask[brick])[i] / kFullWeight : 0;
   }
@@ -33,69 +35,75 @@ struct WeightLayer {
 
 struct WeightLayers {
   std::shared_ptr<const SkinWeights> base;
-  std::vector<std::shared_ptr<const WeightLayer>> layers;  // the lowest first
+  std::vector<std::shared_ptr<const WeightLayer>> layers;  // from the lowest to the highest
 };
 
-// A layer that covers nothing, at the top.
+// Adds an empty layer at the top; it covers nothing yet.
 WeightLayers with_new_layer(const WeightLayers& layers, const std::string& name);
 
-// One brick of what comes out, of the base and the first `count` layers.
+// Composes the base and the lowest `count` layers in one brick.
 SkinWeights::Influences composed_chunk(const WeightLayers& layers, std::int64_t brick, std::size_t count);
-// All of it. Bricks that no layer covers are shared with the base.
+// Composes all bricks and layers. Bricks that no layer covers are shared with the base.
 SkinWeights composed(const WeightLayers& layers);
-// The bricks whose weights may come out otherwise than of `before`, layers of the same body. Those whose parts are
-// shared do not.
+// Returns the bricks whose composed weights may differ from those of `before`, which are layers of the same body. A
+// brick whose chunks and masks are shared with `before` does not differ.
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before);
-// composed(layers), made anew only in those bricks; the others are those of `came_out`, which is composed(before).
+// Returns composed(layers), but computes only the bricks that changed_bricks() returns and takes the others from
+// `came_out`, which is composed(before).
 SkinWeights recomposed(const WeightLayers& layers, const WeightLayers& before, const SkinWeights& came_out);
 
-// What is painted on when this layer is. Bricks that only one of them covers, and that wholly, are shared with it.
+// Returns the weights that a stroke on this layer starts from. Bricks that the layer covers completely are shared with
+// it. Bricks that neither this layer nor a lower one covers are shared with the base.
 SkinWeights canvas(const WeightLayers& layers, std::size_t layer);
-// The layer after its canvas was changed from `before` to `after`: where they differ it has what is new, and covers
-// fully.
+// Returns the layer after its canvas (the weights from canvas()) was changed from `before` to `after`. Where these
+// differ, the layer has the new weights and covers fully.
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
-// One brick of what would come out then, or with another base.
+// Compose one brick for a preview. composed_over_base() uses another base. composed_while_painted() shows the layer
+// after its canvas (the weights from canvas()) was changed from `before` to `after`.
 SkinWeights::Influences composed_over_base(const WeightLayers& layers, std::int64_t brick,
                                            SkinWeights::Influences base);
 SkinWeights::Influences composed_while_painted(const WeightLayers& layers, std::size_t layer, std::int64_t brick,
                                                const SkinWeights::Influences& before,
                                                const SkinWeights::Influences& after);
 
-// A mask as weights that a stroke can paint: what the layer covers follows kCovering, the rest kNotCovering.
+// Represents a mask as weights of two bones, so that a stroke can paint it: kCovering has the mask's value, and
+// kNotCovering the rest.
 constexpr int kNotCovering = 0, kCovering = 1;
 SkinWeights mask_as_weights(const WeightLayer& layer);
 SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::size_t layer, std::int64_t brick,
                                               const SkinWeights::Influences& mask);
-// The layer after its mask was changed. Where it did not cover before it now has what its canvas shows.
+// Returns the layer after its mask was painted. Where the layer did not cover before, it gets the weights that canvas()
+// returns for it.
 WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t layer, const SkinWeights& before,
                             const SkinWeights& after);
 
-// A layer as weights that a stroke can paint while its bones keep what they have (Normalize::WhenComposed): what lies
-// below it stands before its bones, as kBelow, and gives what the painted one gains. Where the others are locked
-// nothing else can.
+// Represents a layer as weights that a stroke can paint while the layer's other bones keep their weights
+// (Normalize::WhenComposed). An extra bone, kBelow, comes before the layer's bones and stands for the weights below the
+// layer. Since the other bones are locked, what the painted bone gains comes from kBelow alone.
 constexpr int kBelow = 0;
 SkinWeights shares_as_weights(const WeightLayer& layer);
 Armature with_below(const Armature& armature);
 SkinWeights::Influences composed_while_shared(const WeightLayers& layers, std::size_t layer, std::int64_t brick,
                                               const SkinWeights::Influences& before,
                                               const SkinWeights::Influences& after);
-// The layer after its shares were changed: it covers as much as its bones have together.
+// Returns the layer after the weights of shares_as_weights() were painted. Its cover becomes the sum of its bones'
+// weights.
 WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after);
 
-// The mask becomes `cover` [0, 1] in the region (empty: everywhere). Where the layer did not cover before it now has
-// what its canvas shows.
+// Sets the mask to `cover` [0, 1] in the region (empty: everywhere). Where the layer did not cover before, it gets the
+// weights that canvas() returns for it.
 WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const TissueVoxels& tissue,
                       const TissueRegion& region, double cover);
 
-// The same layers over another base; what a layer does not cover it shares with it.
+// Returns the same layers over another base. Bricks that no layer covers are then shared with the new base.
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base);
 
-// After bones were added to the rig, removed from it or put in another order: see transfer_to_volume.h.
+// Adapts the layers after bones were added to the rig, removed from it or reordered (see transfer_to_volume.h).
 std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to,
                                     const std::vector<std::string>& names);
 
-// The layer joined with the one below it, or with the base: what comes out stays the same (to the four bones a voxel
-// can have). Throws Error where either layer is hidden.
+// Merges the layer with the one below it, or with the base. The composed weights stay the same, as far as four bones
+// per voxel allow. Throws Error if one of the two layers is hidden.
 WeightLayers merged_down(const WeightLayers& layers, std::size_t layer);
 
 }  // namespace limber

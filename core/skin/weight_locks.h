@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones whose weights nothing may change: neither what adds to them nor what takes its share from them. By the bones'
-// names, so that a change of the rig loses only what it removed.
+// The locked bones: no edit may change their weights, neither directly nor by normalization. They are stored by name,
+// so that a change of the rig loses only the locks of removed bones.
 #pragma once
 
 #include <set>

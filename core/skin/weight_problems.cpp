@@ -18,10 +18,11 @@ using Kind = WeightProblem::Kind;
 constexpr int kMostPasses = 40;
 constexpr int kAround = 3;
 
-// Tissue voxels by place, with their neighbours through faces.
+// Gives access to the tissue voxels and their face neighbours. A voxel is named by its index in the list of tissue
+// voxels.
 class Body {
  public:
-  //   progress  told now and then, so that the search can be cancelled
+  //   progress  updated from time to time, so that the user can cancel the search
   Body(const WeightedBody& body, const SkinWeights& weights, Progress& progress = no_progress())
       : body_(body),
         weights_(weights),
@@ -31,7 +32,7 @@ class Body {
   }
 
   std::int64_t size() const { return std::ssize(voxel_); }
-  // From here on the search is so far, [0, 1].
+  // Reports how much of the search is done, [0, 1].
   void at(double done) {
     done_ = done;
     progress_.update("looking for problems", done_);
@@ -45,7 +46,7 @@ class Body {
     const int brick = body_.tissue.brick_at(voxel(place));
     return weights_.chunk(brick)[place - body_.tissue.bricks()[brick].first];
   }
-  // visit(place of the neighbour)
+  // Calls visit(index) for each face neighbour that is tissue.
   template <class Visit>
   void beside(std::int64_t place, const Visit& visit) const {
     for (int d = 0; d < 6; ++d) {
@@ -56,8 +57,9 @@ class Body {
     }
   }
 
-  // Which piece each voxel belongs to, in order of their first voxels; -1 where `group` is negative. Neighbours hang
-  // together where their groups are the same.
+  // Finds the connected components of voxels with the same group number, and returns for each voxel the index of its
+  // component, -1 where `group` is negative. Components are in the order of their first voxels.
+  //   found  receives the voxels of each component
   std::vector<std::int32_t> pieces(const std::vector<std::int32_t>& group,
                                    std::vector<std::vector<std::int64_t>>& found) const {
     std::vector<std::int32_t> piece(size(), -1);
@@ -79,7 +81,7 @@ class Body {
     return piece;
   }
 
-  // The voxel nearest to the middle of all of them, in the world.
+  // Returns the centre of that voxel of the list that is nearest to the mean position of all, world, mm.
   glm::dvec3 middle(const std::vector<std::int64_t>& voxels) const {
     glm::dvec3 mean(0);
     for (const auto place : voxels) mean += glm::dvec3(voxel(place)) / double(voxels.size());
@@ -92,7 +94,7 @@ class Body {
     return world_from_voxel(body_.volume.grid) * best;
   }
 
-  // What these voxels follow most.
+  // Returns the bone with the largest sum of weights in these voxels.
   int main_bone(const std::vector<std::int64_t>& voxels) const {
     std::vector<std::int64_t> sum(body_.armature.bones.size());
     for (const auto place : voxels)
@@ -114,7 +116,7 @@ LabelSet bone_labels(const WeightedBody& body) {
   return labels;
 }
 
-// Half the sum of |differences|, in 1/65535.
+// Returns half the sum of the absolute differences between the weights of two voxels, in 1/65535.
 int difference(const Influence& a, const Influence& b) {
   int sum = 0;
   for (int i = 0; i < 4; ++i) {
@@ -131,10 +133,10 @@ int steps_between(const Armature& armature, int a, int b) {
   for (int at = b; at >= 0; at = armature.bones[at].parent, ++steps)
     if (const auto found = std::find(line.begin(), line.end(), at); found != line.end())
       return steps + static_cast<int>(found - line.begin());
-  return std::numeric_limits<int>::max();  // rigs apart
+  return std::numeric_limits<int>::max();  // no common ancestor
 }
 
-// Pieces of tissue that hold no bone tissue and through which no rig bone runs.
+// Finds connected components of tissue that contain no bone tissue and through which no bone of the rig runs.
 void find_unreached(const WeightedBody& body, const Body& all, const LabelSet& bone,
                     std::vector<WeightProblem>& problems) {
   std::vector<std::vector<std::int64_t>> pieces;
@@ -159,7 +161,8 @@ void find_unreached(const WeightedBody& body, const Body& all, const LabelSet& b
       problems.push_back({Kind::Unreached, all.main_bone(pieces[p]), -1, all.middle(pieces[p]), std::move(pieces[p])});
 }
 
-// Pieces of the body that belong to other problems are no islands.
+// Finds small patches that mainly follow a bone but are separate from the rest of the tissue that follows it. Voxels of
+// problems that were already found are left out.
 void find_islands(const Body& all, const ProblemSettings& settings, std::vector<WeightProblem>& problems) {
   std::vector<std::int32_t> main(all.size());
   for (std::int64_t place = 0; place < all.size(); ++place) main[place] = all.influence(place).bone[0];
@@ -200,9 +203,9 @@ void find_far_bones(const WeightedBody& body, const Body& all, const ProblemSett
   }
 }
 
-// The bone that each voxel of bone tissue is to follow, -1 elsewhere: the one that it follows most. But a small patch
-// that grows on other bone tissue belongs to what it has the longest border with; small is measured by the largest
-// patch of its own bone.
+// Returns the rig bone that each voxel of bone tissue should follow, -1 for other voxels. This is the bone that the
+// voxel follows most, except in a small patch that touches bone tissue of another rig bone: such a patch should follow
+// the rig bone with which it shares the longest border. A patch is small relative to the largest patch of its own bone.
 std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const Body& all, const LabelSet& bone,
                                                const ProblemSettings& settings) {
   std::vector<std::int32_t> follows(all.size(), -1);
@@ -212,7 +215,8 @@ std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const B
   const std::vector<std::int32_t> piece = all.pieces(follows, pieces);
   std::map<int, std::size_t> largest;
   for (const auto& voxels : pieces) largest[follows[voxels[0]]] = std::max(largest[follows[voxels[0]]], voxels.size());
-  // Patches of patches are done from the largest on, so that the smaller ones join what has been settled.
+  // Proceeds from the largest small patch to the smallest, so that a smaller patch joins a neighbour whose bone is
+  // already decided.
   std::vector<std::size_t> small;
   for (std::size_t p = 0; p < pieces.size(); ++p)
     if (double(pieces[p].size()) < settings.island_share * double(largest[follows[pieces[p][0]]])) small.push_back(p);
@@ -255,7 +259,7 @@ void find_steep(const WeightedBody& body, const Body& all, const LabelSet& bone,
     for (auto place = begin; place < end; ++place) {
       if (bone[body.volume.at(all.voxel(place))]) continue;
       all.beside(place, [&](std::int64_t next) {
-        // Beside bone it is the bone that stays as it is.
+        // A difference to bone tissue does not count, since bone tissue keeps its weights.
         if (!bone[body.volume.at(all.voxel(next))] && difference(all.influence(place), all.influence(next)) > steep)
           is_steep[place] = 1;
       });
@@ -325,7 +329,8 @@ TissueRegion region_of(const std::vector<std::int64_t>& voxels, std::int64_t siz
   return region;
 }
 
-// The influence of the tissue nearest to the piece that does not belong to it.
+// Gives all voxels of a separate piece of tissue the influence of one voxel: the tissue voxel outside the piece that is
+// nearest to its centre.
 WeightEdit attached(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
                     const EditScope& scope) {
   const TissueRegion piece = region_of(problem.voxels, body.tissue.size(), {});
@@ -347,7 +352,8 @@ WeightEdit attached(const WeightedBody& body, const SkinWeights& weights, const 
                 });
 }
 
-// From the rim inwards, each voxel the mean of those beside it that are done.
+// Fills the patch from its rim inwards: each voxel gets the mean of those neighbours that are outside the patch or
+// already filled.
 WeightEdit filled_in(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
                      const EditScope& scope) {
   const Body all(body, weights);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What may be wrong with weights, where it is, and what to do about it.
-//   Unreached   a piece of tissue apart from the body: no bone lies in it, so nothing but a guess says what it follows
-//   Island      a small patch that mainly follows a bone, apart from the rest of what follows that bone
-//   FarBones    voxels that follow two bones far from each other in the rig
-//   SoftBone    bone tissue that bends, or that follows another bone than the bone tissue it has grown on
+// Finds and repairs likely errors in weights:
+//   Unreached   a connected component of tissue without a bone in it, so that its weights are only a guess
+//   Island      a small patch that mainly follows a bone, separate from the rest of the tissue that follows this bone
+//   FarBones    voxels that follow two bones that are far from each other in the rig
+//   SoftBone    bone tissue that bends, or that follows another rig bone than the bone tissue it has grown on
 //   Steep       soft tissue whose weights change too much from one voxel to the next: it will tear or fold there
-// One problem stands for one place: a piece, a patch, a pair of bones, a run of voxels that hang together.
+// One problem covers one component, one patch, one pair of bones, one rig bone (SoftBone), or one connected group of
+// voxels.
 #pragma once
 
 #include <string>
@@ -18,33 +19,39 @@ namespace limber {
 struct WeightProblem {
   enum class Kind { Unreached, Island, FarBones, SoftBone, Steep };
   Kind kind = Kind::Unreached;
-  int bone = -1, other = -1;  // Unreached, Island: the bone followed most; SoftBone: the bone to be followed; FarBones:
-                              // both; Steep: the two sides
-  glm::dvec3 place{0};        // world, mm: the middle of the voxel nearest to the middle of all
-  std::vector<std::int64_t> voxels;  // places in the tissue list, growing; what FarBones and Steep would change
+  // The bones concerned. Unreached, Island: the bone that the voxels follow most. SoftBone: the bone that they should
+  // follow. FarBones: the two bones. Steep: the bones on the two sides of the steep change.
+  int bone = -1, other = -1;
+  glm::dvec3 place{0};  // world, mm: centre of that voxel of the problem that is nearest to the mean position of all
+  std::vector<std::int64_t> voxels;  // voxels of the problem: indices in the list of tissue voxels, ascending
 };
 
 struct ProblemSettings {
-  double island_share = 0.1;  // a patch is an island when it is smaller than this share of the bone's largest, [0, 1]
-  int far_steps = 3;          // along the rig from bone to bone: that many or more is far (siblings are 2 apart)
-  double far_weight = 0.02;   // both bones have at least this
-  double steep = 0.5;         // half the sum of |differences| of all bones between neighbours, (0, 1]: 1 is a clean cut
+  // A patch smaller than this share of the bone's largest patch is an island, [0, 1].
+  double island_share = 0.1;
+  // Bones that are at least this many steps apart in the bone tree are far apart (siblings are 2 steps apart).
+  int far_steps = 3;
+  double far_weight = 0.02;  // FarBones: smallest weight that both bones must have
+  // A change of weights between neighbouring voxels is steep if half the sum of the absolute differences exceeds this,
+  // (0, 1]. At a value of 1 the two voxels have no bone in common.
+  double steep = 0.5;
   std::int64_t least_voxels = 1;
 };
 
-// By kind, within a kind the largest first.
+// Returns the problems sorted by kind, and within a kind from the largest to the smallest.
 std::vector<WeightProblem> find_problems(const WeightedBody& body, const SkinWeights& weights,
                                          const ProblemSettings& settings = {}, Progress& progress = no_progress());
 
-// "12 voxels of Hand apart from the rest"
+// Describes a problem: "12 voxels of Hand apart from the rest".
 std::string describe(const WeightProblem& problem, const Armature& armature);
 
-// Under the scope's locks; its region counts as well, its `rigid_bone_tissue` does not for SoftBone.
-//   Unreached   the piece follows, as one, what the nearest tissue of the body does
-//   Island      filled in from its rim
-//   FarBones    the lesser of the two goes, the others take over
-//   SoftBone    rigid with its bone
-//   Steep       smoothed there and for three voxels around, until it is not steep, 40 times at most
+// Repairs a problem within the scope's locks and region. SoftBone ignores the scope's `rigid_bone_tissue`.
+//   Unreached   the whole component gets the weights of the nearest tissue of the body
+//   Island      the patch is filled from its rim inwards with the mean weights of its neighbours
+//   FarBones    the smaller of the two weights is removed, and the other bones take it over
+//   SoftBone    the voxels follow the bone that they should follow, and no other
+//   Steep       the voxels, and the tissue up to three voxels around them, are smoothed until the change is no longer
+//               steep, at most 40 times
 WeightEdit repaired(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
                     const EditScope& scope = {}, const ProblemSettings& settings = {});
 

@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// The body that weights belong to. References are kept.
+// The body that weights belong to: references to its volume, tissue, tissue table and rig, which must outlive it.
 struct WeightedBody {
   const LabelVolume& volume;
   const TissueVoxels& tissue;

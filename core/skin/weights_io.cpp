@@ -40,9 +40,10 @@ std::string text_of(const glm::ivec3& size) {
   return std::to_string(size.x) + " " + std::to_string(size.y) + " " + std::to_string(size.z);
 }
 
-constexpr std::size_t kLongestSeams = 1 << 19;  // letters; longer ones are not kept with weights
+// Upper limit of the seams' text in characters. A longer text is not stored with the weights.
+constexpr std::size_t kLongestSeams = 1 << 19;
 
-// Place in the rig of each of the file's bones.
+// Returns the index in the rig of each bone in the file.
 std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::string& where, const Armature& armature) {
   const auto list = nlohmann::json::parse(checked_json(names, where), nullptr, false);
   if (!list.is_array() || list.empty()) throw Error("the weights name no bones", where, kMakeAnew);
@@ -60,7 +61,8 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
   return in_rig;
 }
 
-// By falling weight, bones as the rig numbers them. Throws for what no writer of ours makes.
+// Converts an influence read from a file: replaces the bone indices of the file by those of the rig, and sorts by
+// descending weight. Throws Error for bones or sums that write_weights() never writes.
 void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, const std::string& where) {
   int sum = 0;
   for (int k = 0; k < 4; ++k) {
@@ -98,7 +100,7 @@ void require_same_grid(const Grid& grid, const LabelVolume& volume, const Path& 
         path.string(), "give the volume they were made for");
 }
 
-// Tissue without any weight follows the nearest rig bone.
+// Makes each tissue voxel without any weight follow the nearest bone of the rig, and adds a warning.
 void cover_the_rest(BestFour& best, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                     const Path& path, std::vector<std::string>& warnings) {
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
@@ -139,7 +141,8 @@ WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, co
     result.warnings.insert(result.warnings.end(), grey.warnings.begin(), grey.warnings.end());
     tissue.for_each([&](std::int64_t i, const glm::ivec3& v) {
       const float value = grey.voxels[grey.grid.index(v)];
-      if (value > 0) best.offer(tissue.brick_at(v), i, static_cast<int>(b), std::min(value, 1.0f));  // not for NaN
+      // The comparison is false if the value is NaN.
+      if (value > 0) best.offer(tissue.brick_at(v), i, static_cast<int>(b), std::min(value, 1.0f));
     });
   }
   cover_the_rest(best, volume, tissue, armature, folder, result.warnings);

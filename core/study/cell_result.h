@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The figures of a computed cell, read from its folder, and whether they keep to the study's gates.
+// Reads the figures of one computed cell of a study (one spacing, pose and technique) from the cell's folder, and
+// judges them by the study's quality gates.
 #pragma once
 
 #include <map>
@@ -15,10 +16,10 @@
 namespace limber {
 
 struct TissueFigures {
-  double label = 0;  // as in files
+  double label = 0;  // the value that stands for this tissue in the volume file
   std::string name;
   std::int64_t voxels_before = 0, voxels_after = 0;
-  std::optional<double> volume_percent, mass_percent;  // none where it was not there before
+  std::optional<double> volume_percent, mass_percent;  // change in %; empty where the tissue has no voxels at rest
   int components_before = 0, components_after = 0;
   std::int64_t overlap_voxels = 0;
 };
@@ -41,44 +42,45 @@ struct SolveFigures {
 struct JointFigures {
   std::string bone;
   double degrees = 0;
-  glm::dvec3 axis{0}, head{0}, tail{0}, parent_head{0};  // as report.h has them
+  glm::dvec3 axis{0}, head{0}, tail{0}, parent_head{0};  // axis: unit vector in world space; others: mm, world space
   std::optional<double> excess_degrees;
 };
 
 struct CellResult {
   StudyCell cell;
   Path folder;
-  std::string failure;  // why there are no figures; empty otherwise
+  std::string failure;  // reason for which the cell has no figures; empty when it has them
   double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;
   std::string machine;
-  std::map<std::string, double> seconds;  // by stage
+  std::map<std::string, double> seconds;  // wall-clock seconds of each stage
   std::vector<TissueFigures> tissues;
   std::int64_t voxels_before = 0, voxels_after = 0;
   double volume_percent = 0, mass_percent = 0;
   std::int64_t overlap_voxels = 0, bone_overlap_voxels = 0, new_hole_voxels = 0, dropped_voxels = 0,
                trapped_air_voxels = 0, mended_voxels = 0;
-  std::optional<std::int64_t> mass_exact_voxels;  // that changed hands; none where masses were not made exact
+  std::optional<std::int64_t> mass_exact_voxels;  // voxels that changed tissue; empty unless masses were made exact
   std::optional<double> skin_share_before, skin_share_after;
   std::string worst_bone;
-  std::optional<double> bone_residual_mm;  // of that
+  std::optional<double> bone_residual_mm;  // residual of worst_bone
   std::optional<MeshFigures> mesh;
   std::optional<SolveFigures> solve;
   std::vector<JointFigures> joints;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;
-  std::map<std::string, std::string> inputs;  // SHA-256 by path
-  std::string report, cell_json;              // as they lie in the folder
+  std::map<std::string, std::string> inputs;  // SHA-256 of each input file, by its path
+  std::string report, cell_json;              // the contents of report.json and cell.json in the cell's folder
 
   bool done() const { return failure.empty(); }
 };
 
-// What a cell of a study must pass: all that is judged from its report.
+// Judges a cell's report and returns its quality gates.
 std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits);
 
-// Throws Error where the folder's files cannot be read.
+// Reads the result of a cell of the study. Throws Error where the files in the cell's folder cannot be read.
 CellResult read_result(const Study& study, const CellOutcome& outcome);
 
-// Of the body at a spacing, processor seconds. None where the file is not there.
+// Returns the processor seconds spent on the skin weights of the cell's body. Returns nothing where body.json is
+// missing.
 std::optional<double> weights_seconds(const Path& out, const CellResult& cell);
 
 }  // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Charts as inline SVG: labelled directly, one colour and one mark per technique everywhere; made mass-exact, it has
-// the same ones, hollow, and a dashed line. Colours are the page's: classes tN of technique N and `exact`, `axis`,
-// `grid`, `muted` (page_style.cpp).
+// Draws charts as inline SVG with direct labels. A technique has the same colour and mark in every chart; its
+// mass-exact variant has a hollow mark and a dashed line. The colours are CSS classes of the page (page_style.cpp): tN
+// for the technique with look N, `exact`, `axis`, `grid` and `muted`.
 #pragma once
 
 #include <optional>
@@ -14,35 +14,36 @@ namespace limber {
 
 struct Series {
   std::string name;
-  TechniqueLook look;                         // its colour and mark
-  std::vector<std::optional<double>> values;  // one per place on the x axis; none: not measured
+  TechniqueLook look;                         // colour and mark of the series
+  std::vector<std::optional<double>> values;  // one value for each label on the x axis; empty: not measured
 };
 
 struct LineChart {
-  std::string title, unit;          // of the y axis: "%", "s"
-  std::vector<std::string> places;  // along x
-  std::vector<double> positions;    // of the places; empty: evenly spaced
+  std::string title, unit;          // unit of the y axis: "%", "s"
+  std::vector<std::string> places;  // the labels along the x axis
+  std::vector<double> positions;    // x values of these labels; empty: evenly spaced
   std::string x_unit;
   std::vector<Series> series;
-  std::optional<double> low, high;  // of the y axis; none: as the values need
-  bool is_signed = false;           // values are changes: the axis carries signs and a line at 0
+  std::optional<double> low, high;  // bounds of the y axis; empty: chosen from the values
+  bool is_signed = false;           // true: values are changes, so the axis has signs and a line at 0
   bool logarithmic = false;
-  bool names = true;  // at the lines' ends
+  bool names = true;  // true: the names of the series stand at the ends of their lines
   int width = 620, height = 320;
 };
 std::string svg_of(const LineChart& chart);
 
-// Bars that start at 0, in groups; `decimals` of the figure over each. Wider than asked where the bars need it.
+// Grouped bars that start at 0, with the value over each bar. The chart grows wider than `width` where the bars need
+// it.
 struct BarChart {
   std::string unit;
-  std::vector<std::string> places;  // of a group's bars
+  std::vector<std::string> places;  // the labels of the bars within a group
   std::vector<Series> groups;
   int decimals = 0;
   int width = 620, height = 300;
 };
 std::string svg_of(const BarChart& chart);
 
-// The mark of a technique, for legends: 12 by 12.
+// Returns the mark of a technique for legends, as an SVG of 12 by 12 px.
 std::string mark_svg(const TechniqueLook& look);
 
 }  // namespace limber

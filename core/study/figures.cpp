@@ -13,8 +13,8 @@ namespace limber {
 namespace {
 
 constexpr glm::ivec2 kSliceSize{480, 360}, kBodySize{480, 420}, kCloseSize{360, 300};
-constexpr double kCloseUp_mm = 80;  // height
-constexpr double kTurn = 0.35;      // radians: bodies are seen a little from the side
+constexpr double kCloseUp_mm = 80;  // height of the region that a close-up shows
+constexpr double kTurn = 0.35;      // radians; the camera is turned so that a body's side is visible
 constexpr double kWithoutJoint_mm = 400;
 
 struct PosedBody {
@@ -25,7 +25,7 @@ struct PosedBody {
 PosedBody read_posed(const CellResult& cell, Progress& progress) {
   VolumeFile file = read_volume(cell.folder / "posed.nrrd", progress);
   std::optional<TissueTable> user;
-  // The cell's own table, where it had one.
+  // Uses the cell's own tissue table where the cell has one among its inputs.
   for (const auto& [path, hash] : cell.inputs)
     if (const Path table = cell.folder / path; std::filesystem::exists(table) && is_tissue_table(table))
       user = read_tissue_table(table);
@@ -40,7 +40,8 @@ const JointFigures* furthest_joint(const CellResult& cell) {
   return furthest;
 }
 
-// The plane in which a joint turns, through its head, the body upright where it can be.
+// Returns a picture frame in the plane in which the joint turns, through the joint's head. The body stands upright in
+// the picture where that is possible.
 PictureFrame frame_of(const JointFigures& joint) {
   PictureFrame frame{.centre = joint.head, .size = kSliceSize};
   const auto across = [&](const glm::dvec3& v) { return v - joint.axis * glm::dot(v, joint.axis); };
@@ -54,7 +55,7 @@ PictureFrame frame_of(const JointFigures& joint) {
   return frame;
 }
 
-// What of the plane a volume's tissue covers, mm from the frame's centre.
+// The rectangle of the frame's plane that tissue covers, in mm from the frame's centre.
 struct Box {
   glm::dvec2 low{1e300}, high{-1e300};
   void add(const LabelVolume& volume, const PictureFrame& frame) {
@@ -72,7 +73,7 @@ struct Box {
   }
 };
 
-// A white bar of 50 mm (10 in a close-up) at the lower left.
+// Draws a white scale bar of 50 mm (10 mm in a close-up) at the lower left.
 void draw_scale(Picture& picture, const PictureFrame& frame) {
   const double mm = frame.height_mm > 120 ? 50 : 10;
   const int length = static_cast<int>(std::lround(mm * frame.size.y / frame.height_mm));
@@ -146,7 +147,7 @@ class Maker {
     }
   }
 
-  // Labels as the file has them, which reading may renumber.
+  // Reads a volume with the values of its file as labels, since read_volume may have renumbered them.
   LabelVolume read_values(const Path& path) const {
     VolumeFile file = read_volume(path, progress_);
     std::vector<Label> value_of(65536, 0);
@@ -179,7 +180,7 @@ class Maker {
       figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
     box_.add(*body.volume, body_plane(frame));
 
-    // Results of a session may lack either.
+    // Results of an editor session may lack the files of the overlap or of the volume ratios.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
     if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap))
       figures_.overlaps.png[technique][0] =
@@ -190,7 +191,8 @@ class Maker {
     add_close_up(cell, *body.volume, ratios, colours, frame);
   }
 
-  // One for each technique: its worst pose. Masses made exact leave ratios as they were.
+  // Keeps for each technique the close-up of one pose: the one with the largest number of voxels that are stretched or
+  // compressed to twice or half their volume. Skips mass-exact variants, since they do not change the volume ratios.
   void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios,
                     const LabelColours& colours, PictureFrame frame) {
     const Technique& technique = study_.techniques[cell.cell.technique];
@@ -213,7 +215,7 @@ class Maker {
     else figures_.close_ups.push_back(std::move(close));
   }
 
-  // As the slices are seen, a little from the side.
+  // Returns the frame of the slices, but turned a little so that the body's side is visible.
   static PictureFrame body_plane(PictureFrame frame) {
     const glm::dvec3 eye = frame.towards_eye();
     frame.right = glm::normalize(std::cos(kTurn) * frame.right + std::sin(kTurn) * eye);
@@ -221,7 +223,7 @@ class Maker {
     return frame;
   }
 
-  // All bodies at one scale.
+  // Chooses one frame size for all bodies, so that they are drawn at the same scale.
   void frame_bodies() {
     if (box_.low.x > box_.high.x) return;
     const glm::dvec2 extent = box_.high - box_.low;

@@ -18,10 +18,10 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostBars = 6;     // of a group; more become their mean
-constexpr std::size_t kMostPanels = 12;  // tissues with a chart of their own
-constexpr double kNarrow = 300;          // width of such a chart
-constexpr double kWide = 460;            // width of one of two side by side
+constexpr std::size_t kMostBars = 6;     // upper limit on the bars of a group; with more, their mean is shown
+constexpr std::size_t kMostPanels = 12;  // number of tissues that have a chart of their own
+constexpr double kNarrow = 300;          // width of a tissue's chart, px
+constexpr double kWide = 460;            // width of each of two charts side by side, px
 
 std::string base64(const std::string& bytes) {
   static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -104,7 +104,7 @@ class Page {
              (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "</table></div></figure>\n";
   }
 
-  // Studies count processor seconds; what was made one by one knows the clock.
+  // The times of a study are processor seconds. Those of an editor session's results are wall-clock seconds.
   std::string seconds_word() const { return facts_.of_session ? "s" : "CPU s"; }
   std::string time_word() const { return facts_.of_session ? "time by the clock" : "processor time"; }
   static std::string counted(std::size_t count, const std::string& what) {
@@ -136,7 +136,7 @@ class Page {
              ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
   }
 
-  // The largest of something over a technique's poses, by size, at the finest spacing.
+  // The value of largest magnitude over all poses of one technique, at the finest spacing.
   struct Extreme {
     double value = 0;
     const CellResult* cell = nullptr;
@@ -268,7 +268,8 @@ class Page {
       if (const CellResult* one = cell(spacing, p, technique)) sum += one->cpu_seconds, ++count;
     return count ? std::optional(sum / count) : std::nullopt;
   }
-  // A mesh is refined where the body asks for it, which is not only a matter of its voxels.
+  // Returns a sentence with the mean number of tets at each spacing. The number depends on the body's shape too, since
+  // a mesh is refined where the body needs it.
   std::string tets_note() const {
     std::string note;
     for (int s = 0; s < std::ssize(study_.spacings); ++s) {
@@ -290,7 +291,7 @@ class Page {
     return seconds ? " (" + fixed(*seconds, 1) + " CPU s here)" : "";
   }
 
-  // Percent at the finest spacing, along the poses.
+  // Returns one series for each technique, with the percentage percent_of() of each pose at the finest spacing.
   template <class Percent>
   std::vector<Series> changes(const Percent& percent_of) const {
     std::vector<Series> all;
@@ -305,7 +306,7 @@ class Page {
     return all;
   }
 
-  // By label, most voxels first, of those large enough.
+  // Returns the tissues with enough voxels for their gates to be judged, sorted by falling number of voxels.
   std::vector<const TissueFigures*> large_tissues() const {
     std::vector<const TissueFigures*> tissues;
     for (const auto& [key, one] : at_) {
@@ -390,7 +391,7 @@ class Page {
     return text + "</p>";
   }
 
-  // Techniques downward, poses across.
+  // Lays the pictures out as a table, one row for each technique and one column for each pose.
   std::string grid(const PictureGrid& pictures, const std::vector<int>& columns, const std::string& what) const {
     std::string html = "<table class=\"pictures\"><thead><tr><th></th>";
     for (const int pose : columns) html += "<th>" + escaped(study_.poses[pose].name) + "</th>";
@@ -493,7 +494,7 @@ class Page {
     return one ? "<small>" + grouped(one->overlap_voxels) + " voxels</small>" : "";
   }
 
-  // Typeset: a true minus sign, and no line ends inside a figure.
+  // Typesets a figure with a true minus sign, and with no-break spaces so that no line ends within the figure.
   static std::string typeset(const std::string& figure) {
     std::string text;
     for (const char c : figure) text += c == ' ' ? "\u00a0" : c == '-' && text.empty() ? "\u2212" : std::string(1, c);
@@ -521,7 +522,7 @@ class Page {
     gate_tables("Gates of the body", kinds, 0, of_body);
     gate_tables("Gates", kinds, of_body, kinds.size());
   }
-  // Those from `first` to `end`, one table a spacing.
+  // Adds one table for each spacing, with a column for each of the gates [first, end).
   void gate_tables(const std::string& title, const std::vector<QualityGate>& all, std::size_t first, std::size_t end) {
     const std::vector<QualityGate> kinds(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
     std::string meanings;
@@ -586,7 +587,7 @@ class Page {
             "tissues");
     }
   }
-  // How many voxels changed hands where masses were made exact, below a pose's tissues.
+  // Returns the table row with the number of voxels that changed tissue to make masses exact.
   std::string mass_exact_row(int pose) const {
     if (std::none_of(study_.techniques.begin(), study_.techniques.end(),
                      [](const Technique& technique) { return technique.mass_exact; }))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The look of a study's page: the editor's colours, light and dark, and printed. Techniques have a colour and a mark
-// each, which differ in lightness too, for eyes that tell fewer colours.
+// The style sheet of a study's page: the editor's colours in light mode, in dark mode and for print. Each technique has
+// a colour and a mark. The colours differ in lightness too, for colour-blind readers.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures of a study: slices drawn here, voxels as they are; bodies in 3D by whoever can draw them.
+// Makes the pictures of a study. Slices are drawn here, voxel by voxel; bodies in 3D are drawn by a PictureMaker.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@
 
 namespace limber {
 
-// What part of the world a picture shows, seen along `up` x `right`, without perspective.
+// The region of world space that a picture shows, in parallel projection. The view direction is opposite to right x up.
 struct PictureFrame {
-  glm::dvec3 centre{0}, right{1, 0, 0}, up{0, 0, 1};  // mm; unit, at right angles
+  glm::dvec3 centre{0}, right{1, 0, 0}, up{0, 0, 1};  // centre in mm; right and up: perpendicular unit vectors
   double height_mm = 100;
   glm::ivec2 size{480, 360};  // pixels
 
@@ -26,38 +26,41 @@ struct PictureFrame {
 
 struct Picture {
   glm::ivec2 size{0};
-  std::vector<std::uint8_t> rgb;  // rows from the top
+  std::vector<std::uint8_t> rgb;  // 3 bytes per pixel, rows from top to bottom
 };
-using LabelColours = std::vector<glm::u8vec3>;  // [65536], sRGB; air's is the background
+using LabelColours = std::vector<glm::u8vec3>;  // sRGB colour of each of 65536 labels; label 0 (air): the background
 
 LabelColours tissue_colours(const TissueTable& tissues);
-LabelColours ratio_colours();  // of the codes of run_study.h: blue half and less, grey 1, orange twice and more
+// Returns the colours of the volume ratio codes of run_study.h: blue for a half and less, grey for 1, orange for twice
+// and more.
+LabelColours ratio_colours();
 
-// The plane through the frame's centre: each pixel has the colour of the voxel that it lies in.
+// Draws the slice in the plane through the frame's centre: each pixel has the colour of the voxel that it lies in.
 Picture slice_picture(const LabelVolume& volume, const LabelColours& colours, const PictureFrame& frame);
-// The same in dull colours, with what `marks` holds (1: tissue on tissue, 2: bone in bone) in loud ones.
+// Draws the slice in dull colours, and in bright colours the voxels that `marks` has as 1 (claimed by two positions of
+// tissue) or 2 (claimed by two bones).
 Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, const LabelColours& colours,
                        const PictureFrame& frame);
 
-std::string png_of(const Picture& picture);  // the bytes of the file
+std::string png_of(const Picture& picture);  // returns the bytes of the PNG file
 
-// Where a pose presses or stretches the most: a box of 48 mm with most voxels whose volume is less than half or more
-// than twice what it was.   codes  ratio.nrrd of a cell
+// The box of 48 mm with the most extreme voxels, that is, voxels with less than half or more than twice their rest
+// volume. There the pose compresses or stretches the tissue most.
 struct WorstRegion {
-  glm::dvec3 centre{0};             // of those voxels, world
-  std::int64_t voxels = 0, of = 0;  // those voxels, and all of tissue in the box
-  double least = 1, most = 1;       // volume ratio in it
+  glm::dvec3 centre{0};             // mean position of the box's extreme voxels, world space, mm
+  std::int64_t voxels = 0, of = 0;  // voxels: extreme voxels in the box; of: all its tissue voxels
+  double least = 1, most = 1;       // smallest and largest volume ratio in the box
 };
 std::optional<WorstRegion> worst_region(const LabelVolume& codes);
 
-// A body in 3D, at that frame; `cut` takes away what lies between the frame's plane and the eye.
+// A request for a picture of a body in 3D. With `cut`, the tissue between the viewer and the frame's plane is removed.
 struct BodyPicture {
   std::shared_ptr<const LabelVolume> volume;
   const TissueTable* tissues;
   PictureFrame frame;
   bool cut = false;
 };
-using PictureMaker = std::function<std::string(const BodyPicture&)>;  // the bytes of a PNG file
-using StartPictures = std::function<PictureMaker()>;                  // throws Error where this machine cannot draw
+using PictureMaker = std::function<std::string(const BodyPicture&)>;  // returns the bytes of a PNG file
+using StartPictures = std::function<PictureMaker()>;  // throws Error where this machine cannot draw pictures
 
 }  // namespace limber

@@ -42,7 +42,7 @@ void make_folder(const Path& folder) {
   if (error) throw Error("the folder cannot be made", folder.string(), error.message());
 }
 
-// What is safe in a file's name.
+// Returns the text without the characters that are unsafe in a file name.
 std::string plain(const std::string& text) {
   std::string result;
   for (const char c : text)
@@ -55,7 +55,7 @@ std::string hash_of(const Json& json) {
   return sha256_of_bytes(text.data(), text.size());
 }
 
-// The ending that a volume can be written with.
+// Returns the file name extension to write the volume with: that of `path` if its format can be written, else .nrrd.
 std::string volume_ending(const Path& path) {
   const std::string name = path.filename().string();
   for (const char* ending : {".seg.nrrd", ".nrrd", ".mha", ".nii.gz", ".nii"})
@@ -63,7 +63,8 @@ std::string volume_ending(const Path& path) {
   return ".nrrd";
 }
 
-// How long cells take, by technique, for those that are to come. A body at rest is no measure for one that is bent.
+// Estimates how long the remaining cells take, by the mean time of each technique. Cells with the rest pose do not
+// count, since their time says nothing about bent poses.
 class Pace {
  public:
   void took(const Technique& technique, double seconds) {
@@ -72,11 +73,12 @@ class Pace {
     taken.cells += 1;
     taken.units += weight(technique);
   }
-  // Returns the seconds that a cell is likely to take, negative while no cell has run.
+  // Returns the seconds that a cell of this technique is likely to take, negative while no cell has run.
   double expected(const Technique& technique) const {
     if (const auto found = taken_.find(word_of(technique)); found != taken_.end())
       return found->second.seconds / found->second.cells;
-    // A technique that has not run yet is estimated by those that have, with a solve counted as five blends.
+    // A technique without a finished cell is estimated from the other techniques. A solve by finite elements counts as
+    // much as five skinnings.
     double units = 0, seconds = 0;
     for (const auto& [word, taken] : taken_) units += taken.units, seconds += taken.seconds;
     return units > 0 ? seconds / units * weight(technique) : -1;
@@ -87,10 +89,10 @@ class Pace {
     double seconds = 0, cells = 0, units = 0;
   };
   static double weight(const Technique& technique) { return technique.is_fem() ? 5 : 1; }
-  std::map<std::string, Taken> taken_;  // by the technique's word
+  std::map<std::string, Taken> taken_;  // computing times, by the technique's name in the description
 };
 
-// A worker's progress as part of the study's.
+// Reports a worker's progress as a fraction [begin, end] of the study's progress.
 class CellProgress final : public Progress {
  public:
   CellProgress(Progress& study, std::string name, double begin, double end)
@@ -135,12 +137,12 @@ class Runner {
 
  private:
   struct Input {
-    Path path;  // relative to a folder two below `out`
+    Path path;  // relative to a cell's folder, which lies two levels below `out`
     std::string sha256;
   };
 
-  // A copy among the results, so that a job can be run again wherever they lie. A file that refers to others stays
-  // where it is.
+  // Copies an input file into the folder of the results, so that a job can be run again after this folder has moved. A
+  // .gltf file is not copied, since it refers to other files.
   Input take(const Path& file) {
     if (file.empty()) return {};
     Input input{fs::absolute(file), sha256_of_file(file)};
@@ -176,7 +178,7 @@ class Runner {
     return json;
   }
 
-  // The volume to begin with, and whether it is to have another spacing.
+  // Returns the volume file that a body at this spacing is made from, and whether the volume must be resampled.
   std::pair<Path, bool> source(int spacing) const {
     const std::optional<double> mm = study_.spacings[spacing];
     if (mm)
@@ -200,7 +202,8 @@ class Runner {
   WorkerOutput work(const WorkFolder& folder, const std::string& name, Json job, Progress& progress) const {
     write_file_atomically(folder / name, job.dump(1) + "\n");
     if (run_.threads == 0) return run_worker(folder / name, progress);
-    // Not in the file that stays: results do not depend on it.
+    // The job file that stays with the result does not contain the number of threads, since results do not depend on
+    // it.
     job["threads"] = run_.threads;
     write_file_atomically(folder / "limited.json", job.dump(1) + "\n");
     WorkerOutput output = run_worker(folder / "limited.json", progress);
@@ -208,7 +211,8 @@ class Runner {
     return output;
   }
 
-  // Volume and weights at a spacing; made where they are not there yet.
+  // Name and key of the folder with a body's volume and weights at one spacing. Both are computed unless the folder
+  // exists.
   struct Body {
     std::string name, key;
   };
@@ -287,7 +291,7 @@ class Runner {
                     {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
   }
 
-  // Whole, and of this very cell.
+  // Returns whether the folder contains a complete result with this key.
   static bool is_done(const Path& folder, const std::string& key) {
     if (!fs::exists(folder / "cell.json")) return false;
     const Json json = Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false);
@@ -297,7 +301,7 @@ class Runner {
   static bool is_rest(const StudyPose& pose) {
     return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty();
   }
-  // At rest every technique takes as long as a blend.
+  // Returns the technique by which the cell's time is estimated. At rest every technique takes as long as skinning.
   Technique kind_of(const StudyCell& cell) const {
     return is_rest(study_.poses[cell.pose]) ? Technique{"lbs"} : study_.techniques[cell.technique];
   }
@@ -319,7 +323,8 @@ class Runner {
                              "-" + key.substr(0, kHashLetters);
     CellOutcome outcome{cell, run_.out / "cells" / name, {}};
     bool was_there = true;
-    if (fs::exists(outcome.folder) && !is_done(outcome.folder, key)) fs::remove_all(outcome.folder);  // damaged
+    if (fs::exists(outcome.folder) && !is_done(outcome.folder, key))
+      fs::remove_all(outcome.folder);  // the result is damaged
     if (!fs::exists(outcome.folder)) {
       WorkFolder folder(outcome.folder, progress);
       was_there = folder.made();
@@ -331,7 +336,8 @@ class Runner {
     return outcome;
   }
 
-  // Why it failed, or empty. What stands in the way of every cell is thrown.
+  // Computes a cell into the folder. Returns the reason for which the cell failed, or "". Throws Error for a failure
+  // that would stop every cell, such as a full disk.
   std::string compute_into(WorkFolder& folder, const StudyCell& cell, const std::string& key, const Json& job,
                            Progress& progress) const {
     const Stopwatch wall;
@@ -390,7 +396,7 @@ class Runner {
   const std::vector<StudyCell> cells_;
   std::vector<StudyCell> mine_;
   Input rig_, tissues_;
-  std::vector<std::array<Input, 3>> poses_;  // pose, motion, map
+  std::vector<std::array<Input, 3>> poses_;  // the pose, motion and map file of each pose
   std::vector<std::optional<Body>> bodies_;
   Pace pace_;
   int started_ = 0;
@@ -412,7 +418,7 @@ std::string text_of(const Study& study, const StudyCell& cell) {
 }
 
 std::uint8_t code_of_ratio(double ratio) {
-  if (!(ratio > 0)) return 1;  // turned inside out: the least
+  if (!(ratio > 0)) return 1;  // an inverted voxel gets the smallest code
   return static_cast<std::uint8_t>(std::clamp(std::lround(kCodeOfOne + kStepsOfDoubling * std::log2(ratio)), 1L, 255L));
 }
 double ratio_of_code(int code) { return std::exp2((code - kCodeOfOne) / kStepsOfDoubling); }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the cells of a study into a folder, each by a worker that runs `limber job` on a file that stays with the
-// result: what the command line would do, with a process's own memory and processor time. Done cells are kept under a
-// hash of all that they depend on, the program's own sources included, and never computed again:
+// Computes the cells of a study into a folder. A cell is one combination of spacing, pose and technique. Each cell runs
+// in a worker process as a `limber job` whose file stays with the result, so it does what the command line would do,
+// and its memory and processor time can be measured. Finished cells are stored under a hash of everything that they
+// depend on, including the program's own sources, and are never computed again. The folder contains:
 //   inputs/   rig, tissues, poses: copies that the jobs refer to
 //   bodies/   volume and weights at each spacing
 //   cells/    job.json, report.json (limber-report/1), posed.nrrd, ratio.nrrd, overlap.nrrd, cell.json
-// A folder appears there when it is whole, so a run may be killed at any moment and be taken up again.
+// A cell's folder appears only when it is complete, so a run may be killed at any moment and continued later.
 #pragma once
 
 #include <functional>
@@ -18,35 +19,36 @@
 
 namespace limber {
 
-// Indices into the study.
+// One cell of a study, as indices into the study's lists of spacings, poses and techniques.
 struct StudyCell {
   int spacing = 0, pose = 0, technique = 0;
 };
-// In the order in which they are computed: spacing, then pose, then technique.
+// Returns the cells in the order in which they are computed: by spacing, then pose, then technique.
 std::vector<StudyCell> cells_of(const Study& study);
 std::string text_of(const Study& study, const StudyCell& cell);  // "2 mm, +45, FEM"
 
 struct CellOutcome {
   StudyCell cell;
-  Path folder;          // of the result
-  std::string failure;  // why there is none; empty otherwise
+  Path folder;          // folder of the result
+  std::string failure;  // reason for which there is no result; empty when there is one
 };
 
-// What ratio.nrrd holds: volume per volume at rest, a byte for each posed voxel, in steps of 1/16 of a doubling about
-// 128; 0 in air.
+// The values of ratio.nrrd: each voxel of the posed volume has its volume relative to rest as a byte, 128 + 16 *
+// log2(ratio), limited to [1, 255]. Air has 0.
 std::uint8_t code_of_ratio(double ratio);
 double ratio_of_code(int code);
 
 struct StudyRun {
   Path out;
-  int shard = 0, shards = 1;  // cell i is of shard i mod shards
-  int threads = 0;            // of each worker; 0: every core
-  // A cell is done; `seconds_left` is an estimate for the others, negative where there is none.
+  int shard = 0, shards = 1;  // this run computes the cells whose index modulo `shards` equals `shard`
+  int threads = 0;            // number of threads of each worker; 0: all cores
+  // Called when a cell is done. `was_there` is true for a cell of an earlier run. `seconds_left` is an estimate for the
+  // remaining cells, negative without an estimate.
   std::function<void(const CellOutcome&, int done, int of, bool was_there, double seconds_left)> on_cell;
 };
 
-// The outcomes of the shard's cells, in order.
-//   throws Error where an input is wrong or the folder cannot be written, Cancelled
+// Computes the cells of this run's shard and returns their outcomes, in order. Throws Error where an input is wrong or
+// the folder cannot be written, and Cancelled after a cancel.
 std::vector<CellOutcome> run_study(const Study& study, const StudyRun& run, Progress& progress);
 
 }  // namespace limber

@@ -28,7 +28,7 @@ Technique technique_of(const Result& result, const Json& report) {
   return found.front();
 }
 
-// 1 where two places of tissue claim a voxel, 2 where two bones do.
+// Returns a volume with 1 at voxels that two positions of tissue claim, and 2 at voxels that two bones claim.
 LabelVolume volume_of(const Overlap& overlap, const Grid& grid) {
   LabelVolume marks{grid, ZeroedVector<Label>(static_cast<std::size_t>(grid.voxel_count()))};
   for (const std::int64_t voxel : overlap.tissue) marks.voxels[static_cast<std::size_t>(voxel)] = 1;
@@ -36,7 +36,8 @@ LabelVolume volume_of(const Overlap& overlap, const Grid& grid) {
   return marks;
 }
 
-// Of the tets that hold the voxels; what no tet holds goes rigidly with its bone.
+// Returns for each voxel the code of the volume ratio of the tet that contains it. The ratio is 1 outside of all tets,
+// since tissue there moves rigidly with its bone.
 LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   const TissueVoxels tissue(volume);
   const std::vector<std::int32_t> tets = tets_of_voxels(solved.mesh.tets.T, solved.V, volume.grid, tissue);
@@ -52,7 +53,7 @@ LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   return codes;
 }
 
-// As a cell of a study leaves its folder.
+// Writes the files that the folder of a study's cell has, so that the page reads results as it reads cells.
 void write_cell(const SessionResult& one, const TissueTable& tissues, const Path& folder) {
   const Result& result = *one.result;
   std::filesystem::create_directories(folder);
@@ -90,7 +91,8 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
     progress.update("results", double(outcomes.size()) / double(session.results.size()));
     const Json report = Json::parse(sound_json(one.result->report), nullptr, false);
     const int technique = index_of(study.techniques, technique_of(*one.result, report));
-    // Two of a pose by one technique: by other settings, or of another rig.
+    // Appends a number to the pose's name when the page already has a result of this pose and technique. That result
+    // has other settings or another rig.
     int pose = index_of(poses, one.pose);
     for (int again = 2; !taken.insert({pose, technique}).second; ++again)
       pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");

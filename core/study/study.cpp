@@ -23,10 +23,10 @@ constexpr std::size_t kLongestName = 60;
 
 constexpr const char* kExactWord = "-mass-exact";
 
-// What a study compares where it names none.
+// Returns the techniques that a study compares when its description names none.
 std::vector<Technique> usual_techniques() { return techniques_of({"lbs", "dqs", "fem", "fem-contact"}, ""); }
 
-// Reads a value of the description, and says which key is wrong.
+// Reads values of a study's description. Its errors name the key that is wrong.
 class Reader {
  public:
   Reader(const Path& path) : path_(path) {}
@@ -84,7 +84,7 @@ class Reader {
     return value;
   }
 
-  // One text or a list of them; none where the key is absent.
+  // Returns the value of a key as a list; it may be one text or a list of texts. Empty where the key is absent.
   std::vector<std::string> texts(const Json& value, const char* key, const std::string& where) const {
     if (!value.contains(key)) return {};
     if (value[key].is_string()) return {text(value[key], key)};
@@ -93,7 +93,8 @@ class Reader {
     return all;
   }
 
-  // Words that mean nothing are refused here, before hours of work; what the rig lacks is refused by its cell.
+  // Throws Error for an unknown name of a pose or joint now, before hours of work. A known joint that the rig lacks is
+  // no error here: it only makes its own cells fail.
   PoseRequest body_request(const Json& value, const std::string& where) const {
     PoseRequest request{text(value, "pose_name", ""), texts(value, "joints", where)};
     if (!request.name.empty()) require_body_pose(request.name, path_.string() + ", " + where + ", pose_name");
@@ -205,7 +206,7 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
     read.refuse("the study has too many cells", "", "split it into several studies");
 }
 
-// The volumes man-arm-2mm.mha, man-arm-3mm.nrrd ... of a folder, by spacing.
+// Returns the volumes of the folder (man-arm-2mm.mha, man-arm-3mm.nrrd, ...) by their spacing in mm.
 std::map<double, Path> real_arms(const Path& folder) {
   std::map<double, Path> arms;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -261,7 +262,7 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
   return techniques;
 }
 
-// The first five keep the looks that they had on earlier pages; further methods share looks.
+// The first five methods keep the looks that they had on earlier pages. Further methods share these looks.
 TechniqueLook look_of(const Technique& technique) {
   std::vector<std::string> order = {"lbs", "dqs", "fem", "fem-contact", "mix"};
   for (const Technique& one : plain_techniques())
@@ -314,13 +315,13 @@ Study paper_study(const Path& folder) {
     if (study.ready.empty())
       throw Error("there is no arm in the folder", folder.string(),
                   "put man-arm-2mm.mha there, or name no folder for the procedural arm");
-    study.volume = study.ready.begin()->second;  // the finest
+    study.volume = study.ready.begin()->second;  // the volume with the finest spacing
     for (const char* rig : {"man-arm-2mm-armature.vtk", "Arm-armature.vtk"})
       if (study.rig.empty() && std::filesystem::exists(folder / rig)) study.rig = folder / rig;
     if (study.rig.empty())
       throw Error("the arm has no armature", folder.string(), "put man-arm-2mm-armature.vtk beside it");
     study.name = "Elbow flexion of the Visible Human arm";
-    study.fit_joints = true;  // about the rig's own joint bone would enter bone
+    study.fit_joints = true;  // flexion about the rig's own elbow joint would push bone into bone
   }
   for (const int degrees : {0, 45, 60, 90}) {
     const std::string text = "+" + std::to_string(degrees);

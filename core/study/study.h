@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A study: one body at some spacings, in some poses, by some techniques. Each combination is a cell, which is one
-// `limber resample`. Described in JSON; paths are relative to the description:
+// A study: one body at several spacings, in several poses, by several techniques. Each combination is a cell, which is
+// one `limber resample`. A study is described in JSON; paths are relative to the description's folder:
 //   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json",
-//   "bones"?: [111, 209],
-//    "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4], "methods"?: ["lbs", "dqs", "fem", "fem-contact",
-//    "fem-mass-exact"...], "poses": [{"name": "+45", "flex": ["Forearm=45"]}, {"name": "curl", "motion": "curl.bvh",
-//    "frame": 12, "map"?, "up"?}, {"name": "mine", "pose": "p.json"},
+//    "bones"?: [111, 209], "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4],
+//    "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
+//    "poses": [{"name": "+45", "flex": ["Forearm=45"]},
+//              {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?},
+//              {"name": "mine", "pose": "p.json"},
 //              {"name": "seated", "pose_name": "sit", "joints": ["left elbow flexion=30"]}],
 //    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"tissue_percent": 1, ...}}
-// Without spacings the volume is taken as it is, without methods the four plain ones are; a phantom brings its own rig
-// and tissues.
+// Without spacings_mm the volume keeps its own spacing; without methods the study compares lbs, dqs, fem and
+// fem-contact. A phantom has its own rig and tissues.
 #pragma once
 
 #include <cstdint>
@@ -25,29 +26,30 @@
 
 namespace limber {
 
-// One way to pose that a study compares: a deformation method (resample/deformation_method.h), by finite elements with
-// or without contact. With masses made exact afterwards it is a technique of its own, never silently part of the
-// method.
+// A technique, one of the ways to pose that a study compares: a deformation method (resample/deformation_method.h), for
+// finite elements with or without contact. A method whose masses are made exact afterwards is a technique of its own,
+// so that the report never shows this change as part of the method.
 struct Technique {
   std::string method;    // "dqs": a word of deformation_methods()
-  bool contact = false;  // finite elements only
+  bool contact = false;  // for finite elements only
   bool mass_exact = false;
 
   bool is_fem() const { return method == kFiniteElements; }
   Technique plain() const { return {method, contact, false}; }
   bool operator==(const Technique&) const = default;
 };
-std::vector<Technique> plain_techniques();  // all that are not mass-exact
-std::string technique_words();              // of those: "mix, lbs, dqs, fem, fem-contact"
+std::vector<Technique> plain_techniques();  // all techniques that are not mass-exact
+std::string technique_words();              // the words of these: "mix, lbs, dqs, fem, fem-contact"
 std::string word_of(
     const Technique& technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
 std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"
-// Returns the techniques of these words. Throws Error naming `where` for a word that is none, or stands there twice.
+// Returns the techniques with these words. Throws Error naming `where` for an unknown word or one that occurs twice.
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where);
 
-// The colour and the mark of a technique on the page, [0, kLooks); mass-exact ones have those of the plain one, hollow.
+// The colour and mark of a technique on the report page, [0, kLooks). A mass-exact technique has the look of its plain
+// one, but with a hollow mark.
 struct TechniqueLook {
-  int number = -1;  // -1: grey, for what is no technique
+  int number = -1;  // -1: grey, for values that belong to no technique
   bool exact = false;
 };
 inline constexpr int kLooks = 5;
@@ -55,40 +57,40 @@ TechniqueLook look_of(const Technique& technique);
 
 struct StudyPose {
   std::string name;
-  std::vector<std::string> flex;  // BONE=DEG; neither this nor a file: rest
-  PoseRequest body;               // "pose_name" and "joints"
-  Path pose, motion, map;         // files, or empty
+  std::vector<std::string> flex;  // BONE=DEGREES; if `body` and the files are empty too: rest pose
+  PoseRequest body;               // from the keys "pose_name" and "joints"
+  Path pose, motion, map;         // files; an empty path: none
   std::optional<int> frame;
   std::string up;
 };
 
 struct Study {
   std::string name = "Study";
-  Path description;     // the file it was read from, or empty
-  std::string phantom;  // "arm", "body", or empty: `volume`
+  Path description;     // the file that the study was read from; empty: none
+  std::string phantom;  // "arm", "body", or empty for a study of `volume`
   Path volume, rig, tissues;
-  std::map<double, Path> ready;  // volumes that exist at a spacing; others are made from `volume`
+  std::map<double, Path> ready;  // existing volumes by spacing, mm; others are resampled from `volume`
   std::vector<double> bones;
   std::string weights = "heat", quality = "normal";
   bool fit_joints = false, nearest = false;
-  std::vector<std::optional<double>> spacings;  // mm; none: as it is
+  std::vector<std::optional<double>> spacings;  // mm; an empty one: the volume's own spacing
   std::vector<StudyPose> poses;
   std::vector<Technique> techniques;
   QualityLimits gates;
 };
 
-// Throws Error naming the key that is wrong.
+// Reads the description of a study. Throws Error, which names the wrong key.
 Study read_study(const Path& path);
 
-// The paper's: an arm at 2, 3 and 4 mm, its elbow bent by 0, 45, 60 and 90 degrees more, by every technique.
-//   folder  holds man-arm-2mm.mha (or others, man-arm-*mm*) and its armature; empty: the procedural arm
-//   throws Error where the folder lacks either
+// Returns the study of the paper: an arm at 2, 3 and 4 mm whose elbow is bent by 0, 45, 60 and 90 degrees more than at
+// rest, by the four usual techniques. Throws Error where the folder lacks the volume or the armature.
+//   folder  contains man-arm-2mm.mha (or other man-arm-*mm volumes) and its armature; empty: uses the procedural arm
 Study paper_study(const Path& folder = {});
 
-// As JSON, defaults included: goes into the results.
+// Returns the study as JSON with all defaults written out, for the file of results.
 std::string to_json(const Study& study);
 
-// "2 mm", or "as it is"
+// Returns "2 mm", or "as it is" for the volume's own spacing.
 std::string spacing_text(const std::optional<double>& spacing);
 
 }  // namespace limber

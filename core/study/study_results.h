@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes what a study found: cells.csv, cells.json and report.html, which shows what sar.json there holds, too.
+// Writes the results of a study: cells.csv, cells.json and report.html. The report also shows the SAR values of
+// OUT/sar.json.
 #pragma once
 
 #include "core/base/progress.h"
@@ -8,9 +9,9 @@
 
 namespace limber {
 
-//   command  as it was called, for the report
-//   start    draws bodies in 3D, or none
-//   throws Error where they cannot be written; each file is whole or as before
+// Writes the files, each completely or not at all. Throws Error where they cannot be written.
+//   command  the command line, which the report shows
+//   start    returns what draws bodies in 3D; may be empty
 void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out,
                    const std::string& command, const StartPictures& start, Progress& progress);
 

@@ -43,7 +43,7 @@ Json cell_json(const Study& study, const CellResult& cell) {
 
 using Row = std::map<std::string, std::string>;
 
-// RFC 4180
+// Quotes a field of a CSV file as RFC 4180 says.
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -51,7 +51,8 @@ std::string csv_field(const std::string& text) {
   return quoted + '"';
 }
 
-// Rows of a list go by their names; what else is a list is joined.
+// Adds the figures of a JSON value to the row, with dotted column names. In a list of objects, an object's column is
+// named by its "name", "bone", "path" or "label". Lists of plain values become one field, joined by "; ".
 void flatten(const Json& value, const std::string& name, std::vector<std::string>& order, Row& row) {
   const auto put = [&](const std::string& text) {
     if (row.emplace(name, text).second) order.push_back(name);
@@ -110,7 +111,7 @@ std::string cells_csv(const Study& study, const std::vector<CellResult>& cells) 
     std::vector<std::string> order;
     Row row;
     flatten(json, "", order, row);
-    // A figure that an earlier row lacks goes behind the one that it follows here.
+    // Inserts each new column behind the column that precedes it in this row.
     std::size_t at = 0;
     for (const std::string& name : order) {
       const auto found = std::find(columns.begin(), columns.end(), name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every figure of every cell, for programs.
+// Writes every figure of every cell of a study as JSON and CSV, for other programs to read.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace limber {
 
-// {"schema": "limber-study/1", "version", "study": {...}, "cells": [{"spacing_mm", "pose", "method", "key",
-// "cpu_seconds", ...,
-//  "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}], "report": limber-report/1} | {..., "failure"}]}
+// Returns {"schema": "limber-study/1", "version", "study": {...}, "cells": [{"spacing_mm", "pose", "method", "key",
+//          "cpu_seconds", ..., "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}],
+//          "report": limber-report/1} | {..., "failure"}]}
 std::string cells_json(const Study& study, const std::vector<CellResult>& cells);
 
-// A row for each cell, a column for each figure of any report ("tissues.fat.volume_change_percent"); empty where a cell
-// has none.
+// Returns CSV with a row for each cell and a column for each figure that any report has
+// ("tissues.fat.volume_change_percent"). A field is empty where the cell lacks the figure.
 std::string cells_csv(const Study& study, const std::vector<CellResult>& cells);
 
 }  // namespace limber

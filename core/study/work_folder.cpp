@@ -26,7 +26,8 @@ WorkFolder::WorkFolder(const Path& place, Progress& progress)
   }
 }
 
-// Locked by its descriptor, so that the lock of a killed program is free at once. False: another program has it.
+// Locks the working folder. The lock belongs to the open descriptor, so the system releases it when a program is
+// killed. Returns false when another program has the lock.
 bool WorkFolder::claim() {
   if (fs::exists(place_)) return made_ = true;
   if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST)
@@ -35,7 +36,7 @@ bool WorkFolder::claim() {
   if (descriptor_ < 0 && errno != ENOENT)
     throw Error("the folder cannot be opened", working_.string(), std::strerror(errno));
   const bool locked = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  // The other may have renamed it just before.
+  // Checks that the opened folder still has its name, since the other program may just have renamed it to `place_`.
   struct stat mine {
   }, there{};
   if (!locked || ::fstat(descriptor_, &mine) != 0 || ::stat(working_.c_str(), &there) != 0 ||

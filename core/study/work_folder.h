@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A folder whole or not at all: filled under another name beside its place, then renamed. Two programs that would fill
-// the same one do not disturb each other: the second waits, and takes what the first has made.
+// Makes a folder completely or not at all: it is filled under another name beside its final path and then renamed. When
+// two programs make the same folder, the second waits and uses what the first has made.
 #pragma once
 
 #include "core/base/file.h"
@@ -10,19 +10,19 @@ namespace limber {
 
 class WorkFolder {
  public:
-  // Empty, or what a killed program left there is cleared. When `place` came to be meanwhile, made() is true and there
-  // is nothing to do.
-  //   throws Error where it cannot be made, Cancelled while another program works on it
+  // Creates and locks an empty working folder, and removes what a killed program left in it. Waits while another
+  // program holds the lock. If `place` then exists, made() is true and nothing is left to do. Throws Error where the
+  // folder cannot be made, and Cancelled after a cancel while waiting.
   WorkFolder(const Path& place, Progress& progress);
-  // Without commit() everything in it goes.
+  // Removes the working folder unless commit() has been called.
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   bool made() const { return made_; }
   Path operator/(const std::string& name) const { return working_ / name; }
-  void commit();  // throws Error
-  // Whether a megabyte more can be written there.
+  void commit();  // renames the working folder to `place`; throws Error
+  // Returns whether a megabyte more can be written to the folder.
   bool has_room() const;
 
  private:

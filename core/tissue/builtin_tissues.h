@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Label tables of well-known volumes whose files carry no names: Bender's Visible Man arm and TotalSegmentator's
-// classes. A table is offered only when it names every label that is present.
+// Provides label tables for well-known volumes whose files contain no names: Bender's Visible Man arm and
+// TotalSegmentator's classes. A table is used only when it names every label in the volume.
 #pragma once
 
 #include "core/tissue/tissue_table.h"
 
 namespace limber {
 
-// The built-in table that covers all file values of `present`, nullptr when none does. Its `source` says which it is.
+// Returns the built-in table that names every file value in `present`, or nullptr when none does. The table's member
+// `source` is its name.
 const TissueTable* built_in_table_for(const TissueTable& present);
 
 }  // namespace limber

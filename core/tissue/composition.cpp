@@ -17,7 +17,7 @@ int row_named(const CompositionTable& table, const std::string& name) {
   throw Error("the table of media has no row " + in_quotes(name), "tissues/composition.csv", "install Limber again");
 }
 
-// The media of mixtures of tissues, which are named by their parts.
+// Appends one medium to `table` for each tissue that is a mixture. The medium's name lists the mixture's parts.
 void append_mixtures(CompositionTable& table) {
   const TissueRows& tissues = tissue_rows();
   for (int row = 0; row < std::ssize(tissues.rows); ++row) {
@@ -52,7 +52,7 @@ CompositionTable read_composition_table() {
   for (std::string_view rest = text; !rest.empty();) {
     const auto line = trimmed(take_line(rest));
     const std::string where = path.string() + " line " + std::to_string(++number);
-    if (number == 1 || line.empty()) continue;  // the columns
+    if (number == 1 || line.empty()) continue;  // the first line names the columns
     const auto fields = csv_fields(line);
     if (fields.size() != kElements.size() + 4)
       throw Error("the row has " + std::to_string(fields.size()) + " fields", where, "install Limber again");
@@ -66,7 +66,7 @@ CompositionTable read_composition_table() {
     }
     if (std::abs(sum - 100) > 0.5)
       throw Error("the shares add up to " + text_of(sum) + " %", where, "install Limber again");
-    for (double& share : shares) share /= sum;  // published shares are rounded
+    for (double& share : shares) share /= sum;  // scaled to the sum 1, because published shares are rounded
     table.names.push_back(tissue_names_of(fields, where));
     table.shares.push_back(shares);
     table.sources.push_back(fields.back());

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What tissues are made of, for the transport of particles: shares of elements by mass from a table of comma-separated
-// values, a row a medium with its source (assets/tissues/composition.csv: the media of ICRP Publication 110, 2009, and
-// a metal).
-// Which medium a tissue is of stands in tissues.csv (tissue_rows.h); each mixture there is a medium of its own behind
-// them, by the masses of its parts.
+// Reads which elements tissues consist of, for particle transport simulations. The table assets/tissues/composition.csv
+// has one row per medium, with the elements' shares by mass and their source; it contains the media of ICRP Publication
+// 110 (2009) and metals. tissues.csv (tissue_rows.h) names the medium of each tissue. Each mixture in tissues.csv
+// becomes an additional medium after the others, composed by the masses of its parts.
 #pragma once
 
 #include <array>
@@ -18,7 +17,7 @@ struct Element {
   const char* symbol;
   int atomic_number;
 };
-// The elements of ICRP Publication 110 in its order, then those of implants.
+// The elements of the composition table: the 13 of ICRP Publication 110 in its order, then those of implants.
 inline constexpr std::size_t kTissueElements = 13;
 inline constexpr std::array<Element, 16> kElements = {{{"H", 1},
                                                        {"C", 6},
@@ -44,11 +43,11 @@ struct CompositionTable {
   std::vector<std::string> sources;  // #rows
 };
 
-// Throws Error naming file and line.
+// Reads the program's composition table. Throws Error, which names file and line, when a row is not valid.
 CompositionTable read_composition_table();
 
-// The row of each tissue of the table, in its order. Throws Error naming the tissues that have none: `where` is the
-// file.
+// Returns the index in `media` of each tissue's medium, in the order of the tissues. Throws Error, which names the
+// tissues without a medium and `where` (the file).
 std::vector<int> media_of(const TissueTable& tissues, const CompositionTable& media, const std::string& where);
 
 }  // namespace limber

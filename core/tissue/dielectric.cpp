@@ -19,7 +19,7 @@ constexpr std::uint64_t kMostBytes = 16 << 20;
 constexpr std::string_view kColumns =
     "name,names,kinds,epsilon_infinity,delta1,tau1_ps,alpha1,delta2,tau2_ns,alpha2,delta3,tau3_us,alpha3,delta4,tau4_"
     "ms,alpha4,conductivity,source";
-constexpr std::size_t kNumbers = 14;  // behind name, names and kinds
+constexpr std::size_t kNumbers = 14;  // numeric fields of a row; they follow the columns name, names and kinds
 constexpr double kSecondsOfTau[4] = {1e-12, 1e-9, 1e-6, 1e-3};
 
 ColeCole parameters_of(const std::vector<std::string>& fields, const std::string& where) {
@@ -115,7 +115,8 @@ std::string found_text(const TissueMatch& match, const Tissue& tissue) {
   return match.by_name ? "name: " + match.words : "kind: " + std::string(to_string(tissue.kind));
 }
 
-// The sources of a row's parts, each once.
+// Returns the sources of the dielectric properties of a tissue, or of the parts of a mixture, each source once. `row`
+// is a row of tissues.csv.
 std::string sources_of(const DielectricTable& table, int row) {
   const TissueRows& tissues = tissue_rows();
   std::string text;

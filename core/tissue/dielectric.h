@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Dielectric properties of tissue at any frequency from 10 Hz to 100 GHz by the model of four Cole-Cole dispersions
-// [Gabriel, Lau & Gabriel 1996, Phys. Med. Biol. 41, 2271]:
+// Computes the dielectric properties of tissues at any frequency from 10 Hz to 100 GHz by the model of four Cole-Cole
+// dispersions [Gabriel, Lau & Gabriel 1996, Phys. Med. Biol. 41, 2271]. The complex permittivity at the angular
+// frequency w is
 //   eps(w) = eps_infinity + sum_1..4 delta_n / (1 + (i w tau_n)^(1 - alpha_n)) + sigma_ionic / (i w eps_0)
-// Relative permittivity is its real part, conductivity -w eps_0 times its imaginary part. Parameters stand in a table
-// of comma-separated values, each with its source: assets/tissues/dielectric.csv holds all 44 that were published, and
-// gas. Which of them a tissue has stands in tissues.csv (tissue_rows.h); a table of the user's, with names of its own,
-// goes before it. A tissue with one permittivity and conductivity at every frequency is a row without dispersions.
+// The relative permittivity is its real part; the conductivity is -w eps_0 times its imaginary part. The parameters are
+// read from assets/tissues/dielectric.csv, which contains all 44 published tissues, and gas, each with its source.
+// tissues.csv (tissue_rows.h) names the row of each tissue. A user's table, with its own names, takes precedence. A row
+// without dispersions describes a tissue with the same permittivity and conductivity at every frequency.
 #pragma once
 
 #include <array>
@@ -27,33 +28,35 @@ struct ColeCole {
 };
 
 struct Dielectric {
-  double permittivity = 1;  // relative
+  double permittivity = 1;  // relative permittivity
   double conductivity = 0;  // S/m
 };
 
-constexpr double kLowestFrequency = 10, kHighestFrequency = 1e11;  // Hz, of the model
+constexpr double kLowestFrequency = 10, kHighestFrequency = 1e11;  // range of the model, Hz
 
-//   throws Error for a frequency (Hz) outside of the model's range
+// Returns a tissue's dielectric properties at a frequency in Hz. Throws Error when the frequency is outside of the
+// model's range.
 Dielectric dielectric_at(const ColeCole& tissue, double frequency);
 
 struct DielectricTable {
   std::vector<TissueNames> names;    // #rows
   std::vector<ColeCole> parameters;  // #rows
   std::vector<std::string> sources;  // #rows
-  std::size_t user_rows = 0;         // the first of them are the user's: they are asked before all others
+  std::size_t user_rows = 0;         // number of first rows from the user's table; they take precedence
 
-  TissueMatch match_user(const Tissue& tissue) const;  // among the user's rows
-  // Of one part or a mixture, whose permittivity and conductivity are the means by volume of its parts'.
-  //   row  of tissue_rows(); throws Error when a part has no row here
+  TissueMatch match_user(const Tissue& tissue) const;  // returns the row of the user's table that fits the tissue
+  // Returns the dielectric properties of a row of tissue_rows() at a frequency in Hz. For a mixture they are the means
+  // of the properties of its parts, weighted by volume. Throws Error when a part has no row in this table.
   Dielectric of_tissue_row(int row, double frequency) const;
-  int row_named(const std::string& name) const;  // of the program's; throws Error when there is none
+  // Returns the program's row with this name, never the user's. Throws Error when none has the name.
+  int row_named(const std::string& name) const;
 };
 
-// The table of the program, behind the rows of the user's where a path is given.
-//   throws Error naming file and line
+// Reads the program's dielectric table. When `user` is a path, the rows of that file come first. Throws Error, which
+// names file and line, when a row is not valid.
 DielectricTable read_dielectric_table(const Path& user = {});
 
-// What a simulation of fields needs to know of a tissue.
+// The properties of one tissue that a simulation of electromagnetic fields needs.
 struct TissueMaterial {
   Label label = 0;
   double file_value = 0;
@@ -61,12 +64,12 @@ struct TissueMaterial {
   double density = 0;  // kg/m3
   std::string density_source;
   Dielectric dielectric;
-  std::string row;         // the tissue that it was taken for: a row of tissues.csv, or of the user's table
-  std::string found;       // how: "name: gall bladder", "kind: bone"
-  std::string properties;  // whose they are: "liver", "31 % bone cortical + 69 % bone cancellous"
-  std::string stand_in;    // why, where that is another tissue; else empty
-  std::string source;      // of the properties
-  bool by_name = true;     // else only its kind fits the row
+  std::string row;         // name of the row of tissues.csv or of the user's table that the tissue matches
+  std::string found;       // how the row was found: "name: gall bladder", "kind: bone"
+  std::string properties;  // origin of the properties: "liver", "31 % bone cortical + 69 % bone cancellous"
+  std::string stand_in;    // why another tissue's properties are used; empty: the tissue has its own
+  std::string source;      // source of the dielectric properties
+  bool by_name = true;     // false: the row was found by the tissue's kind, not by its name
 };
 
 struct TissueMaterials {
@@ -74,10 +77,11 @@ struct TissueMaterials {
   std::vector<std::string> unmatched;     // names of tissues that no row fits
 };
 
-// One line that names the tissues (rows, each once) whose properties are taken from others; empty without any.
+// Returns one line of text that names the tissues for which another tissue's properties are used, each once. Empty when
+// there are none.
 std::string stand_ins_text(const std::vector<TissueMaterial>& materials);
 
-// Of the tissues of a table, those that are in a volume.
+// Returns the materials of a volume's tissues at a frequency in Hz.
 TissueMaterials tissue_materials(const TissueTable& tissues, const DielectricTable& table, double frequency);
 
 }  // namespace limber

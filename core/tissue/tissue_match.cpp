@@ -20,7 +20,8 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
-// How many words of the row's i-th synonym the name holds: all of them, or 0.
+// Returns the number of words of name i of the row (0: its name, then its synonyms) when the tissue's name contains all
+// of them, else 0.
 int words_met(const TissueWords& name, const TissueNames& row, std::size_t i) {
   const TissueWords& wanted = row.words[i];
   if (row.whole[i] && name.size() != wanted.size()) return 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Kinds from words. Anatomical names put the thing last or first and its place beside it ("anterior cruciate ligament
-// of the knee", "infrapatellar fat body"), so rules are asked in order: what is said outright (fat, cartilage, tendon,
-// nerve, artery) before what merely names a place (patella, femur).
+// Finds the kind of a tissue by the words of its name. Anatomical names mix the tissue with its location ("anterior
+// cruciate ligament of the knee", "infrapatellar fat body"), so rules are tried in order: words that state the tissue
+// (fat, cartilage, tendon, nerve, artery) before words that may only name a location (patella, femur).
 #include <algorithm>
 #include <array>
 #include <initializer_list>
@@ -17,7 +17,7 @@ using Words = TissueWords;
 
 struct Rule {
   TissueKind kind;
-  Words words;  // any of them, or with an s
+  Words words;  // the rule applies to a name that contains one of these words or its plural with s
 };
 
 const std::vector<Rule>& rules() {

@@ -31,7 +31,8 @@ int row_named(const TissueRows& table, std::string_view name, const std::string&
   refuse("no row has the name " + in_quotes(std::string(name)), where);
 }
 
-// The part before the first '+', which is taken off `text`: "0.5 grey matter", or "grey matter" with a share of 0.
+// Removes the part of a mixture before the first '+' from `text` and returns its row and share, as from "0.5 grey
+// matter". A part without a number, as in "grey matter", gets the share 0.
 TissueShare take_share(const TissueRows& table, std::string_view& text, const std::string& where) {
   const std::size_t end = std::min(text.find('+'), text.size());
   std::string_view part = trimmed(text.substr(0, end));
@@ -46,7 +47,7 @@ TissueShare take_share(const TissueRows& table, std::string_view& text, const st
   return {row_named(table, part, where), share};
 }
 
-// Two parts without shares get those that give the row's density.
+// When a mixture has two parts without shares, sets their shares by volume so that the mixture has the row's density.
 void share_by_density(const TissueRows& table, const TissueRow& row, std::vector<TissueShare>& mixture,
                       const std::string& where) {
   if (mixture.size() != 2 || mixture[0].volume + mixture[1].volume != 0) return;
@@ -76,7 +77,7 @@ std::vector<TissueShare> mixture_of(const TissueRows& table, const TissueRow& ro
 
 TissueRows parse_tissue_rows(std::string_view text, const std::string& where) {
   TissueRows table;
-  std::vector<std::pair<std::string, std::string>> mixtures;  // text and place, a row
+  std::vector<std::pair<std::string, std::string>> mixtures;  // of each row: text of its mixture, and its file and line
   int number = 0;
   for (std::string_view rest = text; !rest.empty();) {
     const auto line = trimmed(take_line(rest));

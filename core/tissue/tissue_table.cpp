@@ -17,17 +17,19 @@ struct KindDefaults {
   TissueKind kind;
   std::string_view name;
   std::uint32_t colour;  // 0xRRGGBB
-  double young_modulus;  // kPa: the finite elements' shear moduli times 3, bone far stiffer than flesh
+  double young_modulus;  // kPa: 3 times the shear modulus used in the finite elements; bone far stiffer than flesh
   double poisson_ratio;
-  int priority;  // bone first, then what is thin and stiff, skin last
+  int priority;  // see Tissue::priority; bone highest, then thin and stiff tissues, skin lowest
 };
-constexpr std::uint32_t kByLabel = 0xffffffff;  // every label its own
-// Stiffness. Published moduli of flesh spread over two decades with method, load and muscle tone; what a pose needs is
-// their order, skin far above fat and relaxed muscle, since bones prescribe the motion and forces cancel out of the
-// shape. Finite elements of bodies under load take shear moduli of 8 kPa for skin, 0.8 for fat, 0.5 for relaxed muscle
-// [Int. Wound J. 15(3), 402-416, 2018, table 3]; here skin is 40, a layer of two or three voxels being as thick as it
-// is rarely, fat 1, muscle 4. Flesh is mostly water: volume changes of fat under load fit a Poisson ratio between 0.49
-// and 0.4999, lower ones lose volume. One row per kind, in the order of the enumeration.
+constexpr std::uint32_t kByLabel = 0xffffffff;  // in place of a colour: each label gets a colour of its own
+// Initial colour, stiffness and priority per kind, in the order of TissueKind.
+// Stiffness: published moduli of flesh differ by two orders of magnitude with method, load and muscle tone. The shape
+// of a posed body depends on the ratios of the moduli and not on their scale, because bones prescribe the motion. What
+// matters is their order: skin far above fat and relaxed muscle. Finite element models of bodies under load use shear
+// moduli of 8 kPa for skin, 0.8 for fat, 0.5 for relaxed muscle [Int. Wound J. 15(3), 402-416, 2018, table 3]. Here
+// they are 40 kPa for skin, 1 for fat, 4 for muscle (a skin layer of two or three voxels is rarely as thick as real
+// skin). Poisson ratio: flesh is mostly water, and volume changes of fat under load fit a ratio between 0.49 and
+// 0.4999. With lower ratios, flesh would lose volume.
 constexpr int kKinds = 18;
 const std::array<KindDefaults, kKinds> kDefaults = {{
     {TissueKind::Unknown, "unknown", kByLabel, 12, 0.4999, 20},
@@ -53,7 +55,7 @@ glm::vec3 srgb_of(std::uint32_t colour) {
   return glm::vec3(colour >> 16 & 255, colour >> 8 & 255, colour & 255) / 255.0f;
 }
 
-// OKLCH to sRGB, clipped [Ottosson 2020].
+// Converts an OKLCH colour to sRGB, clipped to [0, 1] [Ottosson 2020].
 glm::vec3 srgb_of(double lightness, double chroma, double hue_degrees) {
   const double hue = glm::radians(hue_degrees), a = chroma * std::cos(hue), b = chroma * std::sin(hue);
   const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3),
@@ -70,10 +72,11 @@ glm::vec3 srgb_of(double lightness, double chroma, double hue_degrees) {
   return srgb;
 }
 
-// A colour of its own for every label, always the same.
+// Returns the colour of a label without a colour of its own. The same label always gets the same colour.
 glm::vec3 label_colour(double file_value) {
   const int label = static_cast<int>(std::fmod(std::abs(file_value), 65536.0));
-  // The golden angle sets neighbours far apart; the hues of what is selected, 45 to 75 degrees, are left out.
+  // Hues of successive labels differ by the golden angle (137.5 degrees), so that neighbouring labels look very
+  // different. Hues from 45 to 75 degrees are skipped, because they mark a selection.
   double hue = std::fmod(label * 137.508, 360.0) * 330 / 360;
   if (hue >= 45) hue += 30;
   constexpr double kLightness[] = {0.62, 0.72, 0.82};
@@ -113,7 +116,7 @@ void apply_kind_defaults(Tissue& tissue) {
 }
 
 const Tissue* TissueTable::find(Label label) const {
-  // Sorted by label.
+  // `tissues` is sorted by label.
   const auto found =
       std::lower_bound(tissues.begin(), tissues.end(), label, [](const Tissue& t, Label l) { return t.label < l; });
   return found != tissues.end() && found->label == label ? &*found : nullptr;

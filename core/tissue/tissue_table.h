@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What each label of a volume is: name, colour, kind, material. Sources, strongest first: the user's table (JSON,
-// Slicer .ctbl, ITK-SNAP), names in the volume file (.seg.nrrd), a built-in table that covers every label present.
+// Describes each label of a volume: name, colour, kind and material. These come from the user's table (JSON, Slicer
+// .ctbl, ITK-SNAP), else from names in the volume file (.seg.nrrd), else from a built-in table that covers every label
+// present.
 #pragma once
 
 #include <optional>
@@ -24,51 +25,51 @@ enum class TissueKind {
   CorticalBone,
   CancellousBone,
   Marrow,
-  Bone,  // bone without finer distinction
+  Bone,  // bone that is not split into cortical and cancellous
   Cartilage,
-  Tendon,  // and ligament
+  Tendon,  // also ligament
   Connective,
   Vessel,
   Blood,
   Nerve,
   Brain,
   Organ,
-  Cavity,  // body cavity, gas or fluid inside the body
+  Cavity,  // body cavity with gas or fluid
   Nail,
 };
 
-// Bone moves rigidly: cortical, cancellous, marrow and plain bone.
+// Returns whether tissue of this kind moves rigidly: cortical bone, cancellous bone, marrow and plain bone.
 bool is_bone(TissueKind kind);
-std::string_view to_string(TissueKind kind);                        // "cortical bone"
-std::optional<TissueKind> tissue_kind_from_text(std::string_view);  // of a `kind` or `class` field
-TissueKind tissue_kind_from_name(std::string_view tissue_name);     // by words in a name: "Left femur" -> Bone
+std::string_view to_string(TissueKind kind);                        // as in "cortical bone"
+std::optional<TissueKind> tissue_kind_from_text(std::string_view);  // from a table's field `kind` or `class`
+TissueKind tissue_kind_from_name(std::string_view tissue_name);     // from words in a name: "Left femur" -> Bone
 
 struct Tissue {
   Label label = 0;
-  double file_value = 0;  // the value this label has in files, exact up to 2^53 (64-bit labels above are refused)
+  double file_value = 0;  // the label's value in files; exact up to 2^53, and larger values are refused
   std::string name;
   glm::vec3 colour{0.7f};  // sRGB, [0, 1]
   TissueKind kind = TissueKind::Unknown;
   double density = 1.0;         // g/cm3
   double young_modulus = 10.0;  // kPa
   double poisson_ratio = 0.45;
-  int priority = 0;  // of two tissues that claim one voxel the higher wins; bone highest, skin lowest
+  int priority = 0;  // where two tissues move to one voxel, the higher priority wins; skin lowest, bone highest
 };
 
-// One Tissue per non-zero label, sorted by label.
+// The tissues of a volume: one Tissue per non-zero label, sorted by label.
 struct TissueTable {
   std::vector<Tissue> tissues;
-  // Where names and kinds came from, for messages: "tissues.json", "names in the file", "built-in table Bender arm".
+  // The source of the names and kinds, for messages: "tissues.json", "names in the file", "built-in table Bender arm".
   std::string source;
 
   const Tissue* find(Label label) const;  // nullptr when absent
   Tissue* find(Label label);
   const Tissue* find_file_value(double value) const;
-  // kind per label, 0 .. 65535, Unknown where absent
+  // Returns the kind of each label 0 .. 65535; Unknown where the table has no entry.
   std::vector<TissueKind> kinds() const;
 };
 
-// Many look-ups by file value. Lives no longer than the table.
+// Index of a TissueTable for many look-ups by file value. It must not outlive the table.
 class FileValueIndex {
  public:
   explicit FileValueIndex(const TissueTable& table);
@@ -78,27 +79,31 @@ class FileValueIndex {
   std::unordered_map<double, const Tissue*> by_value_;
 };
 
-// Colour, stiffness and priority that a tissue of this kind starts with, and the density of the tissue that its name
-// says, else its kind (tissue_rows.h).
+// Sets the tissue's colour, stiffness and priority to the initial values of its kind. Sets its density to that of the
+// row of tissues.csv that matches its name, else its kind (tissue_rows.h).
 void apply_kind_defaults(Tissue& tissue);
-// Where the numbers come from that a tissue of a kind starts with, for a user to read.
+// The sources of a kind's initial material values, in words for the user.
 struct MaterialSources {
   std::string_view density, stiffness, poisson;
 };
 MaterialSources material_sources(TissueKind kind);
 
-// Reads a label table: our JSON, Slicer .ctbl, ITK-SNAP label file; told apart by content. Keys are file values.
-// Throws Error naming the line or key that is wrong.
+// Reads a label table: Limber's JSON, Slicer .ctbl or an ITK-SNAP label file, recognized by content. The table's keys
+// are the labels' values in the volume file. Throws Error, which names the line or key that is wrong.
 TissueTable read_tissue_table(const Path& path);
-// By name, and for .json by content: an object whose every key is a whole number.
+// Returns whether the file is a label table. The file's name decides, for .json also its content, which must be an
+// object whose keys are all whole numbers.
 bool is_tissue_table(const Path& path);
-void write_tissue_table(const TissueTable& table, const Path& path);  // by extension: .json, .ctbl, .txt (ITK-SNAP)
+void write_tissue_table(const TissueTable& table,
+                        const Path& path);  // the extension selects the format: .json, .ctbl, .txt (ITK-SNAP)
 
-// `table` completed for a volume whose labels and file values stand in `in_file` (as read from the volume's file):
-// entries of `user` win, then what the file said, then a built-in table if it covers every label present.
+// Returns the completed table of a volume file. `in_file` has the file's labels, their values and what else the file
+// states. For each label, an entry of the user's table `user` (nullptr: none) replaces that of `in_file`. When neither
+// table has a name or kind, the result comes from a built-in table that covers every label present, if there is one.
 TissueTable merge_tissue_tables(const TissueTable& in_file, const TissueTable* user);
 
-// The same table with `values` (file values) as its only bone tissues. Throws Error for a value that is not present.
+// Returns the table in which exactly the tissues with the file values `values` are bone. Throws Error for a value that
+// the table does not have.
 TissueTable with_bones(TissueTable table, const std::vector<double>& values);
 
 }  // namespace limber

@@ -14,12 +14,13 @@ namespace limber {
 
 namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Lines along y or z are gathered this many at a time, so that memory is read in whole cache lines.
+// Number of neighbouring lines along y or z that are processed together, so that memory is read in whole cache lines.
 constexpr int kLines = 16;
-// Steps: where all seeds lie nearer, trying every place costs less than an envelope does.
+// Largest distance, in voxels along a line, up to which trying every position costs less than computing the envelope.
 constexpr int kNear = 48;
 
-// Along x the seeds are a mask: two sweeps count steps.
+// Computes the squared distance of each voxel of a row to the nearest seed in that row. Two sweeps that count voxels
+// since the last seed suffice.
 void distance_along_x(const std::uint8_t* seed, float* squared, int count, double step) {
   const int far = std::numeric_limits<int>::max();
   int steps = far;
@@ -34,14 +35,14 @@ void distance_along_x(const std::uint8_t* seed, float* squared, int count, doubl
   }
 }
 
-// Scratch of one line's lower envelope.
+// Computes the lower envelope of the parabolas of one line of voxels, and holds the working memory for it.
 struct Envelope {
-  std::vector<int> vertex;     // parabolas of the envelope, by rising place
-  std::vector<double> border;  // where parabola k takes over from k - 1
+  std::vector<int> vertex;     // positions in the line of the vertices of the envelope's parabolas, rising
+  std::vector<double> border;  // position in the line from which parabola k is lower than parabola k - 1
 
   explicit Envelope(int count) : vertex(count), border(count + 1) {}
 
-  // line[i] becomes min over j of line[j] + (step (i - j))^2
+  // Computes out[i] = min over j of line[j] + (step (i - j))^2: the squared distances in one more dimension.
   void lower(float* line, float* out, int count, double step) {
     const double squared_step = step * step;
     int top = -1;
@@ -70,10 +71,10 @@ struct Envelope {
   }
 };
 
-using Across = FloatLanes<kLines / 4>;  // a voxel of each of kLines lines
+using Across = FloatLanes<kLines / 4>;  // the values at one position of kLines lines
 
-// lines[i] becomes min over j of lines[j] + (step (i - j))^2 by trying every j; false, and `out` has no meaning, where
-// some seeds lie further than kNear steps away.
+// Computes out[i] = min over j of lines[j] + (step (i - j))^2 by trying every j that can be nearer. Returns false, with
+// `out` undefined, when a voxel would have to try positions more than kNear voxels away.
 bool lower_by_trying(const std::vector<Across>& lines, std::vector<Across>& out, int count, double step) {
   for (int i = 0; i < count; ++i) {
     Across lowest = lines[i];
@@ -99,7 +100,8 @@ void lower_by_envelope(const std::vector<Across>& lines, std::vector<Across>& ou
   }
 }
 
-// All lines of `count` voxels, `stride` apart, that start at the `width` neighbouring voxels from `first`.
+// Computes the squared distances along one more axis, in place. There are `width` lines, which start at neighbouring
+// voxels from `first` on. Each has `count` voxels, which are `stride` apart in memory.
 void distance_along(float* first, int width, std::int64_t stride, int count, double step, std::vector<Across>& lines,
                     std::vector<Across>& out) {
   for (int begin = 0; begin < width; begin += kLines) {
@@ -144,7 +146,7 @@ std::vector<float> squared_distance(const VoxelBox& box, const std::vector<std::
   std::vector<float> squared(box.voxel_count());
   if (squared.empty()) return squared;
 
-  // Along x and y: slice by slice.
+  // The passes along x and y work slice by slice.
   parallel_for(nz, 1, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Across> lines(ny), out(ny);
     for (std::int64_t z = begin; z < end && !progress.cancelled(); ++z) {
@@ -156,7 +158,7 @@ std::vector<float> squared_distance(const VoxelBox& box, const std::vector<std::
   });
   progress.update("distances", 0.6);
 
-  // Along z: row by row.
+  // The pass along z works row by row.
   parallel_for(ny, 1, [&](std::int64_t begin, std::int64_t end) {
     std::vector<Across> lines(nz), out(nz);
     for (std::int64_t y = begin; y < end && !progress.cancelled(); ++y)

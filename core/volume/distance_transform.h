@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Exact Euclidean distance in a box of voxels: for every voxel, how far its centre lies from the centre of the nearest
-// seed voxel. One pass per axis; along a line the result is the lower envelope of one parabola per voxel
-// [Felzenszwalb & Huttenlocher 2012], so the cost is linear in voxels. Where all seeds lie near, each voxel tries every
-// place of its line that can be nearer, several lines at a time, which costs less than the envelope.
+// Computes exact Euclidean distances in a box of voxels: for every voxel, the distance from its centre to the centre of
+// the nearest seed voxel. There is one pass per axis. Along a line of voxels the result is the lower envelope of one
+// parabola per voxel [Felzenszwalb & Huttenlocher 2012], so the time is linear in the number of voxels. Where all seeds
+// are near, each voxel instead tries every position of its line that can be nearer. This works on several lines at a
+// time and takes less time than the envelope.
 //
-// Squared distances are kept as floats between the passes: exact for whole-number isotropic spacings up to 4096 voxels,
-// else right to 1e-6 of the value.
+// Squared distances are stored as floats between the passes. They are exact for distances up to 4096 mm when the
+// spacing is isotropic and a whole number of mm, else accurate to 1e-6 of the value.
 #pragma once
 
 #include <cstdint>
@@ -31,18 +32,19 @@ struct VoxelBox {
   }
 };
 
-// The smallest box around all tissue, grown by `margin` voxels but kept inside the grid. Size 0 when all is air.
+// Returns the smallest box that holds all tissue, extended by `margin` voxels on each side as far as the grid reaches.
+// The box has size 0 when all voxels are air.
 VoxelBox tissue_box(const LabelVolume& volume, int margin = 0);
 
-// Squared distance, mm2, of every voxel of the box to the nearest seed; infinity when there is none.
-//   seed     #box bytes, not 0 where a voxel is a seed
+// Returns the squared distance, mm2, of every voxel of the box to the nearest seed; infinity when there is no seed.
+//   seed     one byte per voxel of the box, not 0 where the voxel is a seed
 //   spacing  mm, positive
 std::vector<float> squared_distance(const VoxelBox& box, const std::vector<std::uint8_t>& seed,
                                     const glm::dvec3& spacing, Progress& progress = no_progress());
 
-// Distance in mm to the border of a body, measured between voxel centres: positive outside (to the nearest voxel of
-// the body), negative inside (to the nearest voxel that is not of the body). Around the box nothing is known, so a
-// body that touches the box's faces is not closed there.
+// Returns the signed distance in mm between voxel centres for every voxel of the box. Outside the body it is positive:
+// the distance to the nearest voxel of the body. Inside it is negative: minus the distance to the nearest voxel outside
+// the body. Voxels beyond the box are unknown, so a body that touches the box's faces has no border there.
 std::vector<float> signed_distance(const VoxelBox& box, const std::vector<std::uint8_t>& body,
                                    const glm::dvec3& spacing, Progress& progress = no_progress());
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Floats of several lines of voxels side by side, four in a register. For minima of plain arrays of floats compilers
-// use one instruction a float.
+// Computes with floats of several lines of voxels at once, four floats per register. For the minimum of two plain
+// arrays of floats, compilers would use one instruction per float.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ bool any_above(const FloatLanes<kFours>& lanes, float limit) {
   return above[0] | above[1] | above[2] | above[3];
 }
 
-// Each of `lowest` becomes the least of itself and of `other` + rise.
+// Sets each float of `lowest` to the minimum of itself and the corresponding float of `other` + rise.
 template <std::size_t kFours>
 void lower(FloatLanes<kFours>& lowest, const FloatLanes<kFours>& other, float rise) {
   for (std::size_t i = 0; i < kFours; ++i) {

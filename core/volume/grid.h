@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A regular grid of voxels in the world. The world is LPS (x to the patient's left, y to the back, z to the head),
-// in millimetres. Voxel (0,0,0)'s *centre* lies at `origin`; direction's columns are the unit axes of the voxel rows,
-// columns and slices, and may mirror. Voxels are stored x fastest.
+// A regular grid of voxels in the world. The world is LPS (x to the patient's left, y to the back, z to the head), in
+// millimetres. The *centre* of voxel (0,0,0) lies at `origin`. The columns of `direction` are the unit vectors along
+// the voxel axes x, y and z, and may form a left-handed system. Voxels are stored x fastest.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +28,14 @@ struct Grid {
   }
 };
 
-// p' = linear p + offset
+// The affine transform p' = linear p + offset.
 struct AffineTransform {
   glm::dmat3 linear{1};
   glm::dvec3 offset{0};
 };
 inline glm::dvec3 operator*(const AffineTransform& t, const glm::dvec3& p) { return t.linear * p + t.offset; }
 
-// Between world points (mm) and voxel coordinates (voxel centres are whole numbers).
+// Returns the transform from voxel coordinates (voxel centres are whole numbers) to world points in mm.
 inline AffineTransform world_from_voxel(const Grid& grid) {
   return {glm::dmat3(grid.direction[0] * grid.spacing.x, grid.direction[1] * grid.spacing.y,
                      grid.direction[2] * grid.spacing.z),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Large pages under a fresh label volume. Every page of a limb is soon read or written, air too, and one fault for 2 MB
-// costs far less than 512. The air of a large body takes no memory while it is only read, and large pages would take
-// it.
+// Asks for large memory pages for a new label volume. Every page of a limb's volume is soon read or written, air too,
+// and one page fault for 2 MB takes far less time than 512 for 4 KB each. Large bodies get small pages: air that is
+// only read uses no memory there, but would with large pages.
 #pragma once
 
 #include "core/base/memory_pages.h"
@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// Of volumes of at most 32 million voxels; to be called before labels are written.
+// Asks for large pages for volumes of at most 32 million voxels; call it before labels are written.
 inline void want_large_pages(LabelVolume& volume) {
   constexpr std::size_t kMost = 32'000'000;
   const std::size_t voxels = volume.voxels.size();

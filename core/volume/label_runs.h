@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where stretches of air and of tissue end along a row of labels, found several voxels at a time.
+// Finds where stretches of air and of tissue end along a row of labels, several voxels at a time.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// First x from `x` on, below `size`, that is not air; `size` where there is none.
+// Returns the first position in the row, from `x` on, that is not air; `size` when there is none.
 inline int end_of_air(const Label* row, int x, int size) {
   for (std::uint64_t words[4]; x + 16 <= size; x += 16) {
     std::memcpy(words, row + x, sizeof words);
@@ -24,12 +24,12 @@ inline int end_of_air(const Label* row, int x, int size) {
   return x;
 }
 
-// First x from `x` on, below `size`, that is air; `size` where there is none.
+// Returns the first position in the row, from `x` on, that is air; `size` when there is none.
 inline int end_of_tissue(const Label* row, int x, int size) {
   constexpr std::uint64_t kOnes = 0x0001000100010001, kHighest = kOnes << 15;
   for (std::uint64_t word; x + 4 <= size; x += 4) {
     std::memcpy(&word, row + x, sizeof word);
-    // The lowest of these bits is of the first label that is 0.
+    // The lowest bit set in `air` belongs to the first label that is 0.
     if (const std::uint64_t air = (word - kOnes) & ~word & kHighest) return x + std::countr_zero(air) / 16;
   }
   while (x < size && row[x] != 0) ++x;

@@ -10,11 +10,12 @@
 namespace limber {
 
 namespace {
-// Share of the neighbourhood's mean that is taken off each membership. At 0.15 to 0.2 volumes are kept best, at 0 the
-// Dice of large tissues is highest; 0.1 keeps nearly all of both. Any value below 4/3 leaves voxel centres exact.
+// Share of the eight voxels' mean that is subtracted from each membership. The volumes of tissues are preserved best at
+// 0.15 to 0.2, and the Dice coefficient of large tissues is highest at 0; 0.1 preserves nearly all of both. With any
+// value below 4/3, a point at a voxel's centre gets that voxel's label.
 constexpr double kSharpening = 0.1;
 
-// Rounds down; std::floor is a call where the processor's own instruction may not be assumed.
+// Rounds down. std::floor would be a function call where the compiler may not use the processor's rounding instruction.
 int round_down(double value) {
   const int whole = static_cast<int>(value);
   return whole - (value < whole);
@@ -23,13 +24,14 @@ int round_down(double value) {
 double hermite(double f) { return f * f * (3 - 2 * f); }
 }  // namespace
 
-// The eight voxels around a point. Bit 0, 1, 2 of a corner's number: upper in x, y, z.
+// The eight voxels around a point, with corner numbers 0 to 7. Bits 0, 1 and 2 of a voxel's number are set when it is
+// the upper one in x, y and z.
 struct LabelSampler::Neighbours {
   std::array<Label, 8> label;
   glm::ivec3 low;
-  // Once the point is placed among them:
-  glm::dvec3 fraction;  // between lower and upper voxels, [0, 1)
-  int nearest;          // corner of the voxel whose cell holds the point
+  // place() sets the next two members, the point's position among the eight voxels.
+  glm::dvec3 fraction;  // position between the lower and the upper voxels, [0, 1)
+  int nearest;          // corner number of the voxel nearest to the point
 
   const glm::dvec3& place(const glm::dvec3& point) {
     fraction = point - glm::dvec3(low);
@@ -43,7 +45,8 @@ struct LabelSampler::Neighbours {
     return half[0] == half[1] && half[0] == label[0] * std::uint64_t{0x0001000100010001};
   }
 
-  // Of the labels that `allowed` lets through; the nearest voxel's comes first, so that it wins a tie.
+  // Returns the memberships of those of the eight labels that `allowed` accepts. The nearest voxel's label is the first
+  // in the list, so that it wins a tie.
   template <class Allowed>
   Memberships memberships(const Allowed& allowed) const {
     const double x[] = {1 - hermite(fraction.x), hermite(fraction.x)};
@@ -65,7 +68,7 @@ struct LabelSampler::Neighbours {
     return found;
   }
 
-  // Largest membership; 0 when there is none.
+  // Returns the label with the largest membership among those that `allowed` accepts; 0 when it accepts none.
   template <class Allowed>
   Label largest_membership(const Allowed& allowed) const {
     const Memberships found = memberships(allowed);
@@ -81,7 +84,8 @@ LabelSampler::LabelSampler(const LabelVolume& volume)
       row_(volume.grid.size.x),
       slice_(std::int64_t{volume.grid.size.x} * volume.grid.size.y) {}
 
-// False when the point is so far outside the grid (or not a number) that all eight are air.
+// Finds the eight voxels around the point. Returns false when the point is so far outside the grid (or not a number)
+// that all eight are air.
 inline bool LabelSampler::neighbours(const glm::dvec3& point, Neighbours& out) const {
   const glm::ivec3 size = volume_->grid.size;
   const bool near_grid =
@@ -111,7 +115,7 @@ Label LabelSampler::nearest(const glm::dvec3& point) const {
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point) const {
-  // What has not moved lies in the middle of its voxel.
+  // A point that has not moved lies exactly at its voxel's centre.
   const glm::ivec3 size = volume_->grid.size;
   if (point.x >= 0 && point.y >= 0 && point.z >= 0 && point.x < size.x && point.y < size.y && point.z < size.z)
     if (const glm::ivec3 voxel(point); glm::dvec3(voxel) == point) return volume_->at(voxel);
@@ -144,7 +148,8 @@ Label LabelSampler::nearest_of(const glm::dvec3& point, const LabelSet& allowed,
   const glm::ivec3 centre(round_down(held.x + 0.5), round_down(held.y + 0.5), round_down(held.z + 0.5));
   Label best = 0;
   double nearest = std::numeric_limits<double>::infinity();
-  // Shell by shell; a voxel of shell s is at least s - 0.5 away.
+  // Searches the cubic shells of voxels around the centre from the inside out. A voxel of shell s is at least s - 0.5
+  // voxels from the point.
   for (int shell = 0; shell <= reach; ++shell) {
     if (best && (shell - 0.5) * (shell - 0.5) > nearest) break;
     for (int z = -shell; z <= shell; ++z)

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The label at a point of a label volume: the one with the largest interpolated membership. Points are in voxel
+// Finds the label at a point of a label volume: the one with the largest interpolated membership. Points are in voxel
 // coordinates of the volume (voxel centres are whole numbers; outside the grid is air). At a voxel centre every method
-// gives that voxel's label, always.
+// returns that voxel's label.
 //
-// A membership is interpolated between the eight voxels around the point by Hermite's cubic with zero slope at the
-// centres, 3 f^2 - 2 f^3: a label holds on near its own voxels, so thin layers survive, and borders between voxels stay
-// smooth. A tenth of the eight voxels' mean is then taken off each membership (an unsharp mask), which gives back to
-// layers and vessels of one voxel about a third of the volume that any smoothing takes from them. Wider kernels were
-// measured on several bodies and angles and lose on all of them: their ringing moves borders by more than they know.
+// A label's membership is interpolated between the eight voxels around the point by Hermite's cubic with zero slope at
+// the voxel centres, 3 f^2 - 2 f^3. So a label's membership stays high near its own voxels: thin layers survive, and
+// borders between labels stay smooth. Then a tenth of the eight voxels' mean is subtracted from each membership (an
+// unsharp mask). Layers and vessels of one voxel so regain about a third of the volume that they lose by smoothing.
+// Wider kernels were measured on several bodies and angles and were worse on all of them: their ringing moves borders.
 //
-// Turning the Bender arm by 45 degrees and back on its own 2 mm grid, Dice over labels of 100 voxels or more, mean /
-// weighted by voxels: nearest 0.9201/0.9658, trilinear 0.9210/0.9670, cubic B-spline of 4^3 voxels 0.9270/0.9691,
-// Catmull-Rom 0.9299/0.9703, this 0.9334/0.9723 (without the mask 0.9342/0.9729, but vessels lose half as much again).
+// Measured on the Bender arm, turned by 45 degrees and back on its own 2 mm grid. The numbers are the Dice coefficient
+// of labels of 100 voxels or more, as plain mean / mean weighted by voxels. Nearest voxel: 0.9201/0.9658. Trilinear:
+// 0.9210/0.9670. Cubic B-spline of 4^3 voxels: 0.9270/0.9691. Catmull-Rom: 0.9299/0.9703. This method: 0.9334/0.9723;
+// without the unsharp mask 0.9342/0.9729, but vessels then lose half as much volume again.
 #pragma once
 
 #include <array>
@@ -24,20 +25,23 @@ namespace limber {
 
 class LabelSampler {
  public:
-  // Keeps a reference: the volume must outlive the sampler and not change.
+  // Keeps a reference to the volume, which must outlive the sampler and must not change.
   explicit LabelSampler(const LabelVolume& volume);
 
-  // Of the voxel whose cell the point lies in; cells are half open, [-0.5, 0.5) about the centre.
+  // Returns the label of the voxel whose cube contains the point: [-0.5, 0.5) around the voxel's centre along each
+  // axis.
   Label nearest(const glm::dvec3& point) const;
 
-  // The tissue with the largest membership, the nearest voxel's on a tie. Where the nearest voxel is air this is air;
-  // where it is tissue the answer is never air: bodies keep their outer border, and no hole opens inside.
+  // Returns the tissue label with the largest membership; on a tie, that of the nearest voxel. When the nearest voxel
+  // is air, the result is air; when it is tissue, the result is never air. So a body keeps its outer border and gets
+  // no holes.
   Label tissue(const glm::dvec3& point) const;
 
-  // The largest membership among `allowed` tissues only; 0 when none of them is at one of the eight voxels around.
+  // Returns the label with the largest membership among the `allowed` tissues; 0 when none of the eight voxels around
+  // the point has one of them.
   Label tissue(const glm::dvec3& point, const LabelSet& allowed) const;
 
-  // How much each allowed tissue of the eight voxels around has of the point: its membership, in no order.
+  // The memberships at a point of the allowed tissues of the eight voxels around it, in no order.
   struct Memberships {
     int count = 0;
     std::array<Label, 8> label;
@@ -45,12 +49,13 @@ class LabelSampler {
   };
   Memberships memberships(const glm::dvec3& point, const LabelSet& allowed) const;
 
-  // The allowed tissue whose voxel is nearest (counted in voxels), at most `reach` voxels away along each axis; 0 when
-  // there is none.
+  // Returns the label of the allowed voxel nearest to the point, distance in voxels. Only voxels at most `reach` voxels
+  // away along each axis are searched; 0 when none of them is allowed.
   Label nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
-  // The allowed tissue with most voxels about the point, up to two voxels further than the nearest one: what lies
-  // around a bone, and not the thin layer that clings to it. The smaller label on a tie; 0 when none is within `reach`.
+  // Returns the allowed tissue with the most voxels around the point. Voxels are counted up to two voxels farther than
+  // the nearest allowed one. So the result is the tissue that surrounds a bone, and not a thin layer on the bone.
+  // Returns the smaller label on a tie, and 0 when no allowed voxel is within `reach` voxels along each axis.
   Label prevailing(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One tissue label per voxel. 0 is air (outside); what a label means stands in the TissueTable beside it.
+// Holds one tissue label per voxel. Label 0 is air (outside); the TissueTable of the body describes the other labels.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace limber {
 
 using Label = std::uint16_t;
 
-// A byte per label, 0 .. 65535; not 0 for those that belong to the set. Air never counts.
+// A set of labels, one byte per label 0 .. 65535: not 0 for labels in the set. Air is never counted as a member.
 using LabelSet = std::vector<std::uint8_t>;
 
-// A byte per row along x, y + size.y z; not 0 for those that may hold tissue.
+// A set of rows along x, one byte per row y + size.y * z: not 0 for rows that may hold tissue.
 using RowSet = std::vector<std::uint8_t>;
 
 struct LabelVolume {
@@ -24,7 +24,7 @@ struct LabelVolume {
 
   Label at(const glm::ivec3& v) const { return voxels[grid.index(v)]; }
   Label& at(const glm::ivec3& v) { return voxels[grid.index(v)]; }
-  // Air outside the grid.
+  // Returns the label of a voxel, and air outside the grid.
   Label at_or_air(const glm::ivec3& v) const { return grid.contains(v) ? at(v) : Label{0}; }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tells a grey image from labels by its voxels: a label reaches over several voxels, but the grey values of two
-// neighbours are mostly not the same.
+// Tells a grey image from a label volume by its voxels: a label covers several neighbouring voxels, but the grey values
+// of two neighbours mostly differ.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// Counts how often two neighbours along x, both tissue, differ. Voxels are added in storage order, in parts of any
-// length.
+// Counts the pairs of neighbouring tissue voxels along x, and those whose labels differ. Voxels are added in storage
+// order, in blocks of any length.
 class NeighbourChanges {
  public:
   explicit NeighbourChanges(int row_length) : row_length_(row_length) {}
@@ -26,13 +26,14 @@ class NeighbourChanges {
       if (++in_row_ == row_length_) in_row_ = 0;
     }
   }
-  // Of those pairs, [0, 1]. Label volumes have a few percent, grey images most.
+  // Returns the share of the pairs whose labels differ, [0, 1]: a few percent in label volumes, most in grey images.
   double share() const { return pairs_ ? double(changes_) / double(pairs_) : 0; }
-  // Atlases of a body have up to some 500 labels and differ at a tenth of their faces; a CT has 250 values and more and
-  // differs at nine tenths. Few labels that lie finely mixed are no image.
-  //   labels  how many there are
+  // Returns whether the volume looks like a grey image. Atlases of a body have up to some 500 labels, and a tenth of
+  // their neighbour pairs differ. A CT has 250 values or more, and nine tenths of its pairs differ. A volume of few
+  // labels is no grey image, however finely the labels are mixed.
+  //   labels  number of distinct labels
   bool looks_grey(std::size_t labels) const { return may_be_grey(labels) && share() > kMostlyDiffers; }
-  // Whether there are enough of them for a grey image.
+  // Returns whether a volume with `labels` distinct labels has enough of them to be a grey image.
   static bool may_be_grey(std::size_t labels) { return labels >= kManyLabels; }
 
  private:

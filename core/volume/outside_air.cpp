@@ -10,7 +10,8 @@ namespace limber {
 
 namespace {
 
-// The lowest and the highest voxel of all tissue; the lowest is above the highest where there is none.
+// Returns the lowest and the highest corner voxel of the tissue's bounding box. Without tissue, the lowest is greater
+// than the highest.
 std::pair<glm::ivec3, glm::ivec3> box_of_tissue(const LabelVolume& volume) {
   glm::ivec3 lowest = volume.grid.size, highest(-1);
   const int size = volume.grid.size.x;
@@ -27,7 +28,7 @@ std::pair<glm::ivec3, glm::ivec3> box_of_tissue(const LabelVolume& volume) {
   return {lowest, highest};
 }
 
-// Fills stretches of air along x, one at a time.
+// Marks outside air by flood filling, one stretch of a row along x at a time.
 class AirFlood {
  public:
   explicit AirFlood(const LabelVolume& volume)
@@ -35,7 +36,8 @@ class AirFlood {
         size_(volume.grid.size),
         outside_(volume.voxels.size(), 0) {}
 
-  // From all that lies beyond the box of the tissue: each such slab of air holds four edges of the volume's box.
+  // Marks all voxels beyond the tissue's bounding box as outside and spreads from them. They belong to outside air,
+  // because each slab of air between the bounding box and a face of the volume contains four edges of the volume.
   void start_around_tissue() {
     const auto [lowest, highest] = box_of_tissue(volume_);
     const auto is_beyond = [&](int y, int z) { return y < lowest.y || y > highest.y || z < lowest.z || z > highest.z; };
@@ -50,7 +52,7 @@ class AirFlood {
         std::fill(row, row + lowest.x, std::uint8_t{1});
         std::fill(row + highest.x + 1, row + size_.x, std::uint8_t{1});
       }
-    // The box's sides that the air beyond them touches.
+    // Continues from those faces of the bounding box that touch air beyond it.
     for (int z = lowest.z; z <= highest.z; ++z)
       for (int y = lowest.y; y <= highest.y; ++y) {
         const bool is_side = (y == lowest.y && y > 0) || (y == highest.y && y + 1 < size_.y) ||
@@ -62,7 +64,7 @@ class AirFlood {
     spread();
   }
 
-  // From every border voxel that lies on at least so many of the box's sides.
+  // Spreads from every air voxel that lies on at least `sides` faces of the volume (2: on an edge of the volume).
   void start(int sides) {
     for (int z = 0; z < size_.z; ++z)
       for (int y = 0; y < size_.y; ++y) {
@@ -102,7 +104,7 @@ class AirFlood {
     }
   }
 
-  // One voxel of each stretch of air between begin and end.
+  // Queues one voxel of each stretch of unmarked air with begin <= x < end in row (y, z).
   void add_row(int begin, int end, int y, int z) {
     const std::int64_t row = volume_.grid.index({0, y, z});
     for (int x = begin; x < end; ++x)

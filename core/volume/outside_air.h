@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which air lies around a body, and which inside of it.
+// Tells the air around a body from the air inside it.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace limber {
 
-// A byte per voxel of the grid, not 0 for air that faces of air join to one of the twelve edges of the volume's box.
-// Where a body is cut by a side of the box, a windpipe opens into that side but reaches no edge: its air is the body's.
-// Where tissue fills all the edges, air that is joined to a side counts.
+// Returns a byte per voxel of the grid, not 0 for outside air: air that is connected through voxel faces to one of the
+// twelve edges of the volume. Where a face of the volume cuts a body, a windpipe may reach that face but no edge, so
+// its air counts as inside. When tissue fills all edges, air connected to any face of the volume counts as outside.
 std::vector<std::uint8_t> outside_air(const LabelVolume& volume);
 
 }  // namespace limber

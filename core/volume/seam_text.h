@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams as one line of text, for headers of other files: the numbers of their faces, 3 * place of the lower voxel +
-// axis, in rising order, each as its distance from the one before, in bytes of seven bits (the eighth: more follow),
-// lowest first, in two hexadecimal digits each.
+// Writes seams as one line of text for headers of other files, and reads them back. A face has the number 3 * (index of
+// its lower voxel) + axis. The numbers are sorted, and each is stored as its difference from the previous one. A
+// difference is written in groups of seven bits, the lowest first. Each group is a byte of two hexadecimal digits,
+// whose eighth bit is set when more bytes follow.
 #pragma once
 
 #include <string>
@@ -12,7 +13,7 @@
 namespace limber {
 
 std::string text_of_seams(const Seams& seams);
-// Throws Error where the text is none, or names a face outside the grid; `where` is the file.
+// Reads seams from text. Throws Error when the text is not valid or names a face outside the grid; `where` is the file.
 Seams seams_of_text(std::string_view text, const glm::ivec3& grid_size, const std::string& where);
 
 }  // namespace limber

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where tissue touches without hanging together: a set of voxel faces. A hand that lies on a hip is skin beside skin,
-// and in a coarse scan flesh beside flesh. A seam says that the two are not one, and costs no voxel: heat and geodesic
-// ways do not cross it, and when the body is posed its two sides become two surfaces.
+// A seam is a set of voxel faces at which tissue touches but is not connected. Where a hand lies on a hip, skin touches
+// skin, or in a coarse scan flesh touches flesh. A seam separates hand and hip without removing a voxel: heat and
+// geodesic paths do not cross the seam, and in the posed body its two sides are two surfaces.
 //
-// A face is named by the lower of its two voxels and the axis that it lies across.
+// A face is identified by the lower of its two voxels and by the axis perpendicular to the face.
 #pragma once
 
 #include <array>
@@ -17,36 +17,38 @@ namespace limber {
 
 class Seams {
  public:
-  //   grid_size  voxels of the volume
+  // Creates an empty set for a volume of `grid_size` voxels.
   explicit Seams(const glm::ivec3& grid_size);
 
   glm::ivec3 grid_size() const { return grid_size_; }
-  // `lower` must lie inside the grid, and so must the voxel above it.
+  // Adds the face to the set (cut) or removes it (join). The voxel `lower` and its upper neighbour along `axis` must
+  // both lie inside the grid.
   void cut(const glm::ivec3& lower, int axis);
   void join(const glm::ivec3& lower, int axis);
   bool is_cut(const glm::ivec3& lower, int axis) const {
     const std::int32_t brick = brick_of_[cell_of(lower)];
     return brick >= 0 && (bricks_[brick][axis][lower.z & 7] >> ((lower.x & 7) + 8 * (lower.y & 7)) & 1);
   }
-  // Whether the face of `voxel` in one of six directions is cut: 0 towards lower x, 1 towards higher x, 2 and 3 along
-  // y, 4 and 5 along z. The voxel there may lie outside the grid.
+  // Returns whether the face of `voxel` in a direction is cut. The directions 0 to 5 are towards lower x, higher x,
+  // lower y, higher y, lower z and higher z. The neighbour in that direction may lie outside the grid.
   bool is_cut_towards(const glm::ivec3& voxel, int direction) const {
     glm::ivec3 lower = voxel;
     if (!(direction & 1) && --lower[direction >> 1] < 0) return false;
     return is_cut(lower, direction >> 1);
   }
-  bool touches(const glm::ivec3& voxel) const;  // whether any of the voxel's faces is cut
-  // Whether a face is cut within the brick of 8^3 voxels whose lowest is `corner`, or within one of the 26 around it.
+  bool touches(const glm::ivec3& voxel) const;  // returns whether any of the voxel's faces is cut
+  // Returns whether a face is cut within the brick of 8^3 voxels with the lowest voxel `corner`, or within one of its
+  // 26 neighbours.
   bool is_near_brick(const glm::ivec3& corner) const;
 
-  std::int64_t size() const { return size_; }  // faces
+  std::int64_t size() const { return size_; }  // number of cut faces
   std::int64_t heap_bytes() const {
     return static_cast<std::int64_t>(brick_of_.capacity() * sizeof(std::int32_t) + bricks_.capacity() * sizeof(Brick));
   }
   bool empty() const { return size_ == 0; }
   bool operator==(const Seams& other) const;
 
-  // body(lower voxel, axis) for every face, in order of bricks.
+  // Calls body(lower voxel, axis) for every cut face, brick by brick.
   template <class Body>
   void for_each(const Body& body) const {
     for (std::int64_t cell = 0; cell < std::ssize(brick_of_); ++cell) {
@@ -61,14 +63,14 @@ class Seams {
   }
 
  private:
-  using Brick = std::array<std::array<std::uint64_t, 8>, 3>;  // by axis and slice: bit x + 8 y
+  using Brick = std::array<std::array<std::uint64_t, 8>, 3>;  // [axis][z]: a bit per face, x + 8 y of its lower voxel
 
   std::int64_t cell_of(const glm::ivec3& v) const {
     return (v.x >> 3) + std::int64_t{brick_grid_.x} * ((v.y >> 3) + std::int64_t{brick_grid_.y} * (v.z >> 3));
   }
 
   glm::ivec3 grid_size_, brick_grid_;
-  std::vector<std::int32_t> brick_of_;  // of the whole grid, -1 where nothing is cut
+  std::vector<std::int32_t> brick_of_;  // one per brick of the grid: index into bricks_, -1 where nothing is cut
   std::vector<Brick> bricks_;
   std::int64_t size_ = 0;
 };

@@ -10,7 +10,7 @@ using Brick = std::array<std::uint64_t, 8>;
 constexpr std::uint64_t kLowestX = 0x0101010101010101, kHighestX = kLowestX << 7;
 constexpr std::uint64_t kLowestY = 0xff, kHighestY = kLowestY << 56;
 
-// Within the brick, through faces, until nothing more is reached.
+// Extends `reached` through voxel faces over the voxels of `within`, inside this brick, until no voxel is added.
 void spread_inside(Brick& reached, const Brick& within) {
   for (bool grows = true; grows;) {
     grows = false;
@@ -25,8 +25,8 @@ void spread_inside(Brick& reached, const Brick& within) {
   }
 }
 
-// What lies beyond the side of a brick that is full there: voxels of the brick beside it.
-//   direction  0 towards lower x, 1 towards higher x, 2 and 3 along y, 4 and 5 along z
+// Returns the voxels of the neighbouring brick that touch the voxels `here` across the face between the two bricks.
+//   direction  0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
 Brick beyond(const Brick& here, int direction) {
   Brick there{};
   for (int z = 0; z < 8; ++z) switch (direction) {

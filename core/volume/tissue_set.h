@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A set of tissue voxels, one bit each, in the bricks of a list of tissue voxels. It spreads 64 voxels at a time.
+// A set of tissue voxels with one bit per voxel, stored in the bricks of a TissueVoxels list (8^3 voxels each). It is
+// extended to connected voxels by operations on 64 voxels at a time.
 #pragma once
 
 #include <array>
@@ -12,20 +13,20 @@ namespace limber {
 
 class TissueSet {
  public:
-  // Empty. The reference is kept.
+  // Creates an empty set that keeps a reference to `tissue`.
   explicit TissueSet(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size(), Brick{}) {}
 
-  // Voxels are tissue.
+  // Adds a voxel, which must be tissue.
   void add(const glm::ivec3& voxel) { slice(voxel) |= bit(voxel); }
   bool contains(const glm::ivec3& voxel) const { return slice(voxel) & bit(voxel); }
 
-  // Adds all voxels of `within` that hang together with the set through faces of voxels of `within`; seams do not
-  // count.
-  //   within  of the same list of tissue voxels
+  // Adds all voxels of `within` that are connected to voxels of this set through faces of voxels of `within`. Seams are
+  // ignored.
+  //   within  a set over the same TissueVoxels list
   void spread(const TissueSet& within);
 
  private:
-  using Brick = std::array<std::uint64_t, 8>;  // one word a z slice: bit x + 8 y
+  using Brick = std::array<std::uint64_t, 8>;  // one word per z slice: bit x + 8 y
 
   static std::uint64_t bit(const glm::ivec3& v) { return std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7)); }
   std::uint64_t& slice(const glm::ivec3& v) { return bricks_[tissue_.brick_at(v)][v.z & 7]; }

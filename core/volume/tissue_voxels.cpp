@@ -14,37 +14,38 @@ namespace limber {
 
 namespace {
 
-// Positions are kept as 16-bit numbers, places in the list as 32-bit ones.
+// Upper limits on the voxels of the grid along one axis and on the tissue voxels in the list, because voxel positions
+// are stored as 16-bit numbers and list indices as 32-bit numbers.
 constexpr int kLongest = std::numeric_limits<std::int16_t>::max();
 constexpr std::int64_t kMostPlaces = std::numeric_limits<std::int32_t>::max();
 
-// Bit x for label x of `count`, at most eight.
+// Returns a mask in which bit x is set when label x is not air, for the first `count` labels of a row (at most eight).
 std::uint64_t tissue_bits(const Label* row, int count) {
   constexpr std::uint64_t kBelowHighest = 0x7fff7fff7fff7fff;
   std::uint64_t fours[2] = {0, 0};
   std::memcpy(fours, row, count * sizeof(Label));
   std::uint64_t bits = 0;
   for (int i = 0; i < 2; ++i) {
-    // The highest bit of each label is set where the label is not 0.
+    // In `highest`, the highest bit of each 16-bit label is set when the label is not 0.
     const std::uint64_t highest = ((fours[i] & kBelowHighest) + kBelowHighest) | fours[i];
     bits |= ((highest >> 15 & 0x0001000100010001) * 0x0001000200040008 >> 48 & 0xf) << (4 * i);
   }
   return bits;
 }
 
-// The bricks with tissue of one layer, in brick order.
+// Returns the bricks that contain tissue in the layer of bricks number `bz` along z, in brick order.
 std::vector<TissueVoxels::Brick> bricks_of_layer(const LabelVolume& volume, int bz) {
   constexpr int kBrick = TissueVoxels::kBrick;
   const glm::ivec3 size = volume.grid.size;
   std::vector<TissueVoxels::Brick> bricks;
-  std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);  // of a row of bricks
+  std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);  // one mask per brick in x
   for (int by = 0; by * kBrick < size.y; ++by) {
     std::fill(masks.begin(), masks.end(), std::array<std::uint64_t, kBrick>{});
     const int end_z = std::min((bz + 1) * kBrick, size.z), end_y = std::min((by + 1) * kBrick, size.y);
     for (int z = bz * kBrick; z < end_z; ++z)
       for (int y = by * kBrick; y < end_y; ++y) {
         const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
-        // Air, by far the most, is passed quickly.
+        // end_of_air() skips air, by far the most common label, several voxels at a time.
         for (int x = end_of_air(row, 0, size.x); x < size.x; x = end_of_air(row, x, size.x)) {
           const int first = x & ~7;
           x = std::min(first + kBrick, size.x);
@@ -71,7 +72,8 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
                 "crop it to " + std::to_string(kLongest) + ", or choose a coarser spacing");
   brick_grid_ = (grid_size_ + (kBrick - 1)) / kBrick;
   brick_of_.assign(std::int64_t{brick_grid_.x} * brick_grid_.y * brick_grid_.z, -1);
-  // A layer of bricks at a time; how many voxels and bricks come before is added up afterwards.
+  // Collects the bricks of each layer in parallel. Each brick's first list index is set afterwards, because it depends
+  // on the bricks before.
   std::vector<std::vector<Brick>> layers(brick_grid_.z);
   parallel_for(brick_grid_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t bz = begin; bz < end; ++bz) layers[bz] = bricks_of_layer(volume, static_cast<int>(bz));

@@ -19,22 +19,22 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMostFiles = 100000;
-// Positions are decimal text, rounded; gaps may differ by this share of the mean.
+// Share of the mean by which a gap between two slices may differ from it, because positions are rounded decimal text.
 constexpr double kEvenGaps = 0.02;
-// The most one byte of a compressed slice may unpack to.
+// Largest number of bytes into which one byte of a compressed slice may unpack.
 constexpr std::int64_t kCodecMost = 4000;
-// What the library may take besides the file, which it holds up to four times, and the pixels, which JPEG 2000 spreads
-// widely. An element's length stands in 32 bits, and the library allocates it before it reads it: a file of 300 bytes
-// asks for 4 GB.
+// Bytes of memory that GDCM may use in addition to the file (which it holds up to four times) and the pixels (which
+// JPEG 2000 expands widely). The limit is needed because GDCM allocates an element by its stated length of 32 bits
+// before it reads the element: a file of 300 bytes can request 4 GB.
 constexpr std::size_t kCodecMemory = 64 << 20;
 
 struct Slice {
-  std::size_t index = 0;  // of the volume's files
+  std::size_t index = 0;  // index in VolumeLocation::headers
   Path path;
   std::string series;
   int rows = 0, columns = 0;
   glm::dvec3 position{0}, along_row{1, 0, 0}, along_column{0, 1, 0};
-  glm::dvec2 spacing{1};  // mm between columns (x), between rows (y)
+  glm::dvec2 spacing{1};  // mm between columns (x) and between rows (y)
   double thickness = 1;
   double slope = 1, intercept = 0;
   VoxelType type = VoxelType::Int16;
@@ -44,7 +44,7 @@ struct Slice {
   glm::dvec3 normal() const { return glm::cross(along_row, along_column); }
 };
 
-// The module with GDCM.
+// The functions of the module that contains GDCM (dicom_codec.h).
 struct Codec {
   decltype(&limber_dicom_elements) elements;
   decltype(&limber_dicom_pixels) pixels;
@@ -69,7 +69,8 @@ const Codec& codec(const Path& path) {
   return loaded;
 }
 
-// Whether the file says that its pixels are stored as they are (implicit or explicit lengths, either byte order).
+// Returns whether the file's transfer syntax says that its pixels are not compressed (three such syntaxes exist:
+// element lengths implicit, or explicit in either byte order).
 bool is_plain(const PlainFile& file) {
   std::string start(2048, '\0');
   start.resize(file.read_at(0, start.data(), start.size()));
@@ -82,7 +83,8 @@ bool is_plain(const PlainFile& file) {
   return syntax == "1.2.840.10008.1.2" || syntax == "1.2.840.10008.1.2.1" || syntax == "1.2.840.10008.1.2.2";
 }
 
-// Before anything is allocated for them.
+// Throws Error when the file is too small to contain `bytes` bytes of pixels. Called before memory is allocated for the
+// pixels.
 void check_pixels_fit(const PlainFile& file, const Path& path, std::int64_t bytes) {
   if (bytes > file.size() * (is_plain(file) ? 1 : kCodecMost))
     throw Error("the pixels of the DICOM image are missing or damaged", path.string(), "export the series again");
@@ -92,9 +94,9 @@ std::size_t memory_for(const PlainFile& file, std::size_t pixel_bytes) {
   return kCodecMemory + 4 * static_cast<std::size_t>(file.size()) + 16 * pixel_bytes;
 }
 
-// The elements that describe an image, as text or as a 16-bit number.
+// Holds the data elements of a DICOM header, each of which can be read as text or as a 16-bit number.
 class Elements {
-  static constexpr std::size_t kLongest = 1024;  // of what is asked for below
+  static constexpr std::size_t kLongest = 1024;  // upper limit on the bytes of an element; longer ones are skipped
 
  public:
   Elements(const PlainFile& file, const Path& path) {
@@ -120,7 +122,7 @@ class Elements {
     std::memcpy(&number, found->second.data(), 2);
     return number;
   }
-  // Numbers between backslashes; none unless there are `count`.
+  // Returns the element's numbers, which are separated by backslashes. Returns none unless there are exactly `count`.
   std::vector<double> numbers(std::uint16_t group, std::uint16_t element, std::size_t count) const {
     std::string all = text(group, element);
     std::replace(all.begin(), all.end(), '\\', ' ');
@@ -172,7 +174,7 @@ Slice read_slice_header(VolumeFiles& files, std::size_t index) {
     slice.along_row = {o[0], o[1], o[2]};
     slice.along_column = {o[3], o[4], o[5]};
   }
-  // DICOM names the distance between rows first.
+  // DICOM stores the distance between rows first, then that between columns.
   for (const auto& spacing : {elements.numbers(0x0018, 0x1164, 2), elements.numbers(0x0028, 0x0030, 2)})
     if (!spacing.empty()) slice.spacing = {spacing[1], spacing[0]};
   for (const auto& thickness : {elements.numbers(0x0018, 0x0050, 1), elements.numbers(0x0018, 0x0088, 1)})
@@ -183,7 +185,7 @@ Slice read_slice_header(VolumeFiles& files, std::size_t index) {
   return slice;
 }
 
-// One series, in order along its normal.
+// Reads the headers of all slices and sorts the slices along their normal. Throws Error for more than one series.
 std::vector<Slice> read_series(VolumeFiles& files) {
   const Path& folder = files.location().path;
   std::map<std::string, std::vector<Slice>> by_series;
@@ -221,7 +223,7 @@ void check_alike(const std::vector<Slice>& slices, const Path& path) {
   }
 }
 
-// From the first slice to the next; gaps must be even.
+// Returns the vector from one slice to the next, mm. Throws Error when the gaps between slices differ.
 glm::dvec3 slice_step(const std::vector<Slice>& slices, const Path& path) {
   const Slice& first = slices.front();
   const glm::dvec3 normal = glm::normalize(first.normal());
@@ -271,7 +273,8 @@ class DicomSource final : public VoxelSource {
     if (scale_) to_float(slice);
     place_ = 0;
   }
-  // A series whose slices are scaled each in its own way is delivered scaled.
+  // Replaces the stored values of a slice by slope * stored + intercept, as floats. This serves a series whose slices
+  // have different slopes or intercepts.
   void to_float(const Slice& slice) {
     std::vector<char> scaled(static_cast<std::size_t>(std::int64_t{slice.rows} * slice.columns) * sizeof(float));
     visit_voxel_type(slice.type, [&]<class T>(T) {

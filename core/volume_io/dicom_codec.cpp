@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 namespace {
-// The bytes of an open file, from its beginning; the file's own position stays.
+// A stream over an open file from its first byte on. It does not change the file descriptor's own read position.
 class FileBuffer final : public std::streambuf {
  public:
   explicit FileBuffer(int descriptor) : descriptor_(descriptor), size_(::lseek(descriptor, 0, SEEK_END)) {}
@@ -42,7 +42,7 @@ class FileBuffer final : public std::streambuf {
  private:
   int descriptor_;
   off_type size_;
-  off_type end_ = 0;  // in the file, of what is buffered
+  off_type end_ = 0;  // file offset of the end of the buffered bytes
   std::array<char, 1 << 16> buffer_;
 };
 

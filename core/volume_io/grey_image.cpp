@@ -27,7 +27,7 @@ float nearest(const GreyVolume& volume, const glm::dvec3& place) {
   return volume.grid.contains(voxel) ? volume.voxels[static_cast<std::size_t>(volume.grid.index(voxel))] : kOutside;
 }
 
-// The part of a line that lies in the volume: from .. to in steps; empty where from > to.
+// The part of the line start + t * step that lies in the volume: from <= t <= to; empty when from > to.
 struct Stretch {
   double from, to;
 };
@@ -46,7 +46,7 @@ Stretch inside(const Grid& grid, const glm::dvec3& start, const glm::dvec3& step
   return part;
 }
 
-// Calls `value` with the voxel coordinates of each pixel's middle and fills the picture with what it says.
+// Returns a picture whose pixels are value(p), where p is the pixel's centre in voxel coordinates.
 template <class Value>
 std::vector<float> picture(const GreyVolume& volume, const PictureFrame& frame, const Value& value) {
   std::vector<float> pixels(static_cast<std::size_t>(frame.size.x) * static_cast<std::size_t>(frame.size.y));
@@ -84,7 +84,7 @@ void require_labels(const LabelVolume& volume, const TissueTable& tissues, const
 }
 
 GreyWindow usual_window(const GreyVolume& volume) {
-  constexpr std::size_t kAsked = 200'000;  // values: enough for a hundredth
+  constexpr std::size_t kAsked = 200'000;  // voxels to sample; enough to estimate the 1 % and 99 % quantiles
   std::vector<float> values;
   const std::size_t step = std::max<std::size_t>(1, volume.voxels.size() / kAsked);
   for (std::size_t i = 0; i < volume.voxels.size(); i += step)
@@ -103,7 +103,8 @@ std::vector<float> grey_slice(const GreyVolume& volume, const PictureFrame& fram
 
 std::vector<float> grey_projection(const GreyVolume& volume, const PictureFrame& frame) {
   const Grid& grid = volume.grid;
-  // Rays begin before the volume and end behind it: its diagonal and the way to its middle on either side.
+  // The rays start before the volume and end behind it. Half a ray's length is half the volume's diagonal plus the
+  // distance from the picture's centre to the volume's centre.
   const glm::dvec3 middle = world_from_voxel(grid) * (0.5 * (glm::dvec3(grid.size) - 1.0));
   const double reach = 0.5 * glm::length(glm::dvec3(grid.size) * grid.spacing) + glm::distance(middle, frame.middle);
   const double length = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});

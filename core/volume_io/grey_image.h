@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Grey images (CT, MR) that come where labels are meant, and pictures of them.
+// Detects grey images (CT, MR) that are given in place of labels, and makes pictures of grey images.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,38 @@
 
 namespace limber {
 
-// Says what makes a label volume look like a grey image, "it has 300 values, and 99 % of neighbouring voxels differ";
-// nothing where it does not. Labels that mostly have names are labels, however finely they are mixed.
+// Returns why a label volume looks like a grey image, as in "it has 300 values, and 99 % of neighbouring voxels
+// differ". Returns nothing when the volume does not look so. A volume whose labels mostly have names is never taken for
+// a grey image.
 std::optional<std::string> grey_image_doubt(const LabelVolume& volume, const TissueTable& tissues);
 
-// Throws Error, one line that names the file, for a volume that looks like a grey image.
+// Throws Error naming the file when the volume looks like a grey image.
 void require_labels(const LabelVolume& volume, const TissueTable& tissues, const Path& path);
 
-// Which values are shown: `level` is the middle grey, and `width` reaches from black to white.
+// The range of values that a picture shows: `level` is shown as middle grey, and `width` is the range from black to
+// white.
 struct GreyWindow {
   double level = 0, width = 1;
 
   bool operator==(const GreyWindow&) const = default;
 };
-// From the first to the last hundredth of the values, which hides outliers.
+// Returns the window from the 1 % to the 99 % quantile of the volume's values. Outliers do not widen it.
 GreyWindow usual_window(const GreyVolume& volume);
 
-// Where a picture lies in the world: its middle, mm, and unit axes along its rows and columns.
+// The position of a picture in the world: its centre `middle`, mm, and unit vectors along its rows (`right`) and its
+// columns (`down`).
 struct PictureFrame {
   glm::dvec3 middle{0}, right{1, 0, 0}, down{0, 1, 0};
   glm::ivec2 size{1};  // pixels
   double millimetres_per_pixel = 1;
 };
-// Values by rows from the top; NaN outside the volume.
-//   slice       of the nearest voxels
-//   projection  the largest value along each line of sight through the whole volume
+// Both functions return the picture's values row by row from the top, NaN where the picture lies outside the volume.
+//   grey_slice       the value of the voxel nearest to each pixel
+//   grey_projection  the largest value along each pixel's line of sight through the whole volume
 std::vector<float> grey_slice(const GreyVolume& volume, const PictureFrame& frame);
 std::vector<float> grey_projection(const GreyVolume& volume, const PictureFrame& frame);
 
-// A value's grey in that window; 0 for NaN.
+// Returns the grey level of a value in a window, 0 (black) to 255 (white); 0 for NaN.
 std::uint8_t grey_of(float value, const GreyWindow& window);
 
 }  // namespace limber

@@ -12,7 +12,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
-// Scaled labels (slope times a whole number) are whole up to rounding.
+// Largest distance between a scaled value and a whole number, relative to that number, at which the value still counts
+// as a label. The product of a slope and a whole number is rounded.
 constexpr double kScaledTolerance = 1e-6;
 
 template <class Word>
@@ -35,7 +36,8 @@ void swap_bytes(void* voxels, std::size_t count, int size) {
   if (size == 8) swap_words<std::uint64_t>(voxels, count);
 }
 
-// Itself where it can, else the label it was given before, else the highest free one.
+// Finds the label of a file's value: the value itself when possible, else the label that this value got before, else
+// the highest label that no value uses.
 LabelDecoder::Problem LabelDecoder::assign(std::int64_t value, Label& label) {
   if (value >= 0 && value <= 65535 && use_[value] != kOther) {
     use_[value] = kItself;
@@ -60,7 +62,7 @@ LabelDecoder::Problem LabelDecoder::assign(std::int64_t value, Label& label) {
 template <class T>
 LabelDecoder::Problem LabelDecoder::decode_whole(const T* voxels, std::size_t count, Label* labels) {
   if constexpr (std::is_unsigned_v<T> && sizeof(T) <= 2) {
-    // Nothing can be remapped: every value is its own label.
+    // Every value of this type is a valid label, so nothing is remapped.
     for (std::size_t i = 0; i < count; ++i) {
       labels[i] = voxels[i];
       use_[voxels[i]] = kItself;
@@ -103,7 +105,7 @@ LabelDecoder::Problem LabelDecoder::decode_real(const T* voxels, std::size_t cou
       const double whole = std::nearbyint(value);
       if (std::abs(value - whole) <= kScaledTolerance * std::max(1.0, std::abs(whole))) value = whole;
     }
-    if (value != previous) {  // true for NaN
+    if (value != previous) {  // NaN differs from every value, so it is always checked
       const bool whole = value == std::floor(value) && std::isfinite(value);
       if (!whole || std::abs(value) > static_cast<double>(kLargestExact)) {
         bad_value_ = value;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From a file's voxel values to labels of 16 bits. A value of 0 to 65 535 is its own label; any other whole number (a
-// negative one, one of 32 or 64 bits) gets a label that no value of the file uses. The file's values come back from
-// values(), so that they can be written as they were.
+// Converts a file's voxel values to 16-bit labels. A value from 0 to 65 535 is its own label, unless an earlier value
+// got that label. Any other whole number (negative or above 65 535) gets the highest label that is not used yet.
+// values() returns the file's values, so that they can be written back unchanged.
 #pragma once
 
 #include <array>
@@ -18,14 +18,15 @@ namespace limber {
 
 class LabelDecoder {
  public:
-  enum class Problem { None, Fractional, TooLarge, TooMany };  // TooLarge: beyond 2^53, not exact as a double
+  enum class Problem { None, Fractional, TooLarge, TooMany };  // TooLarge: above 2^53, where doubles are not exact
 
-  // Turns `count` stored voxels in native byte order into labels. Stops at the first voxel that is no label.
-  //   returns  None, or what is wrong with the value bad_value()
+  // Converts `count` stored voxels in native byte order to labels. Stops at the first voxel whose value cannot be a
+  // label.
+  //   returns  None, or why that value, which is bad_value(), cannot be a label
   Problem decode(const void* voxels, std::size_t count, VoxelType type, double slope, double intercept, Label* labels);
 
   double bad_value() const { return bad_value_; }
-  // Labels seen so far and their values in the file, by label. Label 0 is always air.
+  // Returns the labels seen so far and their values in the file, sorted by label. Label 0 is always air.
   std::vector<std::pair<Label, double>> values() const;
 
  private:
@@ -38,7 +39,7 @@ class LabelDecoder {
   Problem assign(std::int64_t value, Label& label);
 
   std::array<std::uint8_t, 65536> use_{};
-  std::unordered_map<std::int64_t, Label> label_of_;  // of values that are not their own label
+  std::unordered_map<std::int64_t, Label> label_of_;  // for each value that is not its own label
   std::int64_t next_free_ = 65535;
   double bad_value_ = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Named points of a body, as comma-separated values: a line `name,x,y,z`, then a point a line, mm, LPS.
+// Reads and writes named points of a body as comma-separated values: a title line `name,x,y,z`, then one point per
+// line. Coordinates are in mm, world axes LPS.
 #pragma once
 
 #include <string>
@@ -16,7 +17,7 @@ struct Landmark {
   glm::dvec3 position{0};  // world, mm
 };
 
-// Throws Error naming file and line.
+// Reads landmarks. Throws Error, which names file and line.
 std::vector<Landmark> read_landmarks(const Path& path);
 void write_landmarks(const std::vector<Landmark>& landmarks, const Path& path);
 

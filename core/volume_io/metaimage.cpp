@@ -44,10 +44,12 @@ std::vector<Number> numbers_in(const Fields& fields, std::initializer_list<std::
   if (!numbers || numbers->size() < count)
     throw Error(std::string(*names.begin()) + " is " + in_quotes(*text), where,
                 "this needs " + std::to_string(count) + " numbers; correct the header");
-  return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};  // a plane may carry three
+  // A 2-D image may list a third number, which is dropped.
+  return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-// LOCAL, LIST, a pattern or a name. LIST's names stand in the lines that follow.
+// Reads where the voxel data are from the value of ElementDataFile: LOCAL (this file), LIST (the names of the data
+// files are in the following lines), a pattern of names, or one name.
 void find_data(VolumeHeader& header, std::string_view value, std::string_view rest, std::size_t header_end,
                const std::string& where) {
   const auto words = words_of(value);
@@ -73,7 +75,7 @@ void find_data(VolumeHeader& header, std::string_view value, std::string_view re
 }  // namespace
 
 bool looks_like_meta_header(std::string_view bytes) {
-  // Keys may come in any order; a text line with '=' that begins with a known key is enough.
+  // Keys may come in any order. One line `key = value` with a known key, among the first eight lines, suffices.
   std::string_view rest = bytes.substr(0, 4096);
   for (int line = 0; line < 8 && !rest.empty(); ++line) {
     const auto text = take_line(rest);
@@ -111,7 +113,7 @@ VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where)
     throw Error("the header names no data (ElementDataFile)", where,
                 "the file is cut off or no MetaImage; export it again");
 
-  // What kind of image.
+  // Checks the kind of image and reads the voxel type.
   if (const auto* type = field(fields, {"ObjectType"}); type && *type != "Image")
     throw Error("this MetaImage file holds " + in_quotes(*type), where, "only ObjectType = Image is read");
   const auto axes = numbers_in<int>(fields, {"NDims"}, 1, {0}, where)[0];
@@ -128,7 +130,7 @@ VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where)
                 "use MET_UCHAR, MET_USHORT or another scalar type");
   header.voxel_type = *type;
 
-  // Where the voxels lie.
+  // Reads the grid of the voxels.
   if (!field(fields, {"DimSize"})) throw Error("the header names no DimSize", where, "correct the header");
   const std::size_t n = static_cast<std::size_t>(axes);
   RawGrid raw;
@@ -149,7 +151,7 @@ VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where)
   }
   header.grid = checked_grid(raw, where, header.warnings);
 
-  // How the bytes are written.
+  // Reads how the bytes are encoded.
   header.big_endian = is_true(field(fields, {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));
   const auto* binary = field(fields, {"BinaryData"});
   if (binary && !is_true(binary)) header.encoding = Encoding::Ascii;
@@ -193,7 +195,7 @@ std::string meta_header(const Voxels& voxels, const std::string& data_name, cons
 }
 
 void write_meta(const Voxels& voxels, const Path& path) {
-  constexpr int kDigits = 15;  // the size is known only afterwards; blanks keep its place
+  constexpr int kDigits = 15;  // blanks in the header for the compressed size, which is known only later
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
     const std::string header = meta_header(voxels, "LOCAL", std::string(kDigits, ' '));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Headers of MetaImage files (.mha .mhd): lines `Key = value` up to ElementDataFile. TransformMatrix holds the world
-// axis of each voxel axis in turn; world is LPS, mm. AnatomicalOrientation only describes and is not used.
+// Parses headers of MetaImage files (.mha .mhd): lines `Key = value` up to ElementDataFile. TransformMatrix lists the
+// direction of each voxel axis in the world (LPS, mm), one axis after the other. AnatomicalOrientation is only
+// descriptive and is ignored.
 #pragma once
 
 #include <string_view>
@@ -11,8 +12,8 @@ namespace limber {
 
 bool looks_like_meta_header(std::string_view bytes);
 
+// Parses a header. Throws Error unless it describes one scalar volume of 1 to 3 axes and its fields are consistent.
 //   bytes  the file's first bytes            where  the file, for messages
-//   throws Error for anything but one scalar volume of 1 to 3 axes that is described without contradiction
 VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where);
 
 }  // namespace limber

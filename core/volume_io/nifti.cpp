@@ -16,11 +16,11 @@
 namespace limber {
 
 namespace {
-// Where the fields stand, and how wide they are, in the two versions.
+// The byte offsets of the header's fields, and their width, for one of the two NIfTI versions.
 struct Layout {
   int bytes, dim, pixdim, datatype, bitpix, vox_offset, slope, intercept, intent, qform_code, sform_code, quaternion,
       q_offset, srow, units, magic;
-  bool wide;  // version 2: int64 and double instead of int16 and float
+  bool wide;  // true in version 2: fields are int64 and double instead of int16 and float
 };
 constexpr Layout kVersion1 = {348, 40, 76, 70, 72, 108, 112, 116, 68, 252, 254, 256, 268, 280, 123, 344, false};
 constexpr Layout kVersion2 = {540, 16, 104, 12, 14, 168, 176, 184, 504, 344, 348, 352, 376, 400, 500, 4, true};
@@ -36,7 +36,7 @@ constexpr std::array<std::pair<int, VoxelType>, 10> kDatatypes = {{{2, VoxelType
                                                                    {1024, VoxelType::Int64},
                                                                    {1280, VoxelType::UInt64}}};
 
-// Numbers at byte places of a header that is long enough.
+// Reads numbers at byte offsets of a header. The header must be at least as long as its version requires.
 class Fields {
  public:
   Fields(std::string_view bytes, bool swap, const Layout& layout) : bytes_(bytes), swap_(swap), layout_(layout) {}
@@ -51,7 +51,8 @@ class Fields {
   std::int64_t whole(int place, int i = 0) const {
     return layout_.wide ? get<std::int64_t>(place + 8 * i) : get<std::int16_t>(place + 2 * i);
   }
-  // Codes are int16 in version 1, int32 in version 2, except the datatype.
+  // Reads a code (a small number for a choice): int16 in version 1, int32 in version 2. Not for the datatype, which is
+  // int16 in both.
   int code(int place) const { return layout_.wide ? get<std::int32_t>(place) : get<std::int16_t>(place); }
   double real(int place, int i = 0) const {
     return layout_.wide ? get<double>(place + 8 * i) : get<float>(place + 4 * i);
@@ -93,7 +94,8 @@ bool usable(const glm::dmat3& columns) {
   return std::abs(glm::determinant(raw.direction)) > 1e-3;
 }
 
-// The rotation of the qform [NIfTI-1, quaternion representation]; a is what makes the quaternion of unit length.
+// Returns the rotation of the qform, whose header stores the components b, c, d of the quaternion [NIfTI-1, quaternion
+// representation]. The first component follows from the quaternion's length, which is 1.
 glm::dmat3 rotation_of(double b, double c, double d) {
   const double rest = 1 - (b * b + c * c + d * d);
   glm::dquat q(rest > 0 ? std::sqrt(rest) : 0, b, c, d);
@@ -148,7 +150,7 @@ class NiftiReader {
     for (int i = 1; i <= axes; ++i) sizes_.push_back(fields_.whole(at_.dim, i));
   }
 
-  // pixdim, made usable: an axis of one voxel may lack a size.
+  // Returns the voxel size (field pixdim), mm. Along an axis of only one voxel, the size need not be valid.
   glm::dvec3 voxel_size() const {
     glm::dvec3 size(1);
     for (int i = 0; i < 3; ++i) {
@@ -205,7 +207,7 @@ class NiftiReader {
 
   void read_scale() {
     const double slope = fields_.real(at_.slope), intercept = fields_.real(at_.intercept);
-    if (slope == 0 || std::isnan(slope)) return;  // means: not scaled
+    if (slope == 0 || std::isnan(slope)) return;  // slope 0 or NaN means: values are not scaled
     header_.volume.slope = slope;
     header_.volume.intercept = std::isnan(intercept) ? 0 : intercept;
     check_scale(header_.volume.slope, header_.volume.intercept, where_);
@@ -269,7 +271,8 @@ class HeaderBytes {
   std::string bytes_;
 };
 
-// The qform repeats the sform for readers that look at nothing else; only rotations and mirrors fit in it.
+// Writes a qform equal to the sform, for programs that read only the qform. Writes none when the axes are not at right
+// angles, because a qform can store only rotations and mirrors.
 void put_qform(HeaderBytes& bytes, const Layout& at, glm::dmat3 ras_direction, const glm::dvec3& origin) {
   const glm::dmat3 product = glm::transpose(ras_direction) * ras_direction;
   for (int i = 0; i < 3; ++i)
@@ -344,7 +347,7 @@ namespace {
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
-// The first bytes of what a gzip stream holds; fewer when the stream is damaged or ends.
+// Returns the first `most` bytes of a gzip stream's content; fewer when the stream is damaged or ends earlier.
 std::string inflated_start(std::string_view packed, std::size_t most) {
   std::string plain(most, '\0');
   Inflater stream;
@@ -381,7 +384,8 @@ VolumeHeader read_nifti(VolumeFiles& files, const PlainFile& file, const std::st
   return std::move(header);
 }
 
-// Version 1 counts voxels in 16 bits.
+// Returns the NIfTI version to write. It is 2 when an axis has more than 32767 voxels, because version 1 stores sizes
+// in 16 bits.
 int nifti_version(const Voxels& voxels) {
   const glm::ivec3 size = voxels.grid.size;
   return std::max({size.x, size.y, size.z}) > 32767 ? 2 : voxels.nifti_version;
@@ -390,7 +394,7 @@ int nifti_version(const Voxels& voxels) {
 std::string nifti_header(const Voxels& voxels, bool is_pair) {
   const int version = nifti_version(voxels);
   std::string bytes = make_nifti_header(voxels.grid, voxels.type, voxels.channels, version, is_pair);
-  constexpr std::size_t kDescription[] = {148, 240};  // `descrip` of versions 1 and 2
+  constexpr std::size_t kDescription[] = {148, 240};  // byte offset of the field `descrip` in versions 1 and 2
   bytes.replace(kDescription[version - 1], voxels.description.size(), voxels.description);
   return bytes;
 }

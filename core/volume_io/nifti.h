@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Headers of NIfTI-1 and NIfTI-2 files (.nii, .hdr + .img, gzipped or not), both byte orders. The sform leads, then the
-// qform, then the voxel sizes alone (method 1); world is turned from NIfTI's RAS to LPS, mm. A singular sform beside a
-// qform is passed over with a warning. [NIfTI-1: Cox et al. 2004; NIfTI-2: 2011]
+// Parses headers of NIfTI-1 and NIfTI-2 files (.nii, .hdr + .img, gzipped or not) in both byte orders. The grid comes
+// from the sform, else from the qform, else from the voxel sizes alone (method 1). World coordinates are converted from
+// NIfTI's RAS to LPS, mm. A singular sform is ignored with a warning when there is a qform. [NIfTI-1: Cox et al. 2004;
+// NIfTI-2: 2011]
 #pragma once
 
 #include <optional>
@@ -12,15 +13,16 @@
 
 namespace limber {
 
-constexpr std::size_t kNiftiHeaderBytes = 540;  // of the longer version
+constexpr std::size_t kNiftiHeaderBytes = 540;  // bytes of a NIfTI-2 header; a NIfTI-1 header is shorter
 
 bool looks_like_nifti_header(std::string_view bytes);
 
-//   bytes       the (inflated) file's first bytes, kNiftiHeaderBytes if there are as many
-//   file_bytes  size of a single file that is not compressed: tells a wrong vox_offset from missing data
+// Parses a header. When the voxels are in a file of their own (`is_pair`), the caller sets that file's name. Throws
+// Error unless the header describes one scalar 3-D volume.
+//   bytes       the first kNiftiHeaderBytes bytes of the (decompressed) file, fewer when the file is shorter
+//   file_bytes  the file's size when it holds header and voxels and is not compressed; it tells a wrong vox_offset from
+//               missing data
 //   where       the file, for messages
-// The data of a header/image pair are not yet named, see `is_pair`. Throws Error for anything but one scalar 3-D
-// volume.
 struct NiftiHeader {
   VolumeHeader volume;
   bool is_pair = false;
@@ -28,7 +30,8 @@ struct NiftiHeader {
 NiftiHeader parse_nifti_header(std::string_view bytes, std::optional<std::int64_t> file_bytes,
                                const std::string& where);
 
-// Header bytes, little endian, up to where the data of a single file begin (352 or 544 bytes).
+// Returns the header's bytes, little-endian, with the padding before the voxels of a single file (352 bytes in version
+// 1, 544 in version 2).
 std::string make_nifti_header(const Grid& grid, VoxelType type, int channels, int version, bool is_pair);
 
 }  // namespace limber

@@ -12,14 +12,14 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kLongestHeader = 16 << 20;  // thousands of segments with long tags
+constexpr std::size_t kLongestHeader = 16 << 20;  // bytes; enough for thousands of segments with long tags
 
 struct NrrdText {
-  std::map<std::string, std::string, std::less<>> fields;  // lower case, spaces removed: "spacedirections"
+  std::map<std::string, std::string, std::less<>> fields;  // names in lower case without spaces: "spacedirections"
   KeyValues keys;
   std::vector<std::string> data_list;
-  std::size_t end = 0;  // first byte after the empty line
-  bool ended = false;   // an empty line was there
+  std::size_t end = 0;  // offset of the first byte after the empty line that ends the header
+  bool ended = false;   // the header's empty line was found
 };
 
 std::string field_name(std::string_view text) {
@@ -43,7 +43,7 @@ NrrdText split_header(std::string_view bytes, const std::string& where) {
   NrrdText text;
   std::string_view rest = bytes.substr(0, kLongestHeader);
   const std::size_t searched = rest.size();
-  take_line(rest);  // the magic
+  take_line(rest);  // the first line, "NRRD000N", only states the version
   bool in_list = false;
   for (int line = 2; !rest.empty(); ++line) {
     const std::string_view content = take_line(rest);
@@ -102,7 +102,7 @@ std::optional<VoxelType> nrrd_type(std::string_view name) {
   return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
-// "(1,0,0) none (0,1,0)": one vector, or none, per word.
+// Parses a list of vectors, one per axis, such as "(1,0,0) none (0,1,0)"; "none" stands for an axis without a vector.
 std::vector<std::optional<glm::dvec3>> vectors_of(std::string_view text, int dimension, const std::string& field,
                                                   const std::string& where) {
   const auto wrong = [&] {
@@ -131,7 +131,8 @@ std::vector<std::optional<glm::dvec3>> vectors_of(std::string_view text, int dim
   return vectors;
 }
 
-// Signs that turn the named space to LPS, and its dimension; none for a name that is not known.
+// An anatomical space that NRRD names: its number of dimensions, and the signs by which its coordinates are multiplied
+// to become LPS.
 struct Space {
   glm::dvec3 to_lps{1};
   int dimension = 3;
@@ -167,7 +168,8 @@ double millimetres_per(const std::string* units) {
   return 1;
 }
 
-// Names and colours of 3D Slicer's segments. Layers other than 0 live in further volumes of the same file.
+// Returns the names and colours of 3D Slicer's segments from the header's keys. Of several segments with one label
+// value, the first counts: the others belong to layers above 0, which are further volumes of the same file.
 TissueTable segments_of(const KeyValues& keys, const std::string& where) {
   TissueTable table;
   std::set<double> seen;
@@ -185,7 +187,8 @@ TissueTable segments_of(const KeyValues& keys, const std::string& where) {
     Tissue tissue;
     tissue.file_value = *label;
     if (const auto* name = get("Name")) tissue.name = *name;
-    tissue.colour.x = std::numeric_limits<float>::quiet_NaN();  // open_volume() gives it one where the file does not
+    tissue.colour.x =
+        std::numeric_limits<float>::quiet_NaN();  // NaN: the file has no colour, and open_volume() sets one
     if (const auto* colour = get("Color"))
       if (const auto rgb = numbers_of<double>(*colour); rgb && rgb->size() == 3)
         for (int i = 0; i < 3; ++i) tissue.colour[i] = static_cast<float>(std::clamp((*rgb)[i], 0.0, 1.0));
@@ -254,7 +257,8 @@ class NrrdReader {
     header_.grid = checked_grid(raw, where_, header_.warnings);
   }
 
-  // Axes that span space; the others must have one sample.
+  // Returns the indices of the axes that span space, at most three. Throws Error when any other axis has more than one
+  // sample.
   std::vector<std::size_t> find_space_axes() const {
     std::vector<std::string> kinds(sizes_.size(), "");
     if (const auto* text = get("kinds")) {
@@ -317,7 +321,8 @@ class NrrdReader {
     return grid_from_columns({}, columns, origin);
   }
 
-  // A plane or a line in space gets the missing axes at right angles, 1 mm thick.
+  // Completes the axes of a file with one or two axes in space: the missing axes are perpendicular to the others and 1
+  // mm long.
   static void complete(glm::dmat3& columns, std::size_t count) {
     if (count == 2) {
       const glm::dvec3 normal = glm::cross(columns[0], columns[1]);
@@ -334,7 +339,8 @@ class NrrdReader {
     }
   }
 
-  // Without directions: `spacings`, or the range between `axis mins` and `axis maxs`; with neither, 1 mm.
+  // Returns the grid of a file without `space directions`. The spacing comes from the field `spacings`, else from the
+  // range between `axis mins` and `axis maxs`, else it is 1 mm.
   RawGrid spaced_grid(const std::vector<std::size_t>& axes) const {
     const auto spacings = per_axis("spacings"), lowest = per_axis("axismins"), highest = per_axis("axismaxs");
     std::vector<bool> node(sizes_.size(), false);
@@ -404,7 +410,7 @@ class NrrdReader {
     if (!name) {
       if (!text_.ended) throw Error("no empty line ends the header", where_, "the file is cut off; export it again");
       if (header_.byte_skip >= 0) header_.byte_skip += static_cast<std::int64_t>(text_.end);
-      // Lines are counted from the end of the header, so the stream must not count the header's own.
+      // Data in the header's own file may not skip lines, because byte_skip is counted from the end of the header.
       attached_line_skip();
       return;
     }

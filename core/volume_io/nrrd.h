@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Headers of NRRD files (.nrrd, .nhdr, .seg.nrrd), format versions 1 to 5: lines `field: value` and `key:=value` up to
-// an empty line. Any anatomical space is turned to LPS mm. An axis of one sample that is no space axis (`list`, `none`)
-// is passed over. SegmentN_ keys give names and colours, as 3D Slicer writes them.
+// Parses headers of NRRD files (.nrrd, .nhdr, .seg.nrrd), format versions 1 to 5: lines `field: value` and `key:=value`
+// up to an empty line. Coordinates of every anatomical space are converted to LPS, mm. An axis of only one sample that
+// does not span space (kind `list`, direction `none`) is ignored. Names and colours of labels come from the keys
+// SegmentN_..., which 3D Slicer writes.
 #pragma once
 
 #include <string>
@@ -13,11 +14,11 @@ namespace limber {
 
 bool looks_like_nrrd_header(std::string_view bytes);
 
+// Parses a header. Throws Error unless it describes one scalar volume of 1 to 3 axes and its fields are consistent.
 //   bytes  the file's first bytes            where  the file, for messages
-//   throws Error for anything but one scalar volume of 1 to 3 axes that is described without contradiction
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where);
 
-// The value of a `key:=value` line as it is written: backslashes and line ends are escaped.
+// Returns the text to write as the value of a `key:=value` line, in which backslashes and line ends are escaped.
 std::string nrrd_escaped(std::string_view value);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// NRRD as a format: its writer, and its row of the table.
+// Writes NRRD files, and defines NRRD's row in the table of volume formats (volume_format.h).
 #include <algorithm>
 
 #include "core/base/text_parse.h"

@@ -78,7 +78,7 @@ void put(ByteWriter& out, const TissueTable& table) {
 }
 
 TissueTable table_of(ByteReader& in) {
-  constexpr std::size_t kLeastBytes = 50;  // of a tissue without a name
+  constexpr std::size_t kLeastBytes = 50;  // bytes of a tissue without a name, the shortest in a message
   TissueTable table;
   table.source = in.text();
   table.tissues.resize(in.count(kLeastBytes));
@@ -86,9 +86,10 @@ TissueTable table_of(ByteReader& in) {
   return table;
 }
 
-// As every parser's header was checked, which changes nothing in a checked one.
+// Repeats the checks that every parser makes, and throws when the header fails one. These checks would change nothing
+// in a header that has passed them.
 void check(const VolumeHeader& header, const std::string& where, const ByteReader& in) {
-  // "NIfTI-1" begins with its format's name.
+  // A header's format begins with the name of a row of the table of formats: "NIfTI-1" with "NIfTI".
   const auto formats = volume_formats();
   in.require(std::any_of(formats.begin(), formats.end(), [&](const VolumeFormat& format) {
     return header.format.starts_with(format.name) && header.format.size() <= format.name.size() + 2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the program and the process that parses a volume say to each other (volume_reader.h, serve_volume.h): heads of
-// 16 bytes, each with as many bytes behind it as it says. Both are of one build and one machine, so numbers are sent as
-// they lie in memory. The program believes nothing of what it gets.
+// Messages between the program and the process that parses a volume, the reader (volume_reader.h, serve_volume.h). A
+// message is a head of 16 bytes, followed by as many bytes as the head states. Program and reader belong to one build
+// on one machine, so numbers are sent as they are in memory. The program checks everything that it receives.
 #pragma once
 
 #include <cstdint>
@@ -18,33 +18,35 @@
 namespace limber {
 
 enum class Message : std::uint32_t {
-  // To the reader: what to read; then an answer to each question. A file travels with the head of its Opened.
+  // Messages from the program to the reader: first Order, which says what to read, then an answer to each question. An
+  // Opened message comes with the descriptor of the opened file.
   Order,
-  Done,     // to CheckData
-  Opened,   // to OpenHeader and OpenData: size, 64 bits
-  Present,  // to HasData: 0 or 1
-  Refused,  // to any: an Error's text
-  // From the reader. First Hello, then Header, then voxels, as many as it promises, then End.
-  Hello,  // version, protection
+  Done,     // answer to CheckData
+  Opened,   // answer to OpenHeader and OpenData: the file's size, 64 bits
+  Present,  // answer to HasData: 0 or 1
+  Refused,  // answer to any question: an Error's text
+  // Messages from the reader to the program: first Hello, then Header, then as many voxels as the header promises, then
+  // End.
+  Hello,  // kMessageVersion and the Protection in force
   Header,
-  Voxels,  // bytes in storage order
-  End,     // warnings
+  Voxels,  // the next voxels' bytes, in storage order
+  End,     // the reader's warnings
   Failed,  // an Error's text
   OutOfMemory,
-  // Questions of the reader.
-  OpenHeader,  // index, 64 bits
-  CheckData,   // names
-  OpenData,    // a name
-  HasData,     // a name
+  // Questions from the reader to the program; see VolumeFiles.
+  OpenHeader,  // index of the header file, 64 bits
+  CheckData,   // names of data files
+  OpenData,    // name of a data file
+  HasData,     // name of a data file
 };
 
 struct MessageHead {
   Message kind;
   std::uint32_t unused = 0;
-  std::uint64_t size = 0;  // of what follows
+  std::uint64_t size = 0;  // number of bytes that follow the head
 };
 
-// Raised with every change of what is said.
+// Version of the messages, which is raised with every change of them.
 constexpr std::uint32_t kMessageVersion = 1;
 
 struct Order {
@@ -57,8 +59,9 @@ std::string bytes_of(const Protection& protection);
 std::string bytes_of(const VolumeHeader& header);
 std::string bytes_of(const std::vector<std::string>& texts);
 
-// `damaged` must throw; it is called for what no reader of ours says. A header has passed the checks that every parsed
-// header passes; a protection is one of this version.
+// These functions decode a message. They call `damaged`, which must throw, for bytes that no reader of this build
+// sends. A decoded header has passed the same checks as every parsed header. A decoded protection came with
+// kMessageVersion.
 Order order_from(std::string_view bytes, const std::function<void()>& damaged);
 Protection protection_from(std::string_view bytes, const std::function<void()>& damaged);
 VolumeHeader header_from(std::string_view bytes, const std::string& where, const std::function<void()>& damaged);

@@ -22,10 +22,11 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 18;  // bytes of voxels in one message: few enough to stay in a cache
+constexpr std::size_t kChunk = 1 << 18;  // upper limit on the bytes of voxels per message, so that they stay in a cache
 constexpr int kOrders = STDIN_FILENO, kAnswers = STDOUT_FILENO;
 
-// The program has gone: there is nobody to tell.
+// Ends this process. Called when the channel to the program is closed: the program has ended, so nobody reads an
+// answer.
 [[noreturn]] void leave() { ::_exit(1); }
 
 void write_all(iovec* parts, int count) {
@@ -51,7 +52,7 @@ void say(Message kind, std::string_view text) { say(kind, text.data(), text.size
 struct Heard {
   Message kind;
   std::string bytes;
-  int file = -1;  // that came with it
+  int file = -1;  // descriptor of the file that came with the message; -1: none
 };
 
 void read_all(void* to, std::size_t size) {
@@ -86,7 +87,7 @@ Heard hear() {
   return heard;
 }
 
-// Files that the program opens.
+// The volume's files as seen from the sandbox: each file is opened by the program, on request.
 class AskedFiles final : public VolumeFiles {
  public:
   AskedFiles(VolumeLocation location, const Sandbox& sandbox) : VolumeFiles(std::move(location)), sandbox_(sandbox) {}
@@ -116,7 +117,8 @@ class AskedFiles final : public VolumeFiles {
     return {heard.file, size};
   }
 
-  static constexpr std::size_t kBookkeeping = 64 << 20;  // names and places of as many images as a series may have
+  static constexpr std::size_t kBookkeeping = 64
+                                              << 20;  // bytes for names and positions of a series with the most images
   Sandbox sandbox_;
 };
 
@@ -134,7 +136,7 @@ void deliver(OpenedVolume opened) {
   say(Message::End, bytes_of(opened.voxels->finish()));
 }
 
-// Ends with the program, and holds nothing of it but the two streams.
+// Makes the system kill this process when the program ends, and closes all inherited files except the standard streams.
 void leave_all_behind(pid_t program) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != program) leave();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What limber_reader does (volume_reader.h): parses one volume for the program that started it, in a sandbox.
+// Implements limber_reader (volume_reader.h): parses one volume in a sandbox for the program that started it.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,10 @@ namespace limber {
 
 using OpenFromFiles = std::function<OpenedVolume(std::shared_ptr<VolumeFiles>, Holding)>;
 
-// Its `main`: arguments are the program's process, the memory it may take (bytes) and, for images of DICOM, "dicom".
-// Takes its order from the standard input and answers on the standard output. Returns the exit code.
-//   open  parses the header, and what it returns delivers the voxels; runs in the sandbox
+// Runs limber_reader and returns its exit code. The arguments are the process ID of the program that started it, the
+// memory that it may use (bytes) and, for DICOM images, "dicom". Messages come on the standard input and are sent on
+// the standard output (reader_messages.h).
+//   open  parses the header and returns the source of the voxels; runs in the sandbox
 int serve_volume(int argc, char** argv, const OpenFromFiles& open = open_volume_here);
 
 }  // namespace limber

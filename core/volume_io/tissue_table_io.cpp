@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Label tables from and to files. Read: our JSON {"17": {"name", "kind" or "class", ...}} or {"17": "name"}; 3D
-// Slicer's colour tables (`value name r g b a`, 0 to 255; FreeSurfer's look the same); ITK-SNAP's label descriptions
-// (`value r g b a visible meshed "name"`). An entry for 0 is passed over: 0 is air.
+// Reads and writes label tables in three formats. Limber's JSON is {"17": {"name", "kind" or "class", ...}} or
+// {"17": "name"}. 3D Slicer's colour tables have lines `value name r g b a`, colours 0 to 255, as FreeSurfer's do.
+// ITK-SNAP's label descriptions have lines `value r g b a visible meshed "name"`. An entry for value 0 is ignored,
+// because 0 is air.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -59,7 +60,7 @@ int hexadecimal(char c) {
                                 : -1;
 }
 
-// [r, g, b] in [0, 1] or, when one is above 1, in [0, 255]; or "#rrggbb".
+// Parses a colour: "#rrggbb", or [r, g, b] in [0, 1]. When one of r, g, b is above 1, all three are in [0, 255].
 glm::vec3 colour_from(const Json& json, const std::string& where) {
   const auto wrong = [&] {
     return Error("the colour is neither [r, g, b] nor \"#rrggbb\"", where, "correct the table");
@@ -96,7 +97,8 @@ Tissue tissue_from_json(double value, const Json& entry, const std::string& wher
   Tissue tissue = tissue_for(value, text("name"));
   const std::string kind = text("kind"), tissue_class = text("class");
   if (!kind.empty() || !tissue_class.empty()) {
-    // A class is another program's word and may mean nothing here; a kind is ours.
+    // The field `class` comes from another program, so its value may be unknown here. The field `kind` is Limber's, and
+    // an unknown value is an error.
     const auto known = tissue_kind_from_text(kind.empty() ? tissue_class : kind);
     if (!known && !kind.empty())
       throw Error("unknown kind " + in_quotes(kind), where,
@@ -224,7 +226,7 @@ TissueTable parse_tissue_table(const std::string& bytes, const std::string& wher
       start[0] == '{' || start[0] == '[' ? tissues_from_json(bytes, where) : tissues_from_lines(bytes, where);
   if (tissues.empty()) throw Error("the label table names no label", where, "write one label a line, or JSON");
 
-  // The last entry of a value counts.
+  // When the table has several entries for a value, the last one is used.
   std::map<double, Tissue> by_value;
   for (Tissue& tissue : tissues) by_value[tissue.file_value] = std::move(tissue);
   TissueTable table;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The text of a label table, without its file; see tissue_table.h for reading and writing files.
+// Parses the text of a label table; tissue_table.h reads and writes files.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace limber {
 
-//   where  the file, for messages; its name becomes the table's source          throws Error naming the line or key
+// Parses the text of a table. Throws Error, which names the line or key that is wrong.
+//   where  the file, for messages; its name becomes the table's source
 TissueTable parse_tissue_table(const std::string& bytes, const std::string& where);
 
 }  // namespace limber

@@ -13,9 +13,10 @@ namespace limber {
 
 namespace {
 constexpr const char* kWhatToDo = "give a field as `limber resample --field OUT.nrrd` writes it";
-constexpr std::size_t kLargestHeader = 1 << 16;  // bytes
+constexpr std::size_t kLargestHeader = 1 << 16;  // upper limit on the bytes of a header
 
-// Its first axis, of three samples, becomes one of a single sample, which the parser passes over.
+// Changes the size of the header's first axis from three samples to one and parses the result. The NRRD parser ignores
+// an axis of one sample, so it accepts the header.
 VolumeHeader header_of_one_number(std::string bytes, const std::string& where) {
   const std::size_t end = std::min(bytes.find("\n\n"), bytes.find("\n\r\n"));
   static const std::regex kSizes("(^|\n)sizes:[ \t]*3[ \t]");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Headers of displacement fields: NRRD with three floats a voxel, the three together along the first axis.
+// Parses headers of displacement fields: NRRD files whose first axis is the three floats of a voxel.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace limber {
 
-// As the header of a volume of single numbers, three times as long in x.
+// Parses a header and returns it as that of a scalar volume with three times as many voxels in x. Throws Error unless
+// the file has three floats per voxel in this machine's byte order.
 //   bytes  the file's first bytes            where  the file, for messages
-//   throws Error for anything but three floats a voxel in this machine's order of bytes
 VolumeHeader parse_vector_header(std::string bytes, const std::string& where);
 
 }  // namespace limber

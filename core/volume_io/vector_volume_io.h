@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Displacement fields: three floats a voxel, mm, world axes (LPS), on the grid of a posed volume. Which way they point
-// is said in the file's header: the key `limber_field_direction` of NRRD, and a sentence in NRRD, MetaImage and NIfTI.
+// Reads and writes displacement fields: three floats per voxel, mm, world axes (LPS), on the grid of a posed volume.
+// The file's header states their direction: the key `limber_field_direction` in NRRD, and a sentence in NRRD, MetaImage
+// and NIfTI.
 #pragma once
 
 #include <span>
@@ -19,22 +20,23 @@ struct VectorVolume {
   std::vector<std::string> warnings;
 };
 
-// ToPosed: from the rest place of what a voxel holds to the voxel, posed minus rest. ToRest: from the voxel to that
-// rest place, as ITK and SimpleITK take it: posed(x) = rest(x + field(x)). Each is the other's negative, on the same
-// grid.
+// Direction of a field's displacements. ToPosed: posed position minus rest position of what a posed voxel contains.
+// ToRest: rest position minus posed position, as ITK and SimpleITK use it: posed(x) = rest(x + field(x)). Each is the
+// negative of the other, on the same grid.
 enum class FieldDirection { ToPosed, ToRest };
 constexpr const char* kFieldDirectionKey = "limber_field_direction";
 constexpr const char* kToPosed = "to-posed";
 constexpr const char* kToRest = "to-rest";
 
-//   to_posed  grid.voxel_count() displacements, posed minus rest, written in the direction that is asked for
-//   throws Error when the file cannot be written
+// Writes a field. Throws Error when the file cannot be written.
+//   to_posed   one displacement per voxel of `grid`, posed minus rest
+//   direction  direction in which the displacements are written
 void write_displacement_field(const Grid& grid, std::span<const glm::vec3> to_posed, FieldDirection direction,
                               const Path& path);
 
-// Always posed minus rest, whatever the file's header says that it holds; a header that says nothing means that.
-// Throws Error for what is no NRRD file of three floats a voxel, for missing or damaged data, and for values that are
-// not finite.
+// Reads a field and returns it as posed minus rest, whatever direction the file's header states. A file that states
+// none is posed minus rest. Throws Error when the file is not NRRD with three floats per voxel, when data are missing
+// or damaged, and for values that are not finite.
 VectorVolume read_vector_volume(const Path& path);
 
 }  // namespace limber

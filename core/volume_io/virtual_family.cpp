@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-// 0, 1, 2 for nx, ny, nz (with 'n') or dx, dy, dz (with 'd'), -1 otherwise.
+// Returns the axis (0, 1, 2) that a word names: nx, ny, nz with letter 'n', or dx, dy, dz with letter 'd'; else -1.
 int axis_of(std::string_view word, char letter) {
   if (word.size() != 2 || lower_case(word)[0] != letter) return -1;
   const char axis = lower_case(word)[1];
@@ -68,7 +68,7 @@ VolumeHeader parse_virtual_family(std::string_view text, std::int64_t raw_bytes,
       if (!step)
         throw Error("the step is " + in_quotes(words[1]), where + " line " + std::to_string(line_number),
                     "write metres");
-      // Rounded to a nanometre: 0.002 m is 2 mm.
+      // Converts metres to millimetres and rounds to a nanometre, so that 0.002 m is exactly 2 mm.
       raw.spacing[axis_of(words[0], 'd')] =
           std::isfinite(*step) && std::abs(*step) < 1e3 ? std::round(*step * 1e9) / 1e6 : *step;
     } else if (const auto tissue = tissue_of(words, line); tissue && tissue->file_value != 0) {

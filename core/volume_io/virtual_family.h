@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Virtual Family voxel models [Christ et al. 2010]: NAME.raw, one or two bytes a voxel, x fastest, beside NAME.txt with
-// lines `number red green blue name` for the tissues, then `nx N` `ny N` `nz N` cells and `dx` `dy` `dz` in metres. The
-// format knows no place in the world: the first voxel's centre is the origin, axes are LPS.
+// Reads and writes Virtual Family voxel models [Christ et al. 2010]. NAME.raw has one or two bytes per voxel, x
+// fastest. NAME.txt has a line `number red green blue name` per tissue, then the number of voxels (`nx N`, `ny N`, `nz
+// N`) and their size in metres (`dx`, `dy`, `dz`). The format has no position in the world: the first voxel's centre is
+// the origin, and the axes are LPS.
 #pragma once
 
 #include <string>
@@ -13,7 +14,8 @@ namespace limber {
 
 bool looks_like_virtual_family(std::string_view text);
 
-//   text       the .txt file        raw_bytes  size of the .raw file        throws Error naming the line
+// Parses the text file. Throws Error, which names the line.
+//   text       content of the .txt file        raw_bytes  size of the .raw file
 VolumeHeader parse_virtual_family(std::string_view text, std::int64_t raw_bytes, const std::string& where);
 std::string make_virtual_family(const Grid& grid, const TissueTable& tissues);
 

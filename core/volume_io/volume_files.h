@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which files belong to a volume's name.
+// Lists the files of which a volume consists: a format may keep header and voxels in separate files.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace limber {
 
-// Every file that a volume of this name is read from, as far as its header tells: the file itself, and what stands
-// beside it. A folder and what is no volume are only themselves. Throws nothing: whoever reads the volume says what is
-// wrong with it.
+// Returns every file from which the volume `path` is read: `path` itself, its header and the data files that the header
+// names. For a folder, or a file that is not a volume, returns only `path`. Never throws Error, because reading the
+// volume reports what is wrong with it.
 std::vector<Path> files_of_volume(const Path& path);
 
-// The file itself and what is written beside it when a volume, or whatever else, is written under this name.
+// Returns `path` itself and the files that may be written beside it when a volume is written to `path`.
 std::vector<Path> files_written_as(const Path& path);
 
 }  // namespace limber

@@ -5,7 +5,7 @@
 
 namespace limber {
 
-// Each made by a source of its own.
+// Each function returns its format's row of the table and is defined in the format's own source file.
 VolumeFormat nrrd_format();
 VolumeFormat metaimage_format();
 VolumeFormat nifti_format();
@@ -14,7 +14,7 @@ VolumeFormat vti_format();
 
 namespace {
 
-// Read by a library of its own (dicom.h), and never written.
+// DICOM's row has no functions, because dicom.h reads DICOM and nothing writes it.
 VolumeFormat dicom_format() { return {.name = "DICOM", .endings = {".dcm"}}; }
 
 struct Match {
@@ -22,7 +22,7 @@ struct Match {
   const VolumeFormat::Written* written = nullptr;
 };
 
-// Of several endings that fit, the longest.
+// Returns the format and the writer with the longest file name ending that matches `path`; nulls when none matches.
 Match match_of(const Path& path) {
   const std::string name = lower_case(path.filename().string());
   Match found;

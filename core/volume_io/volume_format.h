@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The formats of volume files, as one table: who reads or writes a volume, filters a list of files or tells what can be
-// read looks here. A new format is one source that makes its row, and that row's line in volume_format.cpp.
+// The table of volume file formats. It is used to read and write volumes, to filter lists of files and to name the
+// formats that can be read. A new format needs one source file, which defines its row, and a line in volume_format.cpp.
 #pragma once
 
 #include <memory>
@@ -15,37 +15,38 @@
 namespace limber {
 
 struct VolumeFormat {
-  std::string name;                  // "NRRD"; what FileType::format begins with
-  std::vector<std::string> endings;  // of names that are taken for it, headers first: ".nhdr"
+  std::string name;                  // as in "NRRD"; FileType::format begins with it
+  std::vector<std::string> endings;  // file name endings of this format, headers first: ".nhdr"
 
-  // Whether a file is of this format, by its name in lower case or its first bytes. Null: never by itself.
+  // Returns whether a file has this format, by its name in lower case or its first bytes. Null: files of this format
+  // are recognized elsewhere (DICOM).
   bool (*fits)(std::string_view name, std::string_view first_bytes) = nullptr;
-  // Reads and checks the header of `file`, whose first bytes are at hand. Throws Error.
+  // Reads and checks the header of `file`, whose first bytes are given. Throws Error when the header is not valid.
   VolumeHeader (*read_header)(VolumeFiles& files, const PlainFile& file, const std::string& first_bytes) = nullptr;
-  // Opens the voxels that such a header promises. Null: as bytes of one of the encodings that VoxelStream knows.
+  // Opens the voxels of a file with this header. Null: VoxelStream reads them.
   std::unique_ptr<VoxelSource> (*open_voxels)(const std::shared_ptr<VolumeFiles>& files,
                                               const VolumeHeader& header) = nullptr;
 
-  // A name that can be written.
+  // A file name ending under which a volume can be written in this format.
   struct Written {
     std::string ending;
     void (*write)(const Voxels& voxels, const Path& path);
-    std::vector<std::string> beside = {};  // endings of the data files that may come with it
-    bool is_offered = true;                // by file dialogs
+    std::vector<std::string> beside = {};  // endings of the data files that may be written beside it
+    bool is_offered = true;                // whether file dialogs offer this ending
   };
   std::vector<Written> written = {};
 };
 
-// In the order in which a file's content is looked at.
+// Returns all formats, in the order in which a file is tested for them.
 std::span<const VolumeFormat> volume_formats();
 
-// How a volume of this name is written; null where it cannot be.
+// Returns how a volume is written to `path`, by the name's ending; null when no format has that ending.
 const VolumeFormat::Written* how_written(const Path& path);
-// The name of the format that a volume of this name is written in; "" for none.
+// Returns the name of the format in which a volume is written to `path`; "" when no format has its ending.
 std::string format_written_as(const Path& path);
-// ".nrrd, .nhdr, .mha": every ending that can be written.
+// Returns the file name endings that can be written, as text: ".nrrd, .nhdr, .mha".
 std::string writable_endings();
-// "NRRD, MetaImage, ...": every format that can be read.
+// Returns the names of the formats that can be read, as text: "NRRD, MetaImage, ...".
 std::string readable_formats();
 
 }  // namespace limber

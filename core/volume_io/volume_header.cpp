@@ -13,9 +13,11 @@ namespace {
 constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int16",  "uint16",  "int32",
                                                          "uint32", "int64", "uint64", "float32", "float64"};
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 40;
-// Columns this far from unit length (headers round to 6 digits) are stretched, not rounded.
+// A direction vector whose length differs from 1 by at most this counts as a unit vector, because headers round to 6
+// digits. The length of any other one scales the spacing.
 constexpr double kUnitTolerance = 1e-4;
-// Triple product of the axes: 1 at right angles, 0 flat.
+// Limits of the triple product of the three axes, which is 1 for axes at right angles and 0 for axes in one plane. At
+// or below kFlat the axes are refused; below 1 - kRightAngles there is a warning.
 constexpr double kFlat = 1e-3, kRightAngles = 1e-3;
 }  // namespace
 
@@ -79,7 +81,7 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
       grid.spacing[axis] *= length;
       grid.direction[axis] /= length;
     }
-    grid.direction[axis] += glm::dvec3(0);  // no -0
+    grid.direction[axis] += glm::dvec3(0);  // adding 0 turns -0 into 0
   }
   grid.origin += glm::dvec3(0);
   const double triple = std::abs(glm::determinant(grid.direction));
@@ -93,8 +95,8 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
 
 void check_scale(double slope, double intercept, const std::string& where) {
   constexpr double kMost = 1e15;
-  const bool can_be =
-      std::abs(slope) <= kMost && std::abs(slope) >= 1 / kMost && std::abs(intercept) <= kMost;  // false for no number
+  // Comparisons with NaN are false.
+  const bool can_be = std::abs(slope) <= kMost && std::abs(slope) >= 1 / kMost && std::abs(intercept) <= kMost;
   if (!can_be)
     throw Error("the values are scaled by " + text_of(slope) + " and shifted by " + text_of(intercept), where,
                 "no image has such values; correct the header");
@@ -102,7 +104,7 @@ void check_scale(double slope, double intercept, const std::string& where) {
 
 std::optional<std::vector<std::string>> names_of_pattern(std::string_view pattern, std::int64_t first,
                                                          std::int64_t last, std::int64_t step) {
-  // %d, %5d or %05d, once: what a slice number needs, and nothing that printf could be tricked with.
+  // Accepts only one directive such as %d, %5d or %05d, which suffices for slice numbers.
   const std::size_t percent = pattern.find('%');
   if (percent == std::string_view::npos) return std::nullopt;
   std::size_t end = percent + 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the header of a volume file promises, in the terms that all formats share, and the checks that every promise
-// must pass before a byte of data is believed. Parsers (nrrd_header, meta_header, nifti_header, virtual_family) turn
-// header bytes into this and touch no other file; voxel_stream then delivers exactly the promised bytes or throws.
+// The header of a volume file in terms that all formats share, and the checks that it must pass before any data are
+// read. The parsers (nrrd, metaimage, nifti, virtual_family, vti) convert a header's bytes to a VolumeHeader and read
+// no other file. Then voxel_stream reads exactly the bytes that the header promises, or throws.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ namespace limber {
 
 enum class VoxelType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
-int size_of(VoxelType type);                                           // bytes
+int size_of(VoxelType type);                                           // in bytes
 std::string_view to_string(VoxelType type);                            // "uint8" ... "float64"
-std::optional<VoxelType> voxel_type_from_text(std::string_view text);  // the names above
+std::optional<VoxelType> voxel_type_from_text(std::string_view text);  // parses a name that to_string() returns
 
-// body(T{}) with the C++ type of a voxel.
+// Calls body(T{}), where T is the C++ type of a voxel, and returns its result.
 template <class Body>
 auto visit_voxel_type(VoxelType type, const Body& body) {
   switch (type) {
@@ -41,52 +41,56 @@ auto visit_voxel_type(VoxelType type, const Body& body) {
   }
 }
 
-enum class Encoding : std::uint8_t { Raw, Deflate, Bzip2, Ascii, Hex };  // Deflate: gzip or zlib, told apart by content
+// Encoding of voxel data. Deflate: gzip or zlib, which the data's first byte tells.
+enum class Encoding : std::uint8_t { Raw, Deflate, Bzip2, Ascii, Hex };
 
 using KeyValues = std::map<std::string, std::string, std::less<>>;
 
 struct VolumeHeader {
-  std::string format;  // as FileType::format
+  std::string format;  // name of the format, see FileType::format
   VoxelType voxel_type = VoxelType::UInt8;
   Grid grid;
   Encoding encoding = Encoding::Raw;
   bool big_endian = false;
-  double slope = 1, intercept = 0;  // value = slope * stored + intercept
+  double slope = 1, intercept = 0;  // a voxel's value is slope * stored + intercept
 
-  // Where the data are. No names: in the header's own file from `byte_skip` on. Several names share the slices evenly.
+  // Names of the files with the voxel data. None: the data are in the header's own file, from `byte_skip` on. Several:
+  // each file has the same number of slices.
   std::vector<std::string> data_names;
-  std::int64_t line_skip = 0;     // lines to pass first, in every data file
-  std::int64_t byte_skip = 0;     // then bytes, before decoding; -1: the data are the last bytes of the file
-  std::int64_t decoded_skip = 0;  // then bytes, after decoding
-  std::optional<std::int64_t> compressed_bytes;  // as the header says, true or not
+  std::int64_t line_skip = 0;                    // lines to skip first, in every data file
+  std::int64_t byte_skip = 0;                    // bytes to skip next, before decoding; -1: the data end the file
+  std::int64_t decoded_skip = 0;                 // bytes to skip after decoding
+  std::optional<std::int64_t> compressed_bytes;  // size that the header states, possibly wrong
 
-  KeyValues keys;     // NRRD's `key:=value` lines
-  TissueTable named;  // what the header says of file values; labels are not yet given
+  KeyValues keys;     // `key:=value` lines of NRRD
+  TissueTable named;  // names and colours that the header gives to file values; Tissue::label is not set
   std::vector<std::string> warnings;
 };
 
-// Size, spacing and origin as a parser found them, any number of axes.
+// Grid as a parser read it, before checks: sizes of any number of axes, spacing and origin in mm, and direction.
 struct RawGrid {
   std::vector<std::int64_t> sizes;
   glm::dvec3 spacing{1}, origin{0};
   glm::dmat3 direction{1};
 };
 
-// The grid, when it can be believed: at least one voxel a side, at most 2^40 in all, three axes, spacing positive and
-// finite, direction finite and invertible with columns of unit length. Adds a warning for axes that are not at right
-// angles.
-//   where  the file, for messages            throws Error naming the field
+// Checks a grid and returns it. It must have at least one voxel along each axis, at most 2^40 voxels and three axes
+// with more than one voxel, a positive finite spacing, and a finite invertible direction. When a column of the
+// direction is not of unit length, its length scales the spacing. Adds a warning when the axes are not at right angles.
+// Throws Error, which names the field that is wrong.
+//   where  the file, for messages
 Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std::string>& warnings);
 
-// Throws Error unless value = slope * stored + intercept can be reckoned with: both finite, the slope not 0, neither
-// beyond 1e15, and the slope no smaller than 1e-15.
+// Throws Error unless value = slope * stored + intercept can be computed reliably: |slope| must lie in [1e-15, 1e15],
+// and |intercept| must be at most 1e15.
 void check_scale(double slope, double intercept, const std::string& where);
 
-// A Grid whose world_from_voxel has these columns (mm), split into lengths and unit axes.
+// Returns a grid whose steps from voxel to voxel along its axes are the columns of `columns`, mm. The columns' lengths
+// become the spacing, their directions the direction.
 RawGrid grid_from_columns(const std::vector<std::int64_t>& sizes, const glm::dmat3& columns, const glm::dvec3& origin);
 
-// Names made by a printf pattern with one %d (such as "slice%03d.raw") from `first` to `last`; none when the pattern is
-// anything else or makes more than 65 536 names.
+// Returns the file names that a printf pattern with one %d (such as "slice%03d.raw") yields for the numbers `first`,
+// `first` + `step` and so on to `last`. Returns nothing for any other pattern and for more than 65 536 names.
 std::optional<std::vector<std::string>> names_of_pattern(std::string_view pattern, std::int64_t first,
                                                          std::int64_t last, std::int64_t step);
 

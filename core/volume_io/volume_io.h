@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Label and grey volumes from and to files: NRRD (.nrrd .nhdr .seg.nrrd; raw, gzip, bzip2, ascii, hex), MetaImage (.mha
-// .mhd), NIfTI-1 and -2 (.nii .nii.gz, .hdr + .img), DICOM (a folder with one series, or one image; read only) and
-// Virtual Family (.raw + .txt).
+// Reads and writes label and grey volumes: NRRD (.nrrd .nhdr .seg.nrrd; raw, gzip, bzip2, ascii, hex), MetaImage (.mha
+// .mhd), NIfTI-1 and -2 (.nii .nii.gz, .hdr + .img), VTK image data (.vti), DICOM (a folder with one series, or one
+// image; read only) and Virtual Family (.raw + .txt).
 //
-// A file is believed only where it is whole: the header is read by parsers of our own (nrrd_header, meta_header,
-// nifti_header, virtual_family; the libraries that were tried accept truncated data, negative spacing and data files
-// outside the header's folder without a word), and the voxels are inflated straight into the labels, so that
-// counting the bytes costs no second pass and a volume is held in memory once. Only DICOM goes through a library, GDCM.
-// Refused with one line: missing bytes, damaged compression, spacing or direction that cannot be, more than one volume,
-// colours, what does not fit in memory. Read with a warning: data that are whole despite a wrong header field.
+// Only complete files are accepted. Limber's own parsers read the header (nrrd, metaimage, nifti, vti, virtual_family),
+// because the libraries that were tried silently accept truncated data, negative spacing and data files outside the
+// header's folder. Voxels are decompressed and converted to labels chunk by chunk, so that one pass checks the data and
+// a volume is in memory only once. Only DICOM is read by a library, GDCM. A file is refused with a one-line Error for
+// missing bytes, damaged compression, impossible spacing or direction, more than one volume, colours, or a size that
+// does not fit in memory. A file with a wrong header field but complete data is read with a warning.
 #pragma once
 
 #include <span>
@@ -22,21 +22,22 @@
 
 namespace limber {
 
-// What the file was, so that a result can be written the same way.
+// Format and voxel type of a file, so that a result can be written in the same way.
 struct FileType {
-  std::string format;      // "NRRD", "MetaImage", "NIfTI-1", "NIfTI-2", "DICOM", "Virtual Family"
+  std::string format;      // "NRRD", "MetaImage", "NIfTI-1", "NIfTI-2", "VTK image", "DICOM", "Virtual Family"
   std::string voxel_type;  // "uint8" ... "int64", "float32", "float64"
   bool compressed = false;
 };
 
 struct VolumeFile {
   LabelVolume volume;
-  TissueTable tissues;  // one entry per label present, with what the file says of it
+  TissueTable tissues;  // one entry per label in the volume, with what the file states about it
   FileType type;
-  std::vector<std::string> warnings;  // one line each: whole data despite a wrong header field, no tissue at all
+  // One line for each wrong header field despite complete data, and for a volume without tissue.
+  std::vector<std::string> warnings;
 };
 
-// A grey volume (CT, MR): values as float, read for `--with` and `info`.
+// A grey volume (CT, MR) with float values. The commands `resample --with` and `info` read it.
 struct GreyVolume {
   Grid grid;
   std::vector<float> voxels;
@@ -44,46 +45,48 @@ struct GreyVolume {
   std::vector<std::string> warnings;
 };
 
-// Header and label counts without keeping the voxels; works for grey volumes too.
+// What `info` shows about a label or grey volume: header, value range and label counts, without the voxels.
 struct VolumeSummary {
   Grid grid;
   FileType type;
-  bool is_label = true;     // false when values are fractional or more than 65 535 distinct
-  bool looks_grey = false;  // not a label volume, or one whose neighbouring voxels mostly differ, as in an image
+  bool is_label = true;     // false when a value is no whole number or there are more than 65 535 labels
+  bool looks_grey = false;  // true when !is_label, or when most neighbouring voxels differ, as in an image
   struct Count {
     double value;
     std::int64_t voxels;
     std::string name;
   };
-  std::vector<Count> labels;  // by value, 0 included
+  std::vector<Count> labels;  // voxels per value, sorted by value, 0 included
   double minimum = 0, maximum = 0;
   std::vector<std::string> warnings;
 };
 
-// Throws Error when the file is not a label volume that can be believed (see above), with what, where, what to do.
+// Reads a label volume. Throws Error when the file is not a complete label volume; the page above lists the reasons.
 VolumeFile read_volume(const Path& path, Progress& progress = no_progress());
 GreyVolume read_grey_volume(const Path& path, Progress& progress = no_progress());
 VolumeSummary summarize_volume(const Path& path);
-bool is_volume_path(const Path& path);  // by name, or a folder that holds DICOM
+bool is_volume_path(const Path& path);  // true for a volume's file name and for a folder with DICOM
 
-// Weights are kept in NRRD files too (see skin/weights_io): what tells them from volumes is their `limber_bones`.
+// Returns whether the file contains skin weights. They are also stored in NRRD files (skin/weights_io), in which the
+// key `limber_bones` distinguishes them from volumes.
 bool is_weights_path(const Path& path);
 struct WeightsSummary {
-  std::string bones;  // names, as JSON
+  std::string bones;  // names of the bones, as JSON
   std::int64_t voxels = 0;
 };
 WeightsSummary summarize_weights(const Path& path);
 
-// Throws Error when no volume can be written under this name (unknown extension, missing folder). Commands ask first,
-// before they compute.
+// Throws Error when no volume can be written to `path`: no format has its extension, or its folder is missing. Commands
+// call this before they compute.
 void check_writable(const Path& path);
 
-// Format by extension; voxels carry the tissues' file values in `type.voxel_type` (widened when they do not fit).
-// Names and colours go along where the format can hold them (.seg.nrrd; other NRRD as key/value pairs).
+// Writes a label volume in the format of the extension. Voxels get the tissues' file values as `type.voxel_type`, or a
+// wider type when a value does not fit. Names and colours are written where the format can store them (.seg.nrrd; other
+// NRRD as key/value pairs).
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues = {},
                   const FileType& type = {});
 void write_grey_volume(const GreyVolume& volume, const Path& path);
-// Three floats a voxel, mm, world axes (a displacement field).
+// Writes a displacement field: three floats per voxel, mm, world axes.
 void write_vector_volume(const Grid& grid, std::span<const glm::vec3> voxels, const Path& path);
 void write_scalar_volume(const Grid& grid, std::span<const float> voxels, const Path& path);
 

@@ -18,7 +18,7 @@ namespace limber {
 namespace fs = std::filesystem;
 
 PlainFile::PlainFile(const Path& path) {
-  // Without O_NONBLOCK a pipe would hang here.
+  // O_NONBLOCK, because to open a pipe would block otherwise.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
   struct stat status {};
@@ -55,7 +55,8 @@ namespace {
 
 bool ends(const Path& path, std::string_view end) { return lower_case(path.filename().string()).ends_with(end); }
 
-// NAME.hdr for NAME.img and NAME.img.gz, NAME.txt for NAME.raw, else the same name.
+// Returns the file that holds the volume's header: NAME.hdr for NAME.img and NAME.img.gz, NAME.txt for NAME.raw, else
+// the given file.
 Path header_path(const Path& given) {
   Path path = given;
   if (ends(path, ".raw")) return path.replace_extension(".txt");
@@ -64,7 +65,8 @@ Path header_path(const Path& given) {
   return path.replace_extension(".hdr");
 }
 
-// The data file, only if it lies in the header's folder once every link is followed.
+// Returns the path of the data file `name`. Throws Error unless the file, after symbolic links are resolved, lies in
+// the header's folder.
 Path checked_data_path(const Path& header_path, const std::string& name) {
   const Path relative(name);
   const auto outside = [&] {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where a volume lies, and how its files are opened. Only names are looked at here, and the mark of DICOM: whatever
-// else a file holds is parsed by open_volume.cpp and dicom.cpp, which get at files only through VolumeFiles. So the
-// same parsers work in a process that may not open any file: there, VolumeFiles asks the program (serve_volume.cpp).
+// Locates a volume and opens its files. This code only looks at file names and for the bytes that mark DICOM. All else
+// in a file is parsed by open_volume.cpp and dicom.cpp, which access files only through VolumeFiles. So the same
+// parsers work in a process that may not open files: there, VolumeFiles asks the program to open them
+// (serve_volume.cpp).
 #pragma once
 
 #include <cstddef>
@@ -13,11 +14,13 @@
 
 namespace limber {
 
-// A file on the disk, opened to be read; no folder, pipe or device.
+// A regular file opened for reading; not a folder, pipe or device.
 class PlainFile {
  public:
-  explicit PlainFile(const Path& path);                                                   // throws Error
-  PlainFile(int descriptor, std::int64_t size) : descriptor_(descriptor), size_(size) {}  // takes the descriptor
+  explicit PlainFile(const Path& path);  // throws Error
+  PlainFile(int descriptor, std::int64_t size)
+      : descriptor_(descriptor),
+        size_(size) {}  // takes ownership of the descriptor
   ~PlainFile();
   PlainFile(PlainFile&& other) noexcept : descriptor_(other.descriptor_), size_(other.size_) { other.descriptor_ = -1; }
   PlainFile(const PlainFile&) = delete;
@@ -25,7 +28,7 @@ class PlainFile {
 
   int descriptor() const { return descriptor_; }
   std::int64_t size() const { return size_; }  // bytes
-  // Bytes from `offset`, fewer only at the file's end.
+  // Reads `bytes` bytes from `offset` on and returns how many were read: fewer only at the file's end.
   std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const;
 
  private:
@@ -33,22 +36,22 @@ class PlainFile {
   std::int64_t size_ = 0;
 };
 
-// At most so many bytes from the file's beginning.
+// Returns the file's first bytes, at most `most`.
 std::string first_bytes(const PlainFile& file, std::int64_t most);
-constexpr std::int64_t kLargestHeader = 16 << 20;  // bytes: what is longer is no header
+constexpr std::int64_t kLargestHeader = 16 << 20;  // bytes; a longer text is not taken for a header
 
 struct VolumeLocation {
   Path path;  // as the user named it
   bool is_dicom = false;
-  std::vector<Path> headers;  // the header's file; of DICOM every image, in order of names
+  std::vector<Path> headers;  // the file with the header; for DICOM all images, sorted by name
 
   Path folder() const { return headers.front().parent_path(); }
 };
 
-// Throws Error where no file, no header or no DICOM image is.
+// Finds the files of the volume `path`. Throws Error when the file, its header or every DICOM image is missing.
 VolumeLocation locate_volume(const Path& path);
 
-// Opens the files of one volume. Data files go by the names that the header gives them, from the header's folder on.
+// Opens the files of one volume. A data file is given by its name in the header, relative to the header's folder.
 class VolumeFiles {
  public:
   explicit VolumeFiles(VolumeLocation location) : location_(std::move(location)) {}
@@ -56,11 +59,11 @@ class VolumeFiles {
   const VolumeLocation& location() const { return location_; }
 
   virtual PlainFile open_header(std::size_t index) = 0;  // throws Error
-  // Throws Error for one that is missing, or lies outside the header's folder once every link is followed.
+  // Throws Error when a data file is missing or, after links are resolved, lies outside the header's folder.
   virtual void check_data(const std::vector<std::string>& names) = 0;
-  virtual PlainFile open_data(const std::string& name) = 0;  // throws Error, likewise
-  virtual bool has_data(const std::string& name) = 0;        // one that check_data() takes
-  // The parser is about to take up to this much memory at once, bytes.
+  virtual PlainFile open_data(const std::string& name) = 0;  // throws Error as check_data() does
+  virtual bool has_data(const std::string& name) = 0;        // whether check_data() accepts the name
+  // Announces that the parser may soon allocate up to this many bytes of memory at once.
   virtual void expect_memory(std::size_t) {}
 
  private:

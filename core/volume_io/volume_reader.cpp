@@ -27,10 +27,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kAskMilliseconds = 20;                 // whether the user has cancelled
-constexpr int kPipeBytes = 1 << 20;                  // as much as a usual kernel grants
-constexpr std::uint64_t kLongestMessage = 64 << 20;  // of a header with all its keys
-constexpr int kNotLoaded = 127;                      // what the system's loader says of a program without its libraries
+constexpr int kAskMilliseconds = 20;                 // interval between two checks whether the user cancelled
+constexpr int kPipeBytes = 1 << 20;                  // size of the pipe, the largest that the kernel usually grants
+constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
+constexpr int kNotLoaded = 127;                      // exit code when the system finds a library of the program missing
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
 
 class Descriptor {
@@ -50,19 +50,20 @@ Error no_reader(const Path& program) {
   return {"the reader of volumes cannot be started", program.string(), std::strerror(errno)};
 }
 
-// A text "what: where: what to do" as the Error that it was.
+// Converts an Error's text "what: where: what to do" back to an Error.
 Error error_from(const std::string& text, const std::string& where) {
   const std::size_t first = text.find(": "), last = text.rfind(": ");
   if (first == std::string::npos || first == last) return {text, where, kHarmful};
   return {text.substr(0, first), text.substr(first + 2, last - first - 2), text.substr(last + 2)};
 }
 
-// One end for the program, which never waits at it, and one for the reader.
+// The two ends of a channel between program and reader: `ours` is the program's, which never blocks, `its` the
+// reader's.
 struct Ends {
   Descriptor ours, its;
 };
 
-// The program's orders travel with open files.
+// Creates the channel for messages to the reader. It is a socket, because open files are sent with the messages.
 Ends make_orders(const Path& program) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw no_reader(program);
@@ -78,7 +79,7 @@ Ends make_answers(const Path& program) {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-// The process, and what came of it.
+// Owns the reader's process and the program's ends of its channels. The destructor kills the process.
 class ReaderProcess {
  public:
   ReaderProcess(const VolumeLocation& location, const ReaderSettings& settings)
@@ -90,7 +91,7 @@ class ReaderProcess {
   int orders() const { return orders_.get(); }
   int answers() const { return answers_.get(); }
 
-  // Seconds of processor time that it has taken; 0 when it has ended.
+  // Returns the processor time that the reader's process has used, seconds; 0 when the process has ended.
   double processor_seconds() const {
     clockid_t clock;
     timespec time{};
@@ -98,9 +99,10 @@ class ReaderProcess {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  // The status of one that has closed its pipe, which ends by itself within a moment; nothing of one that does not.
+  // Returns the exit status of the reader's process, which has closed its pipe and so should end soon. Waits up to 0.1
+  // s; returns nothing when the process still runs.
   std::optional<int> ended_status() {
-    constexpr int kMoments = 100;  // of a millisecond
+    constexpr int kMoments = 100;  // upper limit on the waits, each of a millisecond
     for (int i = 0; id_ > 0 && i < kMoments; ++i) {
       int status = 0;
       if (::waitpid(id_, &status, WNOHANG) == id_) {
@@ -123,7 +125,7 @@ class ReaderProcess {
   }
   void end() {
     if (id_ <= 0) return;
-    ::kill(-id_, SIGKILL);  // its group
+    ::kill(-id_, SIGKILL);  // a negative ID means the whole process group
     while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
     }
     id_ = -1;
@@ -133,7 +135,8 @@ class ReaderProcess {
   pid_t id_ = -1;
 };
 
-// What passes between the program and its reader, byte by byte, while the user may cancel and the reader is watched.
+// Transfers bytes between the program and its reader. While it waits, it checks whether the user cancelled and whether
+// the reader makes progress.
 class Conversation {
  public:
   Conversation(const VolumeLocation& location, const ReaderSettings& settings, Progress& progress)
@@ -158,7 +161,7 @@ class Conversation {
     }
   }
 
-  // `file`: travels with it; -1: none.
+  // Sends a message to the reader. `file` is the descriptor of an open file to send with it; -1: none.
   void write(Message kind, std::string_view bytes, int file = -1) {
     const MessageHead head{kind, 0, bytes.size()};
     std::string all(reinterpret_cast<const char*>(&head), sizeof head);
@@ -178,7 +181,7 @@ class Conversation {
   }
   std::string read_bytes(const MessageHead& head) {
     require(head.size <= kLongestMessage);
-    constexpr std::size_t kStep = 1 << 20;  // memory only for what has come
+    constexpr std::size_t kStep = 1 << 20;  // bytes; memory for a message grows by steps as its bytes arrive
     std::string bytes;
     while (bytes.size() < head.size) {
       const std::size_t before = bytes.size(), more = std::min<std::size_t>(kStep, head.size - before);
@@ -188,7 +191,7 @@ class Conversation {
     return bytes;
   }
 
-  // The file that the reader works on, for messages.
+  // Sets the name of the file that the reader parses now, for error messages.
   void parses(const std::string& file) { parsed_ = file; }
   const std::string& parsed() const { return parsed_; }
 
@@ -224,7 +227,8 @@ class Conversation {
     if (::poll(&ready, 1, kAskMilliseconds) == 0) watch();
   }
 
-  // Nothing has come for a while.
+  // Throws Error when the reader has sent nothing for `busy_seconds` of processor time or `silent_seconds` of elapsed
+  // time. Called when nothing has arrived for kAskMilliseconds.
   void watch() {
     const double processor = process_.processor_seconds();
     const auto now = Clock::now();
@@ -243,7 +247,7 @@ class Conversation {
 
   Error nonsense() const { return {"the file made its reader answer nonsense", parsed_, kHarmful}; }
 
-  // What became of a reader that ended before it had said all.
+  // Returns the Error for a reader that closed its pipe before it had sent everything.
   Error death() {
     const std::optional<int> ended = process_.ended_status();
     if (!ended) return nonsense();
@@ -270,7 +274,7 @@ class Conversation {
   double busy_at_sign_ = 0;
 };
 
-// Both sides' order of words: answers questions and hands on what the reader delivers.
+// The source of the voxels that a reader process decodes. It answers the reader's questions meanwhile.
 class ReaderVoxels final : public VoxelSource {
  public:
   ReaderVoxels(const VolumeLocation& location, Holding holding, Progress& progress, const ReaderSettings& settings)
@@ -318,7 +322,8 @@ class ReaderVoxels final : public VoxelSource {
 
   std::string await(Message kind) { return talk_.read_bytes(next_of(kind)); }
 
-  // Answers questions until a message of that kind begins. Throws for any other.
+  // Answers the reader's questions until a message of kind `kind` begins, and returns its head. Throws Error for any
+  // other message.
   MessageHead next_of(Message kind) {
     for (;;) {
       const MessageHead head = talk_.read_head();
@@ -330,7 +335,8 @@ class ReaderVoxels final : public VoxelSource {
     }
   }
 
-  // Only what the file system says is told to the reader; what it must not ask is thrown.
+  // Answers one question of the reader. An Error about a file is sent to the reader as the answer. Throws Error for a
+  // message that is not a valid question.
   void answer(Message question, const std::string& bytes) {
     const bool header = question == Message::OpenHeader, data = question == Message::OpenData;
     if (question == Message::HasData) return talk_.write(Message::Present, files_.has_data(bytes) ? "1" : "0");
@@ -366,8 +372,8 @@ class ReaderVoxels final : public VoxelSource {
   const ReaderSettings settings_;
   LocalFiles files_;
   Conversation talk_;
-  std::int64_t promised_ = 0;  // bytes of voxels that no message has begun to deliver
-  std::size_t left_ = 0;       // of the message of voxels that is being read
+  std::int64_t promised_ = 0;  // bytes of voxels that the header promised and no message has announced yet
+  std::size_t left_ = 0;       // bytes not yet read of the current Voxels message
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes from strangers are parsed in a process of their own, limber_reader, which has no rights (sandbox.h): it can
-// open no file, reach no network and start no program. Whatever a file makes of its parser, or of GDCM, ends there.
+// Parses volumes in a separate process, limber_reader, because volumes may come from strangers. That process has no
+// rights (sandbox.h): it cannot open files, use the network or start programs. So a malicious file can harm only that
+// process, even through an error in a parser or in GDCM.
 //
 //   program                                    limber_reader
 //   finds the files by their names    Order -> enters its sandbox before it reads a byte of them
@@ -8,13 +9,13 @@
 //   volume, and sends it open         File ->
 //   checks header and sizes again     <- Header, voxels, End or an Error's text
 //
-// Voxels come through a pipe of 1 MB, so that memory holds the volume once and decoding runs beside the program's own
-// work. The program waits at most 20 ms before it asks whether the user has cancelled. It ends a reader that takes
-// processor time without delivering anything, or is silent. A reader that crashes, is ended or breaks the rules is one
-// Error.
+// Voxels come through a pipe of 1 MB, so that the volume is in memory only once and decoding runs in parallel with the
+// program's own work. The program checks at least every 20 ms whether the user has cancelled. It kills a reader that
+// sends nothing for too long (see ReaderSettings). When a reader crashes, is killed or breaks the protocol, the program
+// throws one Error.
 //
-// Where the program does not find limber_reader (Limber used as a library in another program) files are parsed in this
-// process, and DICOM is refused: GDCM ends its process on some damaged files.
+// When the program does not find limber_reader (Limber used as a library in another program), files are parsed in this
+// process, and DICOM is refused, because GDCM ends its process on some damaged files.
 #pragma once
 
 #include <cstddef>
@@ -28,19 +29,21 @@ namespace limber {
 constexpr const char* kReaderName = "limber_reader";
 
 struct ReaderSettings {
-  Path program;                                       // limber_reader
-  std::size_t memory_bytes = std::size_t{256} << 20;  // at most; more for images of DICOM, by what they promise
-  double busy_seconds = 20;                           // of processor time without anything delivered, until it is ended
-  double silent_seconds = 120;                        // by the clock, likewise
+  Path program;                                       // path of limber_reader
+  std::size_t memory_bytes = std::size_t{256} << 20;  // memory limit; for DICOM images it grows with their stated size
+  double busy_seconds = 20;     // the reader is killed after this processor time without sending data
+  double silent_seconds = 120;  // the reader is killed after this elapsed time without sending data
 };
 
-// Starts the reader, and returns when it has delivered the header. `voxels` reads on; it ends the reader when it goes.
-//   progress  lives as long as `voxels`
-//   throws Error with the reader's own words or what became of it, and Cancelled
+// Starts a reader and returns when it has sent the volume's header. The result's member `voxels` receives the voxels;
+// its destructor ends the reader.
+//   progress  must live as long as `voxels`
+//   throws Error, which says what is wrong with the file or how the reader ended, and Cancelled
 OpenedVolume open_in_reader(const VolumeLocation& location, Holding holding, Progress& progress,
                             const ReaderSettings& settings);
 
-// What stands around the reader on this machine: it is started to be asked. Nothing where there is no limber_reader.
+// Starts a reader and returns the protections that are in force for it on this machine. Returns no protections when
+// limber_reader is missing.
 Protection reader_protection();
 
 }  // namespace limber

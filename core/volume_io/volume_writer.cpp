@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The writing half of volume_io.h. Every byte goes once through one chunk: labels are looked up, deflated and written.
+// Implements the writing functions of volume_io.h. The voxels are written chunk by chunk: the labels of a chunk are
+// converted to file values, compressed and written.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +25,8 @@ const VolumeFormat::Written& writer_of(const Path& path) {
 
 void write(const Voxels& voxels, const Path& path) { writer_of(path).write(voxels, path); }
 
-// The narrowest type of `wanted`'s family (signed, unsigned, real) that holds all values; another family when it must.
+// Returns a voxel type that holds all values from `lowest` to `highest`: `wanted` when it suffices, else the narrowest
+// wider type of its family (signed, unsigned, real). A negative `lowest` turns an unsigned type into a signed one.
 VoxelType type_that_holds(double lowest, double highest, std::optional<VoxelType> wanted) {
   using enum VoxelType;
   const auto holds = [&](VoxelType type) {
@@ -100,7 +102,8 @@ void write_volume(const LabelVolume& volume, const Path& path, const TissueTable
 
 void write_grey_volume(const GreyVolume& volume, const Path& path) {
   writer_of(path);
-  // Whole values stay in the type they came in; what was interpolated becomes float.
+  // The file keeps its original voxel type when every value fits it; interpolated values, which are fractional, make it
+  // float.
   const auto wanted = voxel_type_from_text(volume.type.voxel_type).value_or(VoxelType::Float32);
   const bool keeps = visit_voxel_type(wanted, [&]<class T>(T) {
     if constexpr (std::is_floating_point_v<T>) return true;

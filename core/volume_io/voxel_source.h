@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Something that delivers the voxels of one volume in storage order: a file's stream or a DICOM series.
+// Defines the interface for reading the voxels of one volume in storage order, from data files or a DICOM series.
 #pragma once
 
 #include <cstddef>
@@ -18,32 +18,33 @@ class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
 
-  // Exactly `bytes` more bytes of voxels, in the header's byte order. Throws Error when the data end before or are
-  // damaged.
+  // Reads exactly the next `bytes` bytes of voxels, in the header's byte order. Throws Error when the data end earlier
+  // or are damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
 
-  // To be called after the last voxel: verifies checksums, and tells of data beyond the promise and of wrong header
-  // fields, one line each.
+  // Verifies checksums after the last voxel was read. Returns warnings, one line each: for data beyond what the header
+  // promises, and for wrong header fields.
   virtual std::vector<std::string> finish() = 0;
 };
 
 struct OpenedVolume {
   VolumeHeader header;
-  std::unique_ptr<VoxelSource> voxels;  // null where only the header is wanted
+  std::unique_ptr<VoxelSource> voxels;  // null when only the header was requested
 };
 
-// The key that marks an NRRD file as weights.
+// The key by which an NRRD file with skin weights differs from one with a volume.
 constexpr const char* kWeightsKey = "limber_bones";
 
-// What a file is taken for. Vectors: a displacement field, given as a volume three times as long in x. Header: whatever
-// it holds, but nothing of its voxels.
+// The kind of content to read. Vectors: a displacement field, read as a volume with three times as many voxels in x.
+// Header: only the header, of a file with any content.
 enum class Holding : std::uint8_t { Volume, Weights, Vectors, Header };
 
-// Reads and checks the header, by content and extension, and opens the data. The file is parsed by a process without
-// rights (volume_reader.h), or here where there is none. Throws Error, also for weights where a volume is wanted.
+// Reads and checks the header and opens the voxels. The file's format is recognized by content and extension. The file
+// is parsed in a process without rights (volume_reader.h), or in this one when limber_reader is missing. Throws Error,
+// also for a file of weights when a volume is requested.
 OpenedVolume open_volume(const Path& path, Progress& progress = no_progress(), Holding holding = Holding::Volume);
 
-// The same by this process itself.
+// Opens a volume as open_volume() does, but always parses it in this process.
 OpenedVolume open_volume_here(std::shared_ptr<VolumeFiles> files, Holding holding);
 
 bool is_virtual_family(const Path& text_path);

@@ -15,12 +15,13 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kChunk = 1 << 16;
-// The most one byte of encoded data can unpack to: 1032 for deflate; a bzip2 block of 900 000 bytes needs some 40.
+// Upper limits on the bytes into which one byte of compressed data can unpack. For deflate it is 1032. A bzip2 block of
+// 900 000 bytes takes at least about 40 bytes.
 constexpr std::int64_t kDeflateMost = 1032, kBzip2Most = 25000;
 
 const char* const kExportAgain = "the file is cut off or damaged; export or download it again";
 
-// Bytes of one file from a place on.
+// Reads the bytes of one file in order, through a buffer.
 class ByteSource {
  public:
   ByteSource(PlainFile file, const std::string& where) : file_(std::move(file)), where_(where) {}
@@ -33,7 +34,8 @@ class ByteSource {
     place_ = place;
     next_ = end_ = 0;
   }
-  // Large reads bypass the buffer.
+  // Reads the next `bytes` bytes and returns how many were read: fewer only at the file's end. What the buffer lacks is
+  // read directly into `to`.
   std::size_t read(void* to, std::size_t bytes) {
     std::size_t done = std::min(bytes, end_ - next_);
     std::memcpy(to, buffer_.data() + next_, done);
@@ -45,7 +47,8 @@ class ByteSource {
     }
     return done;
   }
-  // What is buffered; refilled when used up. Empty at the end of the file.
+  // Returns the bytes in the buffer that were not read yet, after refilling an empty buffer. Returns none at the end of
+  // the file.
   std::string_view peek() {
     if (next_ == end_) {
       end_ = file_.read_at(place_, buffer_.data(), buffer_.size());
@@ -64,13 +67,14 @@ class ByteSource {
   std::int64_t place_ = 0;
 };
 
-// One encoding. read() gives fewer bytes only where the data end; it throws where they are damaged.
+// Base class of the decoders, one per encoding. read() returns the number of decoded bytes, which is below `bytes` only
+// at the end of the data. It throws Error when the data are damaged.
 class Decoder {
  public:
   explicit Decoder(ByteSource& source) : source_(source) {}
   virtual ~Decoder() = default;
   virtual std::size_t read(unsigned char* to, std::size_t bytes) = 0;
-  // After the last promised byte: true when nothing follows. Verifies a trailing checksum.
+  // Returns whether the data end after the bytes that were read. Throws Error when a checksum at their end is wrong.
   virtual bool ends_here() {
     unsigned char more;
     return read(&more, 1) == 0;
@@ -112,7 +116,7 @@ class DeflateDecoder final : public Decoder {
   }
 
  private:
-  // gzip files may be several streams one after the other (pigz, bgzip).
+  // Starts the next gzip stream, because a gzip file may contain several streams in a row (as pigz and bgzip write).
   void start_next_member() {
     if (stream_.behind() > 0) source_.go_to(source_.place() - static_cast<std::int64_t>(stream_.behind()));
     const std::string_view rest = source_.peek();
@@ -161,7 +165,7 @@ class Bzip2Decoder final : public Decoder {
   bool ended_ = false;
 };
 
-// Numbers as text, between blanks or commas, turned to the voxel type's bytes.
+// Converts numbers in a text, separated by blanks or commas, to voxels in memory.
 class AsciiDecoder final : public Decoder {
  public:
   AsciiDecoder(ByteSource& source, VoxelType type, bool big_endian) : Decoder(source), type_(type), swap_(big_endian) {}
@@ -201,7 +205,7 @@ class AsciiDecoder final : public Decoder {
   template <class T>
   void store_as(std::string_view text) {
     auto value = number_of<T>(text);
-    if (!value && std::is_integral_v<T>)  // "3.0"
+    if (!value && std::is_integral_v<T>)  // accepts text as "3.0"
       if (const auto real = number_of<double>(text);
           real && *real == static_cast<double>(static_cast<std::int32_t>(std::clamp(*real, -2e9, 2e9))))
         if (const auto whole = static_cast<std::int64_t>(*real);
@@ -291,7 +295,8 @@ void go_to_data(ByteSource& source, const VolumeHeader& header, std::int64_t raw
   source.go_to(source.place() + header.byte_skip);
 }
 
-// Fails before anything is decoded or allocated when the file cannot hold `bytes`.
+// Throws Error when the file is too small to contain `bytes` bytes of decoded voxels. Called before memory is
+// allocated.
 void check_room(const ByteSource& source, const VolumeHeader& header, std::int64_t bytes) {
   const std::int64_t there = source.left(), voxel = size_of(header.voxel_type);
   std::int64_t most = there;
@@ -313,8 +318,8 @@ struct VoxelStream::Sources {
   std::shared_ptr<VolumeFiles> files;
   const VolumeHeader header;
   std::int64_t bytes_each = 0;
-  std::int64_t current = 0;  // of the data files
-  std::int64_t left = 0;     // of the current file
+  std::int64_t current = 0;  // index of the current data file
+  std::int64_t left = 0;     // bytes left in the current file
   std::unique_ptr<ByteSource> source;
   std::unique_ptr<Decoder> decoder;
   std::int64_t data_start = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The voxel bytes that a header promises, decoded and delivered in order, chunk by chunk, or an Error: nothing is ever
-// made up. It reads and inflates each byte once, so that checking a file costs no second pass and no file-wide buffer.
+// Reads and decodes the voxels that a header promises, in storage order and in chunks of any size. Throws Error when
+// they are incomplete, and never fills them up. Each byte is read and decompressed once, so that checking a file needs
+// no second pass and no buffer for the whole file.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +16,9 @@ namespace limber {
 
 class VoxelStream final : public VoxelSource {
  public:
-  // Opens the data files, one after the other. They must be plain files inside the header's folder (no links out of
-  // it), and large enough to hold what is promised: raw data to the byte, encoded data by the most their encoding can
-  // pack.
-  //   throws Error naming the data file
+  // Checks the data files and opens the first one. They must be regular files inside the header's folder, also after
+  // links are resolved. They must be large enough for the voxels that the header promises; compressed files, at the
+  // best compression ratio of their encoding. Throws Error, which names the data file.
   VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader& header);
   ~VoxelStream() override;
 

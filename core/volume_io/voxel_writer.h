@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the writers of all formats of volumes have in common.
+// Functions that the writers of all volume formats share.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace limber {
 
-// A file being written, plainly or deflated.
+// A file that is written piece by piece; pieces between begin_deflate() and end_deflate() are compressed.
 class OutputFile {
  public:
-  explicit OutputFile(const Path& path);  // throws Error, as all of it does
+  explicit OutputFile(const Path& path);  // throws Error, as all members that write do
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -38,36 +38,37 @@ class OutputFile {
   Path path_;
   int descriptor_ = -1;
   std::int64_t place_ = 0;
-  std::optional<Deflater> deflater_;  // while bytes are packed
+  std::optional<Deflater> deflater_;  // set between begin_deflate() and end_deflate()
 };
 
-// What is to be written, whatever the format.
+// The volume to write, in terms that all formats share.
 struct Voxels {
   Grid grid;
   VoxelType type = VoxelType::UInt8;
   int channels = 1;
   bool compress = true;
-  // Fills `to` with `count` voxels from `first` on.
+  // Fills `to` with `count` voxels, starting at voxel `first`.
   std::function<void(std::int64_t first, std::size_t count, void* to)> fill;
-  TissueTable tissues;  // for formats that hold names
+  TissueTable tissues;  // written by formats that store tissue names
   int nifti_version = 1;
-  std::string description = {};  // one line of ASCII, at most 79 letters, which is what NIfTI has room for
-  std::vector<std::pair<std::string, std::string>> keys = {};  // of NRRD
+  std::string description = {};  // one line of ASCII, at most 79 characters, the limit of NIfTI
+  std::vector<std::pair<std::string, std::string>> keys = {};  // additional keys of NRRD
 };
 
-// All voxels, as they lie in memory.
+// Writes all voxels as bytes, in this machine's byte order; they are compressed only inside begin_deflate().
 void write_voxels(OutputFile& out, const Voxels& voxels);
-// The same, deflated where `voxels` wants it.
+// Writes all voxels; compresses them when `voxels.compress` is set.
 void write_data(OutputFile& out, const Voxels& voxels, Deflater::Wrap wrap);
 void write_text(OutputFile& out, const std::string& text);
 
-// The data into a file beside the header, and only then the header, which so never names data that are not there.
-//   header  its text, told the data file's name and how long it is
+// Writes the voxels into a file beside the header, then the header, so that a header never names data that do not
+// exist.
+//   header  returns the header's text for the data file's name and size
 void write_detached(const Voxels& voxels, const Path& header_path, const std::string& data_extension,
                     Deflater::Wrap wrap,
                     const std::function<std::string(const std::string& data_name, std::int64_t bytes)>& header);
 
-// "1 2 3"
+// Returns the three numbers as text, as in "1 2 3".
 std::string joined(const glm::dvec3& v, const char* between = " ");
 std::string sizes_text(const Grid& grid);
 

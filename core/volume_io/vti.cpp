@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK's XML image data (.vti) [VTK File Formats, VTK 9]: one piece, its voxels at points or in cells, of one component.
-// Data stand in the header's text as numbers or base64, or behind it (appended) raw or as base64; packed ones are zlib
-// blocks behind a table of their sizes. Coordinates are taken as they stand, LPS in mm: VTK names no convention.
+// Reads and writes VTK's XML image data (.vti) [VTK File Formats, VTK 9]: one <Piece> whose points or cells are the
+// voxels, with one component. The voxel data are inside the XML as numbers or base64, or appended after it as raw bytes
+// or base64. Compressed data are zlib blocks after a table of their sizes. Coordinates are used unchanged as LPS in mm,
+// because VTK defines no convention.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -23,15 +24,15 @@ constexpr std::string_view kZlib = "vtkZLibDataCompressor";
 
 using Attributes = std::map<std::string, std::string, std::less<>>;
 
-// What the header says, as far as it was read.
+// What has been read of the file's XML header.
 struct VtiHeader {
-  Attributes file, image, piece, array;  // of VTKFile, ImageData, Piece and the chosen DataArray
+  Attributes file, image, piece, array;  // attributes of VTKFile, ImageData, Piece and the chosen DataArray
   bool in_cells = false;
-  std::string appended;       // "raw", "base64"; empty: the data stand in the text
-  std::int64_t data_at = -1;  // where they begin in the file, bytes
+  std::string appended;       // encoding of appended data: "raw", "base64"; empty: none are appended
+  std::int64_t data_at = -1;  // offset of the data in the file, bytes
 };
 
-// Reads the text until the data of the chosen array begin.
+// Parses the file's XML up to the start of the voxel data, and chooses the array that holds them.
 class VtiText {
  public:
   VtiText(const PlainFile& file, const std::string& where) : file_(file), where_(where) {}
@@ -41,7 +42,7 @@ class VtiText {
         XML_ParserCreate(nullptr), XML_ParserFree);
     if (!parser) throw std::bad_alloc();
     parser_ = parser.get();
-    XML_SetHashSalt(parser_, 0x51ed270b);  // where the file is parsed, the system gives no random numbers
+    XML_SetHashSalt(parser_, 0x51ed270b);  // fixed, because a sandbox cannot open /dev/urandom for a random salt
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(
         parser_, [](void* self, const char* name, const char** a) { static_cast<VtiText*>(self)->open(name, a); },
@@ -96,7 +97,7 @@ class VtiText {
     if (name == "AppendedData" && header_.array["format"] == "appended") begin_appended(all(attributes));
   }
 
-  // The array that is named as the scalars, else the first of one component.
+  // Chooses the array with the name in the attribute Scalars, else the first one; it must have one component.
   void consider(Attributes array) {
     const bool one = !array.contains("NumberOfComponents") || array["NumberOfComponents"] == "1";
     const bool named = !wanted_.empty() && array["Name"] == wanted_;
@@ -120,14 +121,14 @@ class VtiText {
     stop();
   }
 
-  // The first byte behind the tag that is being opened.
+  // Returns the file offset of the first byte after the XML tag that the parser reports now.
   std::int64_t behind_tag() const { return XML_GetCurrentByteIndex(parser_) + XML_GetCurrentByteCount(parser_); }
 
   void stop() {
     stopped_ = true;
     XML_StopParser(parser_, XML_FALSE);
   }
-  // Thrown once the parser, which is written in C, has returned.
+  // Stops the parser and stores an Error, which is thrown when the parser, which is C code, has returned.
   void fail(const std::string& what, const std::string& remedy) {
     failure_.emplace(what, where_, remedy);
     stop();
@@ -190,7 +191,7 @@ const std::string& attribute(const Attributes& attributes, const char* name, con
   return found == attributes.end() ? otherwise : found->second;
 }
 
-// The keys under which the header tells the voxels how its data are written.
+// Keys in VolumeHeader::keys by which the parser tells VtiVoxels where and how the data are stored.
 constexpr const char *kDataAt = "vti data at", *kDataIn = "vti data in", *kHeaderType = "vti header type",
                      *kPacked = "vti packed";
 
@@ -210,7 +211,7 @@ VolumeHeader read_vti_header(VolumeFiles& files, const PlainFile& file, const st
     throw Error("the data are packed by " + in_quotes(compressor), where, "export them with zlib, or not packed");
   const std::string format = attribute(vti.array, "format", "ascii");
   const std::string in = format == "ascii" ? "text" : format == "binary" || vti.appended == "base64" ? "base64" : "raw";
-  // What the voxels are of, in the terms of all formats; the way there is told beside it.
+  // `encoding` describes the data in terms that all formats share; the keys say where the data are in this format.
   header.encoding = in == "text" ? Encoding::Ascii : compressor.empty() ? Encoding::Raw : Encoding::Deflate;
   header.keys = {{kDataAt, std::to_string(vti.data_at)},
                  {kDataIn, in},
@@ -219,7 +220,7 @@ VolumeHeader read_vti_header(VolumeFiles& files, const PlainFile& file, const st
   return header;
 }
 
-// Bytes of a file from some place on, as they stand or written in base64.
+// Reads a file's bytes from a position on, as they are or decoded from base64.
 class EncodedBytes {
  public:
   EncodedBytes(PlainFile file, std::int64_t at, bool is_base64, std::string where)
@@ -228,7 +229,7 @@ class EncodedBytes {
         is_base64_(is_base64),
         where_(std::move(where)) {}
 
-  // Throws Error where the data end before.
+  // Reads the next `bytes` bytes. Throws Error when the data end earlier.
   void read(char* to, std::size_t bytes) {
     while (bytes > 0) {
       if (next_ == ready_.size()) fill();
@@ -239,7 +240,7 @@ class EncodedBytes {
       bytes -= some;
     }
   }
-  // The next letter of the text; 0 at the end of the data.
+  // Returns the next character of numbers written as text; 0 at the end of the data.
   char letter() {
     if (next_ == ready_.size() && !fill_raw()) return 0;
     return ready_[next_] == '<' ? 0 : ready_[next_++];
@@ -260,7 +261,7 @@ class EncodedBytes {
     std::string plain;
     for (const char c : ready_) {
       if (is_blank(c)) continue;
-      if (c == '<') break;  // the end of the element
+      if (c == '<') break;  // start of the closing tag
       const int digit = digit_of(c);
       if (digit < 0 && c != '=') fail("the base64 is damaged");
       group_ = group_ << 6 | static_cast<unsigned>(std::max(digit, 0));
@@ -338,7 +339,7 @@ class VtiVoxels final : public VoxelSource {
     return value;
   }
 
-  // The table before the blocks: how many, how long all but the last and the last are, and how long each is packed.
+  // Reads the table before the blocks: their number, a block's size, the last one's, and each block's compressed size.
   void read_sizes(std::int64_t promised) {
     const std::uint64_t blocks = number(), block = number(), last = number();
     constexpr std::uint64_t kMostBlocks = 1 << 22;
@@ -361,7 +362,7 @@ class VtiVoxels final : public VoxelSource {
     waiting_.clear();
   }
 
-  // What follows the last byte of a block is its checksum.
+  // Ends the current block: verifies its checksum and that no data follow its last voxel, then skips its unread bytes.
   void end_block() {
     char beyond = 0;
     while (inflater_ && !inflater_->ended())
@@ -371,7 +372,7 @@ class VtiVoxels final : public VoxelSource {
       bytes_.read(rest.data(), std::min<std::uint64_t>(left_packed_, rest.size()));
   }
 
-  // Returns how many bytes came out, at most `room`.
+  // Decompresses bytes of the current block into `to` and returns how many were written, at most `room`.
   std::size_t inflate_some(char* to, std::size_t room) {
     if (waiting_.empty() && left_packed_ > 0) {
       waiting_.resize(std::min<std::uint64_t>(left_packed_, 1 << 16));
@@ -403,7 +404,7 @@ class VtiVoxels final : public VoxelSource {
   EncodedBytes bytes_;
   const VoxelType type_;
   const bool is_text_, is_packed_, swaps_, wide_;
-  std::vector<std::uint64_t> packed_;  // bytes of each block
+  std::vector<std::uint64_t> packed_;  // compressed size of each block, bytes
   std::uint64_t block_bytes_ = 0, last_bytes_ = 0, left_in_block_ = 0, left_packed_ = 0;
   std::size_t at_block_ = 0;
   std::optional<Inflater> inflater_;
@@ -414,7 +415,7 @@ std::unique_ptr<VoxelSource> open_vti_voxels(const std::shared_ptr<VolumeFiles>&
   return std::make_unique<VtiVoxels>(files, header);
 }
 
-// ---- Writing: appended, raw, in blocks of a megabyte.
+// ---- Writing: the voxels are appended as raw bytes, in blocks of about a megabyte.
 
 constexpr std::uint64_t kBlock = 1 << 20;
 
@@ -444,7 +445,7 @@ std::string bytes_of(std::uint64_t number) { return {reinterpret_cast<const char
 void write_blocks(OutputFile& out, const Voxels& voxels) {
   const std::size_t voxel = static_cast<std::size_t>(size_of(voxels.type) * voxels.channels);
   const std::uint64_t total = static_cast<std::uint64_t>(voxels.grid.voxel_count()) * voxel;
-  const std::size_t in_block = kBlock / voxel;  // whole voxels, so that a block can be filled alone
+  const std::size_t in_block = kBlock / voxel;  // whole voxels, so that blocks can be filled one by one
   const std::uint64_t block = in_block * voxel, blocks = (total + block - 1) / block;
   const std::int64_t table_at = out.place();
   write_text(out, bytes_of(blocks) + bytes_of(block) + bytes_of(total % block) +

@@ -12,17 +12,18 @@ namespace {
 std::string nothing_to_undo(const Editor& editor) { return editor.history.can_undo() ? "" : "Nothing to undo"; }
 std::string nothing_to_redo(const Editor& editor) { return editor.history.can_redo() ? "" : "Nothing to redo"; }
 
-// The row that the keyboard is in is renamed by the list itself; this is for what is chosen, from anywhere.
+// Returns why the rename operator has nothing to rename; "" when it has. It renames the selected tissue, bone or
+// result. A list that has the keyboard focus renames its focused row itself.
 std::string nothing_to_rename(const Editor& editor) {
   return editor.shown_popup == "Result" || editor.selection.tissue || needs_bone(editor).empty() || shown_result(editor)
              ? ""
-             : "Choose a tissue or a bone, or show a result first";
+             : "Select a tissue or a bone, or show a result first";
 }
 
 void rename(Editor& editor) {
   editor.arrangement().sidebar = true;
   const auto result = shown_result(editor);
-  // Whoever picks a bone lets the tissues go.
+  // A selected bone is renamed only if no tissue is selected.
   if (editor.shown_popup != "Result" && !editor.selection.tissue && needs_bone(editor).empty()) {
     const std::string& name = editor.document().armature->bones[*editor.selection.bone].name;
     editor.open_sections["Outliner"] = editor.outliner.open["armature"] = true;
@@ -39,7 +40,8 @@ void rename(Editor& editor) {
   begin_renaming(editor, "tissues" + std::to_string(tissue->label), tissue->name);
 }
 
-// A step back or on in the history. Bones that come back with it are chosen; else what was chosen stays so, by name.
+// Goes one step back or forward in the history (undo, redo). If the step restores bones, selects these; otherwise keeps
+// the selected bones, found by their names.
 void step(Editor& editor, bool (History::*go)()) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
   (editor.history.*go)();
@@ -65,16 +67,16 @@ void step(Editor& editor, bool (History::*go)()) {
 
 std::vector<Operator> edit_operators() {
   return {
-      {"edit.undo", "Undo", icon::kUndo, "Edit", "Takes the last edit back.",
-       [](Editor& e) { step(e, &History::undo); }, nothing_to_undo},
-      {"edit.redo", "Redo", icon::kRedo, "Edit", "Does the edit again that was taken back.",
+      {"edit.undo", "Undo", icon::kUndo, "Edit", "Undo the last edit.", [](Editor& e) { step(e, &History::undo); },
+       nothing_to_undo},
+      {"edit.redo", "Redo", icon::kRedo, "Edit", "Redo the edit that was undone last.",
        [](Editor& e) { step(e, &History::redo); }, nothing_to_redo},
       {"edit.adjust_last", "Adjust last operation", "", "Edit",
-       "Does what was done last again with other numbers, as the same step of the history.",
+       "Repeat the last operation with other settings. The new result replaces its step in the history.",
        [](Editor& e) { e.last_operation->wanted_at_pointer = true; }, why_not_redo},
-      {"edit.rename", "Rename", icon::kRename, "Edit",
-       "Gives the chosen tissue or bone, or the result that is shown, another name.", rename, nothing_to_rename},
-      {"edit.history", "History", icon::kHistory, "Edit", "Opens the list of edits in the sidebar.",
+      {"edit.rename", "Rename", icon::kRename, "Edit", "Rename the selected tissue or bone, or the shown result.",
+       rename, nothing_to_rename},
+      {"edit.history", "History", icon::kHistory, "Edit", "Open the list of edits in the sidebar.",
        [](Editor& e) {
          e.arrangement().sidebar = true;
          e.open_sections["History"] = true;

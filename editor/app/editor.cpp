@@ -40,23 +40,24 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kCameraMove = 0.18;  // s
-constexpr double kLongestRest = 60;   // s; only so that a wait ends at all
-constexpr double kJobPulse = 0.1;     // s between frames while a job runs
+constexpr double kCameraMove = 0.18;  // duration of a camera move, s
+constexpr double kLongestRest = 60;   // upper limit on the wait for an event, s, so that every wait ends
+constexpr double kJobPulse = 0.1;     // time between frames while a job runs, s
 constexpr int kJobsAtOnce = 2;
-constexpr int kMostTurns = 200;        // of the panels within a frame, for what was typed since the last
-constexpr int kMostAgain = 3;          // that a frame's panels are laid out once more
-constexpr float kTurnSeconds = 1e-5f;  // no time passes between them
-constexpr double kUploadTime = 0.008;  // s of a frame that weights take on their way to the card
+constexpr int kMostTurns = 200;        // upper limit on the extra passes through the panels per frame, for typed keys
+constexpr int kMostAgain = 3;          // upper limit on passes per frame that are repeated because a widget moved
+constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step of an extra pass, s: almost no time passes
+constexpr double kUploadTime = 0.008;  // time per frame in which weights are uploaded to the GPU, s
 
-// Made when it is needed first.
+// Returns the picture; creates it at its first use.
 template <class Picture>
 Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
   if (!picture) picture = std::make_unique<Picture>(views.renderer);
   return *picture;
 }
 
-// Side by side each place shows one side, else both lie upon one another.
+// Draws a view's picture. In a comparison side by side, each view shows volume A or B. In other comparisons a view
+// draws pictures of both, which are laid over each other.
 void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place,
                        double now) {
   const glm::ivec2 size(place.rect.size());
@@ -93,7 +94,7 @@ void move_camera(BodyView& body, double now, bool at_once) {
   if (t >= 1) body.move.reset();
 }
 
-// A press, a turn of the wheel, a key: any of them ends the move of a camera.
+// Returns whether an event is a button press, a wheel step or a key press. Each of these ends a running camera move.
 bool begins_something(const Event& event) {
   if (const auto* button = std::get_if<ButtonChanged>(&event)) return button->down;
   if (const auto* key = std::get_if<KeyChanged>(&event)) return key->down && key->key < Key::Ctrl;
@@ -104,7 +105,7 @@ void ended(const Editor& editor, const char* part_of_frame) {
   if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
 }
 
-// The panels are drawn once more in the frame that is shown.
+// Starts another ImGui frame without input, so that the panels are drawn again before the frame is shown.
 void begin_turn_without_input(Editor& editor) {
   ImGuiIO& io = ImGui::GetIO();
   ImGui::EndFrame();
@@ -155,8 +156,8 @@ Editor::Editor(Host& host, const Preferences& preferences)
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
-  io.ConfigInputTextCursorBlink = false;  // an idle editor draws nothing
-  io.ConfigDragClickToInputText = true;   // a click without a drag types a number
+  io.ConfigInputTextCursorBlink = false;  // no blinking, so that an idle editor draws nothing
+  io.ConfigDragClickToInputText = true;   // a click without a drag starts typing the number
   io.ClipboardUserData = &host;
   io.GetClipboardTextFn = [](void* user) {
     static std::string text;
@@ -220,8 +221,8 @@ void Editor::take_input() {
   dispatch(*this, events, before);
 }
 
-// Each key that does more than insert a character has its turn of the panels, without new pictures of the views. Ends
-// with the input of the frame that is shown.
+// Passes through the panels once for each typed key that does more than insert a character, without drawing the views
+// again. The input of the last pass remains for the frame that is shown.
 void Editor::read_typed_text() {
   for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
     layout = layout_of(*this, host.size());
@@ -233,7 +234,8 @@ void Editor::read_typed_text() {
   }
 }
 
-// What a job's end brings does not take the keyboard from a field, nor does it stand under a pressed button.
+// Handles finished jobs. Their dialogs and messages wait until they neither take the keyboard from a text field nor
+// appear under a pressed mouse button.
 void Editor::meet_jobs() {
   const std::size_t errors = messages.errors.size();
   of_users_act_ = false;
@@ -311,7 +313,7 @@ void Editor::draw() {
   follow_keyboard(*this);
   if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
   host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
-  // Regions stand behind popups and dialogs, in the order in which they were drawn.
+  // Put the windows of the regions behind popups and dialogs, in the order in which they were drawn.
   for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name)
     ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
 }
@@ -325,7 +327,7 @@ void Editor::frame(double time) {
   if (frames_wanted_ > 0) --frames_wanted_;
 
   const glm::ivec2 size = host.size();
-  if (size.x < 1 || size.y < 1) return;  // minimized
+  if (size.x < 1 || size.y < 1) return;  // the window is minimized
   if (glm::vec2(size) != layout.window.size()) touch();
   if (apply_look_if_changed(*this)) touch();
   io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
@@ -334,7 +336,7 @@ void Editor::frame(double time) {
   const bool pressed = input.down(MouseButton::Left) || input.down(MouseButton::Right);
   take_input();
   read_typed_text();
-  // A press meets what was shown when it was made, before a job changes it.
+  // A press or release acts on what the user saw at that moment, so handle it before a finished job changes the panels.
   if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
     draw();
     note_pressed(*this);

@@ -10,7 +10,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kRestBeforeWriting = 1;  // s
+constexpr double kRestBeforeWriting = 1;  // time without changes before the state is written, s
 
 Path file_of(const Editor& editor) { return editor.folders.config / "remembered.json"; }
 
@@ -21,7 +21,8 @@ void write_changed(Editor& editor) {
   try {
     write_recent_files(editor.recent_files, file_of(editor));
   } catch (const Error& error) {
-    if (!disk.failure_told) editor.messages.warn("Recent files cannot be kept", parts_of(error.what()).where);
+    if (!disk.failure_told)
+      editor.messages.warn("The list of recent files cannot be saved", parts_of(error.what()).where);
     disk.failure_told = true;
   }
 }

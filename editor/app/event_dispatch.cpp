@@ -14,12 +14,13 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kDragThreshold = 4;    // pixels at scale 1, before a press is a drag
-constexpr double kLongestClick = 0.3;  // s
+constexpr float kDragThreshold = 4;    // a press becomes a drag when the pointer has moved this far, px at scale 1
+constexpr double kLongestClick = 0.3;  // longest press that counts as a click, s
 
 bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
 
-// Chords that a focused text field keeps to itself, whether it has a use for them or not. With Alt many layouts write.
+// Returns whether a key combination belongs to the focused text field, even if the field does not use it. Combinations
+// with Alt belong to it, because they type characters on many keyboard layouts.
 bool belongs_to_text(const Chord& chord) {
   if (chord.key >= Key::F1 && chord.key <= Key::F12) return false;
   if (!chord.modifiers.ctrl || chord.modifiers.alt) return true;
@@ -29,14 +30,14 @@ bool belongs_to_text(const Chord& chord) {
   return moves || std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
 }
 
-// Keys that choose among the recent files.
+// Returns whether the start screen uses the key to select a recent file.
 bool belongs_to_start_screen(const Chord& chord) {
   return chord.modifiers == Modifiers{} && (chord.key == Key::Up || chord.key == Key::Down || chord.key == Key::Return);
 }
 
 void run_chord(Editor& editor, const Chord& chord) {
   if (editor.start_screen && belongs_to_start_screen(chord)) return;
-  // Any other key that is a command closes the start screen, and runs.
+  // Any other key that belongs to a command closes the start screen and runs the command.
   if (editor.start_screen && editor.keymap.find(chord, contexts(editor))) editor.start_screen = false;
   if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
 }
@@ -80,7 +81,7 @@ void on_key(Editor& editor, const KeyChanged& event) {
     return;
   }
   if (is_typing(editor)) {
-    // Only what is meant for the whole window leaves a field.
+    // While a text field has the keyboard, keys run only commands of the context "global".
     const std::string* id = belongs_to_text(chord) ? nullptr : editor.keymap.find(chord, {"global"});
     if (id) run(editor, *id);
     return;
@@ -89,7 +90,7 @@ void on_key(Editor& editor, const KeyChanged& event) {
   run_chord(editor, chord);
 }
 
-// Buttons, handles and bars in the views take the left button for themselves.
+// Returns whether the pointer is over a button, handle or bar in a view. These handle the left mouse button themselves.
 bool over_widget(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
@@ -98,7 +99,7 @@ bool over_widget(const Editor& editor) {
   });
 }
 
-// A press that may become a drag.
+// Handles a button press in a view or the timeline that may become a drag.
 void on_press(Editor& editor, MouseButton button) {
   editor.list_focus = {};
   const ViewPlace* view = hovered_view(editor);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From events to operators: a drag under way first, then a focused text field, then the key map's contexts: the area
-// under the pointer, the workspace, selection, view, global. A press of a button that could become a drag waits until
-// it is moved by 4 pixels; released before, and within 300 ms, it is a click.
+// Runs the operators that the user's input events stand for. An event goes first to a running drag, then to a focused
+// text field, then to the keymap's contexts: the area under the pointer, the workspace, selection, view, global. A
+// button press becomes a drag when the pointer moves by 4 px; if the button is released before that, and within 300 ms,
+// the press is a click.
 #pragma once
 
 #include <vector>
@@ -10,9 +11,10 @@
 
 namespace limber::editor {
 
-// Between ImGui::NewFrame and the panels. `before` is the input state before these events.
+// Handles the events of a frame. Call it after ImGui::NewFrame and before the panels are drawn. before: the input state
+// before these events.
 void dispatch(Editor& editor, const std::vector<Event>& events, InputState before);
-// Whether something that no act of the user's brought may take the keyboard and the pointer now.
+// Returns whether a dialog or message that the user did not ask for may take the keyboard and the pointer now.
 bool may_interrupt(const Editor& editor);
 
 }  // namespace limber::editor

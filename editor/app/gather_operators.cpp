@@ -3,7 +3,7 @@
 
 namespace limber::editor {
 
-// One list for each file of operators, in the order of the menus.
+// Each function returns the operators that one *_ops.cpp file defines. The order is that of the menus.
 std::vector<Operator> file_operators();
 std::vector<Operator> import_operators();
 std::vector<Operator> export_operators();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A window of the desktop, through GLFW.
+// Opens the editor's window on the desktop, through GLFW.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// Throws Error where no display can be reached, or where the driver has no OpenGL 3.3.
+// Returns the window. Throws Error if no display can be reached, or if the driver has no OpenGL 3.3.
 std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& title);
 
 }  // namespace limber::editor

@@ -8,24 +8,26 @@ namespace limber::editor {
 
 std::vector<Operator> help_operators() {
   return {
-      {"help.guide", "User guide", icon::kHelp, "Help", "How to go from a volume to a posed one, page by page.",
+      {"help.guide", "User guide", icon::kHelp, "Help", "Read how to get from a volume to a posed volume.",
        [](Editor& e) { e.open_dialog(open_document("User guide", "docs/guide.md")); }},
-      {"help.new", "What is new", icon::kInfo, "Help", "What this version can do that the one before could not.",
+      {"help.new", "What is new", icon::kInfo, "Help", "Read what is new in this version.",
        [](Editor& e) { e.open_dialog(open_document("What is new", "docs/new.md")); }},
-      {"help.keys", "Keys", icon::kKeyboard, "Help", "Every key and what it does.",
+      {"help.keys", "Keys", icon::kKeyboard, "Help", "List every key and what it does.",
        [](Editor& e) { e.open_dialog(open_keys_page()); }},
-      {"help.last_error", "Details", icon::kError, "Help", "Shows the last failure of a job again, with what to do.",
+      {"help.last_error", "Details", icon::kError, "Help",
+       "Show the message of the job that failed last, with what to do.",
        [](Editor& e) { e.messages.show_again(e.messages.last_failure); },
        [](const Editor& e) {
          return e.messages.last_failure.empty() ? std::string("No job has failed") : std::string();
        }},
       {"help.system_facts", "Copy system facts", icon::kCopy, "Help",
-       "Puts version, driver and window on the clipboard, for a report of a mistake.",
+       "Copy the program's version, the graphics driver and the window size to the clipboard, for a bug report.",
        [](Editor& e) {
          e.host.set_clipboard(system_facts(e));
          e.messages.ok("System facts copied");
        }},
-      {"help.about", "About and licences", icon::kInfo, "Help", "Version, licence, and what Limber is made with.",
+      {"help.about", "About and licences", icon::kInfo, "Help",
+       "Show the version, the licence and the libraries of Limber.",
        [](Editor& e) { e.open_dialog(open_about_page()); }},
   };
 }

@@ -12,7 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kMinimizedRest = 0.25;  // s: nothing is drawn, but jobs go on
+// Time between frames while the window is minimized, s. Nothing is drawn then, but finished jobs are handled.
+constexpr double kMinimizedRest = 0.25;
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -32,7 +33,8 @@ void play(const StartOptions& options) {
   Player player(editor, *host);
   player.step();
   player.play({{0, {"wait-job"}}});
-  // A script's edits are its own: only a script that is killed leaves them behind.
+  // Discards the journal of the script's edits at the end, so that only a script that was killed leaves edits to
+  // recover.
   struct Ending {
     Editor& editor;
     ~Ending() {

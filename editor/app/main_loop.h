@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From start to end: the editor in a window until the user quits, or in memory playing a script.
+// Runs the editor from start to end: in a window until the user quits, or in memory while it plays a script.
 #pragma once
 
 #include <optional>
@@ -13,9 +13,9 @@ namespace limber::editor {
 struct StartOptions {
   std::vector<Path> files;
   glm::ivec2 size{1600, 900};
-  std::optional<double> scale;       // instead of the preferred one
-  std::optional<std::string> theme;  // likewise
-  Path script;                       // played without a display; empty: a window
+  std::optional<double> scale;       // interface scale; none: the scale in the preferences
+  std::optional<std::string> theme;  // "dark" or "light" in place of the preferences' theme
+  Path script;                       // script to play without a display; empty: opens a window
 };
 void run_editor(const StartOptions& options);
 

@@ -5,7 +5,7 @@
 
 namespace limber::editor {
 
-// Commits what jobs have done and tells of those that failed, once a frame. True when anything changed.
+// Commits the edits of finished jobs and reports failed jobs. Returns true if anything changed. Call once per frame.
 bool poll_jobs(Editor& editor);
 
 }  // namespace limber::editor

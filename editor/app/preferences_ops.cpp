@@ -19,10 +19,10 @@ void open_keys(Editor& editor) { editor.open_dialog(open_preferences(Preferences
 void browse_keymap(Editor& editor, FileRequest::Kind kind) {
   const bool save = kind == FileRequest::Kind::Save;
   browse(editor, {.purpose = "keymap",
-                  .title = save ? "Export keys" : "Import keys",
+                  .title = save ? "Export keymap" : "Import keymap",
                   .action = save ? "Export" : "Import",
                   .kind = kind,
-                  .filters = {{"Key maps", {".json"}}},
+                  .filters = {{"Keymaps", {".json"}}},
                   .name = "limber-keys.json",
                   .chosen =
                       [save](Editor& e, const Path& path) {
@@ -36,15 +36,15 @@ void browse_keymap(Editor& editor, FileRequest::Kind kind) {
 
 std::vector<Operator> preferences_operators() {
   return {
-      {"edit.preferences", "Preferences...", icon::kPreferences, "Edit", "Theme, scale, keys, undo, jobs and folders.",
-       [](Editor& e) { e.open_dialog(open_preferences()); }},
-      {"edit.keymap", "Change keys...", icon::kKeyboard, "Edit", "Which keys run which commands.", open_keys},
-      {"edit.import_keymap", "Import keys...", icon::kImport, "Edit", "Takes the keys of a key map's file.",
-       [](Editor& e) { browse_keymap(e, FileRequest::Kind::Open); }},
-      {"edit.export_keymap", "Export keys...", icon::kExport, "Edit",
-       "Writes every key into a file, for another machine.",
+      {"edit.preferences", "Preferences...", icon::kPreferences, "Edit",
+       "Change theme, scale, keys, undo, jobs and folders.", [](Editor& e) { e.open_dialog(open_preferences()); }},
+      {"edit.keymap", "Change keys...", icon::kKeyboard, "Edit", "Change which keys run which commands.", open_keys},
+      {"edit.import_keymap", "Import keymap...", icon::kImport, "Edit",
+       "Read from a file which keys run which commands.", [](Editor& e) { browse_keymap(e, FileRequest::Kind::Open); }},
+      {"edit.export_keymap", "Export keymap...", icon::kExport, "Edit",
+       "Write to a file which keys run which commands, to use it on another machine.",
        [](Editor& e) { browse_keymap(e, FileRequest::Kind::Save); }},
-      {"edit.other_theme", "Other theme", icon::kTheme, "Edit", "Changes between the dark and the light theme.",
+      {"edit.other_theme", "Other theme", icon::kTheme, "Edit", "Switch between the dark and the light theme.",
        other_theme},
   };
 }

@@ -13,15 +13,15 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kDragSteps = 8;             // moves of a drag, as a slow hand makes them
-constexpr double kLongestJob = 300;       // s
-constexpr int kLongestSettling = 20'000;  // frames
+constexpr int kDragSteps = 8;             // a drag is divided into this many pointer moves, as by a slow hand
+constexpr double kLongestJob = 300;       // upper limit on the wait for a job, s
+constexpr int kLongestSettling = 20'000;  // upper limit on the frames to wait until the editor is idle
 
-// What a script may ask for, so that a wrong number is told and not acted on.
-constexpr double kFarthestMove = 20'000;   // pixels
-constexpr double kLargestWindow = 16'384;  // pixels
-constexpr double kMostSteps = 1000;        // of the wheel
-constexpr double kLongestWait = 3600;      // s
+// Upper limits for the numbers in a script. A larger number is reported as an error.
+constexpr double kFarthestMove = 20'000;   // upper limit on a drag's length and on positions, pixels
+constexpr double kLargestWindow = 16'384;  // upper limit on the window's width and height, pixels
+constexpr double kMostSteps = 1000;        // upper limit on wheel steps
+constexpr double kLongestWait = 3600;      // upper limit on the time of `wait`, s
 
 double number(const std::string& word, double least = -kFarthestMove, double most = kFarthestMove) {
   double value = 0;
@@ -139,7 +139,7 @@ void Player::hold(const std::vector<std::string>& words, std::size_t first, bool
 
 glm::vec2 Player::place_of(const std::string& name) {
   const Widget* widget = editor_.widgets.find(name);
-  // A menu's rows exist once it is open.
+  // The rows of a menu exist only while the menu is open, so open the menu first.
   if (const auto slash = name.rfind('/'); !widget && slash != std::string::npos) {
     const std::string parent = name.substr(0, slash);
     host_.events.push(PointerMoved{place_of(parent)});
@@ -168,25 +168,25 @@ void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
   do {
     while (editor_.busy()) {
-      frame();  // time stands still, so that what follows does not depend on how long the job took
+      frame();  // The script's time does not advance, so the result does not depend on how long the job takes.
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob))
         throw Error("the job does not end", "wait-job", "look at what it does");
     }
-    settle();  // what has ended may start another
+    settle();  // a finished job may start another
   } while (editor_.busy());
 }
 
 void Player::wait_until_idle() {
   if (editor_.timeline->play.on)
-    throw Error("nothing comes to rest while a clip plays", "wait-idle", "stop it first, or use 'wait'");
+    throw Error("the editor is never idle while a clip plays", "wait-idle", "stop it first, or use 'wait'");
   wait_for_jobs();
   for (int i = 0; i < kLongestSettling; ++i) {
     if (editor_.at_rest()) return;
     if (editor_.rest() > 0) wait_for_jobs();
     else step();
   }
-  throw Error("the editor does not come to rest", "wait-idle", "look at what it draws");
+  throw Error("the editor does not become idle", "wait-idle", "look at what it draws");
 }
 
 void Player::expect(const std::vector<std::string>& words) {

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Scripts of what a user does, played in the real editor with a fixed time step: the same script gives the same
-// document and the same pictures. One command a line, "#" begins a comment, names with blanks stand in quotes.
+// Plays scripts of user actions in the real editor with a fixed time step, so that the same script gives the same
+// document and the same pictures. A line holds one command, "#" begins a comment, names with spaces stand in quotes.
 //
 //   click NAME [MODIFIER...]         also double-click, right-click; a menu's path opens the menu: click "File/Open..."
-//   press NAME | release             the left button alone
-//   drag NAME DX DY [BUTTON] [MODIFIER...]   from the widget's middle, pixels at scale 1; BUTTON: LMB, MMB, RMB
+//   press NAME | release             presses the left button on NAME, releases it
+//   drag NAME DX DY [BUTTON] [MODIFIER...]   from the widget's centre, px at scale 1; BUTTON: LMB, MMB, RMB
 //   wheel NAME STEPS [MODIFIER...]
 //   move NAME | move X Y
 //   key Ctrl+Z                       pressed and released within one frame's time
-//   key-down W | key-up W            held meanwhile
+//   key-down W | key-up W            the key is held in between
 //   type "text"
-//   drop FILE                        onto the window
+//   drop FILE                        drops the file on the window
 //   resize WIDTH HEIGHT
 //   wait SECONDS | wait-job | wait-idle
-//   expect FACT [VALUE]              facts: fact_names()
-//   shot FILE                        a PNG of the window, once it is at rest; of a clip that plays, at once
-//   shot-now FILE                    a PNG of what was drawn last, coarse or not
-//   frame-log FILE                   what the frames since the last one cost: see frame_timing.h
+//   expect FACT [VALUE]              fails unless the fact has this value (default: shown); facts: fact_names()
+//   shot FILE                        a PNG of the window once it is idle, or at once while a clip plays
+//   shot-now FILE                    a PNG of the last frame drawn, even if still coarse
+//   frame-log FILE                   the time of each frame since the last frame-log: see frame_timing.h
 #pragma once
 
 #include <string>
@@ -30,25 +30,26 @@ namespace limber::editor {
 
 struct ScriptLine {
   int number = 0;
-  std::vector<std::string> words;  // the command first
+  std::vector<std::string> words;  // the command and its arguments
 };
-// Throws Error for a quote without an end.
+// Splits a script into lines. Throws Error for a quote without an end.
 std::vector<ScriptLine> parse_script(const std::string& text);
 
 class Player {
  public:
   Player(Editor& editor, Offscreen& host);
 
-  // Throws Error naming the line that cannot be played, or whose expectation fails. Files are beside `folder`.
+  // Plays the lines. Relative file names in them start at `folder`. Throws Error if a line cannot be played or if its
+  // expectation fails; the error names the line.
   void play(const std::vector<ScriptLine>& script, const Path& folder = ".");
   void play(const std::string& script) { play(parse_script(script)); }
-  // Frames until every event has been seen and what they changed is drawn.
+  // Runs frames until all events are handled and their changes are drawn.
   void settle();
   void step();
   double now() const { return now_; }
 
  private:
-  static constexpr double kStep = 1.0 / 60;  // s
+  static constexpr double kStep = 1.0 / 60;  // time step, s
   void play_line(const ScriptLine& line, const Path& folder);
   void frame();
   glm::vec2 place_of(const std::string& name);
@@ -61,14 +62,14 @@ class Player {
   Editor& editor_;
   Offscreen& host_;
   double now_ = 0;
-  std::string doing_ = "beginning";  // the line that is played
+  std::string doing_ = "beginning";  // the line being played, for error messages
 };
 
-// A fact about the editor as text: "workspace" is "rig", "history" the number of steps, "text:Muscle" "shown" or
-// "absent". Throws Error for an unknown one.
+// Returns a fact about the editor as text. For example, "workspace" returns "rig", "history" returns the number of
+// steps in the history, and "text:Muscle" returns "shown" or "absent". Throws Error for an unknown name.
 std::string fact(const Editor& editor, const std::string& name);
 std::vector<std::string> fact_names();
-// The same for equal contents: voxels, tissues, visibility, bones.
+// Returns a hash of the voxels, tissues, visibility and bones; equal contents give equal hashes.
 std::string document_hash(const Document& document);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a script may expect of the editor.
+// The facts about the editor that a script can check with `expect`.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -16,7 +16,7 @@ namespace limber::editor {
 
 namespace {
 
-// FNV-1a, 64 bits.
+// An FNV-1a hash, 64 bits.
 class Hash {
  public:
   template <class T>
@@ -48,7 +48,7 @@ std::string hidden(const Editor& editor) {
   return std::to_string(count);
 }
 
-// Of the text field that has the keyboard.
+// Returns the content of the text field that has the keyboard focus; none if no text field has it.
 std::optional<std::string> typed_text(const Editor& editor) {
   ImGui::SetCurrentContext(editor.imgui);
   const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());

@@ -8,11 +8,11 @@ namespace limber::editor {
 std::vector<Operator> search_operators() {
   return {
       {"search.commands", "Search commands", icon::kSearch, "Help",
-       "Finds any command by a few letters of its name, and runs it.",
+       "Find any command by a few letters of its name and run it.",
        [](Editor& e) { e.open_dialog(open_command_search()); }},
-      {"edit.repeat_last", "Repeat", icon::kRedo, "Edit", "Runs the last command once more.",
+      {"edit.repeat_last", "Repeat", icon::kRedo, "Edit", "Run the last command again.",
        [](Editor& e) { run(e, std::string(e.last_operator)); },
-       [](const Editor& e) { return e.last_operator.empty() ? std::string("Nothing was run yet") : std::string(); }},
+       [](const Editor& e) { return e.last_operator.empty() ? std::string("No command was run yet") : std::string(); }},
   };
 }
 

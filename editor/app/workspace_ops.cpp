@@ -15,7 +15,7 @@ Operator to_workspace(const char* id, const char* label, const char* icon, const
 }
 
 Operator by_step(const char* id, const char* label, int step) {
-  return {id, label, "", "Workspace", "Goes to the neighbouring workspace.", [step](Editor& e) {
+  return {id, label, "", "Workspace", "Switch to the neighbouring workspace.", [step](Editor& e) {
             e.workspace = static_cast<Workspace>((static_cast<int>(e.workspace) + step + 4) % 4);
           }};
 }
@@ -24,12 +24,16 @@ Operator by_step(const char* id, const char* label, int step) {
 
 std::vector<Operator> workspace_operators() {
   return {
-      to_workspace("workspace.rig", "Rig", icon::kRig, "Fits a skeleton into the bones.", Workspace::Rig),
-      to_workspace("workspace.skin", "Skin", icon::kSkin, "Paints how tissue follows the bones.", Workspace::Skin),
-      to_workspace("workspace.pose", "Pose", icon::kPose, "Turns joints, or scrubs a motion.", Workspace::Pose),
-      to_workspace("workspace.resample", "Resample", icon::kResample, "Writes the posed body as a new label volume.",
+      to_workspace("workspace.rig", "Rig", icon::kRig, "Switch to the Rig workspace, to fit a skeleton into the bones.",
+                   Workspace::Rig),
+      to_workspace("workspace.skin", "Skin", icon::kSkin,
+                   "Switch to the Skin workspace, to paint how tissue follows the bones.", Workspace::Skin),
+      to_workspace("workspace.pose", "Pose", icon::kPose,
+                   "Switch to the Pose workspace, to turn joints or play a motion.", Workspace::Pose),
+      to_workspace("workspace.resample", "Resample", icon::kResample,
+                   "Switch to the Resample workspace, to write the posed body as a new label volume.",
                    Workspace::Resample),
-      {"workspace.pie", "Workspace menu", "", "Workspace", "Lists the workspaces at the pointer.",
+      {"workspace.pie", "Workspace menu", "", "Workspace", "Open a menu of the workspaces at the pointer.",
        [](Editor& e) { e.open_popup = "Workspaces"; }},
       by_step("workspace.previous", "Previous workspace", -1),
       by_step("workspace.next", "Next workspace", 1),

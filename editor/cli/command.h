@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Subcommands that need the renderer or the editor, beside those of core/cmd.
+// Adds the subcommands of the command line that need the renderer or the editor. All other subcommands are in core/cmd.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber [FILE...]: the editor. limber editor: the same with its window's size and scale, or playing a script without a
-// display.
+// Defines the command `limber editor`. It opens the editor, as `limber [FILE...]` does, with options for the window's
+// size and scale. It also plays scripts, without a display.
 #include <memory>
 
 #include "core/base/error.h"
@@ -29,10 +29,12 @@ void add_editor(CLI::App& app) {
     std::vector<std::string> files;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("editor", "Opens the editor (as limber alone does), or plays a script in it");
-  command->add_option("FILE", options->files, "what to open");
+  CLI::App* command =
+      app.add_subcommand("editor", "Opens the editor, as limber without a command does, or plays a script in it");
+  command->add_option("FILE", options->files, "volumes or a project to open");
   command->add_option("--size", options->size, "WIDTHxHEIGHT of the window, pixels")->capture_default_str();
-  command->add_option("--scale", options->start.scale, "size of texts and buttons, 0.75 to 3 (default: as preferred)");
+  command->add_option("--scale", options->start.scale,
+                      "size of texts and buttons, 0.75 to 3 (default: the user's preference)");
   command->add_option("--theme", options->start.theme, "dark or light")->check(CLI::IsMember({"dark", "light"}));
   command->add_option("--play", options->script, "a script of clicks and keys, played without a display");
   command->callback([options] {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG] [--tilt DEG]
-// [--orthographic]
-//        [--display solid|xray|tissue] [--hide L,L] [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane
-//        X,Y,Z,NX,NY,NZ]
-//        [--rig RIG] [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs]
-//        [--preview]
-//        [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light]
-// A picture without a window or a display. A project brings its own skeleton, pose and visibility.
+// Defines the command `limber render`, which renders a picture without a window or a display. If it is given a project,
+// it uses the project's rig, pose and visibility.
+//   limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG]
+//     [--tilt DEG] [--zoom FACTOR] [--orthographic] [--display solid|xray|tissue] [--hide L,L] [--opacity L=A]
+//     [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ] [--rig RIG]
+//     [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs|mix] [--preview]
+//     [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light] [--grid]
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -78,7 +77,7 @@ TissueLook& look_at(Visibility& visibility, const TissueTable& tissues, double f
   return visibility.looks[tissue->label];
 }
 
-// `visibility` with what the command changes of it.
+// Returns `visibility` as changed by the options --hide and --opacity.
 Visibility visibility_of(const Options& options, const TissueTable& tissues, Visibility visibility) {
   for (const double label : options.hide) {
     char text[32];
@@ -176,8 +175,8 @@ SkinWeights weights_of(const Options& options, const Document& document, Progres
   return std::move(file.weights);
 }
 
-// The tissue where the bones carry it, in voxel coordinates of `grid`: so that a posed body is framed alike however it
-// is drawn.
+// Returns the bounding box of the posed tissue in voxels of `grid`. It is computed from bones and weights alone, so
+// that the picture of a preview and the picture of a resampled volume show the same part of space.
 std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, const TissueVoxels& tissue,
                                        const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest,
                                        Blend blend) {
@@ -204,10 +203,10 @@ std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, 
   return all;
 }
 
-// The body and its skeleton, posed.
+// The scene to render, with the posed volume and rig.
 struct PosedScene {
   Scene scene;
-  std::optional<std::array<glm::dvec3, 2>> tissue;  // where a pose carries it: voxel coordinates of the scene's volume
+  std::optional<std::array<glm::dvec3, 2>> tissue;  // bounding box of the posed tissue, voxels of the scene's volume
 };
 PosedScene posed_scene(const Options& options, const Document& document, Progress& progress) {
   PosedScene result{{.volume = document.volume, .armature = document.armature}, {}};
@@ -237,7 +236,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   return result;
 }
 
-// The world box of the tissue (and the clip box), which the picture is to show.
+// Returns the box that the picture must show, in the world, mm: the bounding box of the tissue, cut by the clip box.
 std::array<glm::dvec3, 2> box_of_tissue(const PosedScene& posed, const render::Clip& clip) {
   const LabelVolume& volume = *posed.scene.volume;
   glm::dvec3 from, to;
@@ -299,7 +298,7 @@ Image picture_slice(Renderer& renderer, const PosedScene& posed, const Options& 
   return view.read();
 }
 
-// NAME-0000.png beside NAME.png
+// Returns the path of a numbered picture: NAME-0000.png in the same folder as NAME.png.
 std::string numbered(const std::string& path, int number) {
   const std::filesystem::path whole(path);
   char suffix[16];
@@ -368,26 +367,29 @@ void add_render(CLI::App& app) {
     return files_of_pictures(*options, name);
   })->required();
   command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->body.bones, "labels that are bone, as in the file")
+  command->add_option("--bones", options->body.bones, "labels that are bone, as numbered in the file")
       ->delimiter(',')
       ->type_name("L,L");
   command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();
-  command->add_option("--view", options->view, "from where")
+  command->add_option("--view", options->view, "the side of the body that is seen")
       ->transform(CLI::CheckedTransformer(std::map<std::string, StandardView>{{"front", StandardView::Front},
                                                                               {"back", StandardView::Back},
                                                                               {"left", StandardView::Left},
                                                                               {"right", StandardView::Right},
                                                                               {"top", StandardView::Top},
                                                                               {"bottom", StandardView::Bottom}}));
-  command->add_option("--turn", options->turn, "degrees about the vertical axis, from that view");
-  command->add_option("--tilt", options->tilt, "degrees down on it, from that view");
-  command->add_option("--zoom", options->zoom, "closer than what shows all")->check(CLI::Range(0.01, 100.0));
+  command->add_option("--turn", options->turn, "turns the view about the vertical axis, degrees");
+  command->add_option("--tilt", options->tilt, "tilts the view to look down, degrees");
+  command->add_option("--zoom", options->zoom, "zoom factor; 1 shows everything")->check(CLI::Range(0.01, 100.0));
   command->add_flag("--orthographic", options->orthographic, "without perspective");
   command->add_option("--display", options->display, "solid, xray or tissue")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
           {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
-  command->add_option("--hide", options->hide, "labels not shown, as in the file")->delimiter(',')->type_name("L,L");
-  command->add_option("--opacity", options->opacity, "of a label in the tissue display, 0 to 1")->type_name("L=A");
+  command->add_option("--hide", options->hide, "labels to hide, as numbered in the file")
+      ->delimiter(',')
+      ->type_name("L,L");
+  command->add_option("--opacity", options->opacity, "opacity of a label in the tissue display, 0 to 1")
+      ->type_name("L=A");
   command->add_option("--clip-box", options->clip_box, "two corners, voxels: only what lies between is shown")
       ->delimiter(',')
       ->expected(6)
@@ -396,25 +398,24 @@ void add_render(CLI::App& app) {
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,NX,NY,NZ");
-  command->add_option("--rig", options->body.rig, "rig to draw, and to pose by");
+  command->add_option("--rig", options->body.rig, "rig to draw and to pose with");
   command->add_option("--armature", options->armature, "octahedron, stick, cylinder or none")
       ->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
-  command->add_option("--weights", options->weights, "W.nrrd for the pose (default: heat diffusion)");
+  command->add_option("--weights", options->weights, "weights for the pose, W.nrrd (default: by heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
   command->add_option("--method", options->method, "how the pose moves tissue: " + method_summaries(Methods::Blends))
       ->check(CLI::IsMember(method_words(Methods::Blends)))
       ->capture_default_str();
-  command->add_flag("--preview", options->preview,
-                    "the pose as the editor shows it while a bone is dragged: coarser, at once");
-  command->add_option("--slice", options->slice, "a slice instead")
+  command->add_flag("--preview", options->preview, "draws the editor's coarse preview of the pose, which is fast");
+  command->add_option("--slice", options->slice, "draws a slice instead of a 3D picture")
       ->check(CLI::IsMember({"axial", "coronal", "sagittal"}));
-  command->add_option("--at", options->at, "where the slice lies on its axis, mm (default: the middle)");
-  command->add_flag("--outline", options->outline, "only the borders of tissues in the slice");
-  command->add_option("--turntable", options->turntable, "N pictures all around, NAME-0000.png on")
+  command->add_option("--at", options->at, "position of the slice on its axis, mm (default: the middle)");
+  command->add_flag("--outline", options->outline, "draws only the borders of tissues in the slice");
+  command->add_option("--turntable", options->turntable, "draws N pictures from all around: NAME-0000.png and so on")
       ->check(CLI::Range(1, 9999));
   command->add_flag("--transparent", options->transparent, "no background");
   command->add_flag("--light", options->light, "the light theme's background");
-  command->add_flag("--grid", options->grid, "with the ground grid");
+  command->add_flag("--grid", options->grid, "draws the ground grid");
   cmd::add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

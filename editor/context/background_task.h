@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Work beside the editor whose end the editor meets: reading, writing, rendering of files. Unlike a plain job its
-// result is more than an edit of the document (another project, a saved one, a list of files).
+// Background tasks, such as reading and writing files. A task's work runs in a job's thread, and its result is handled
+// in the editor's thread. The result of a plain job is an edit of the document; the result of a task may be anything,
+// such as another project or a list of files.
 #pragma once
 
 #include <functional>
@@ -14,13 +15,13 @@ namespace limber::editor {
 
 struct Editor;
 
-// What is to be done with the result, in the editor's own thread; may be empty.
+// Handles a task's result in the editor's own thread. May be empty.
 using Finish = std::function<void(Editor&)>;
 using TaskWork = std::function<Finish(Progress&)>;
-// Meets a failure instead of the message that is shown otherwise. `error` is an Error's line.
+// Handles a task's failure. If it is empty, an error message is shown instead. `error` is an Error's line.
 using Failure = std::function<void(Editor&, const std::string& error)>;
 
-// The steps from a volume to a posed one, for which a job may be at work.
+// The step of the workflow (from a volume at rest to a posed volume) that a job belongs to.
 enum class StepOfWork { Prepare, Rig, Skin, Pose, Resample };
 
 struct Task {
@@ -28,9 +29,10 @@ struct Task {
   Failure failed;
 };
 
-// Touches nothing of the editor in `work`. Its label is shown while it runs; an empty one stays unseen.
+// Starts a task and returns its job's id. `work` runs in another thread and must not touch the editor. The label is
+// shown to the user while the task runs; with an empty label, the task is not shown.
 int start_task(Editor& editor, std::string label, TaskWork work, Failure failed = {});
-// Of a job that has ended: true when it was a task, whose end has now been met.
+// Handles the end of a task: calls its Finish or its Failure. Returns false if the job is no task.
 bool end_task(Editor& editor, const JobStatus& job);
 
 }  // namespace limber::editor

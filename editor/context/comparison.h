@@ -10,23 +10,23 @@ namespace limber::editor {
 
 struct ResultFacts;
 
-// What is known of a result, read once for each.
+// What tables show about a resampled volume, read once for each result.
 struct KnownResult {
   std::weak_ptr<const Result> result;
   std::shared_ptr<const ResultFacts> facts;
 };
 
-// What the views show in place of the volume at rest, and what that is compared with. Names of results; one that is
-// empty or unknown is the volume at rest.
+// The names of the two results A and B that the views show and compare. A result is a resampled volume. An empty or
+// unknown name means the volume at rest.
 struct Comparison {
   std::string a, b;
-  bool shows_a = false;  // else b
+  bool shows_a = false;  // which result the views show while nothing is compared: a (true) or b (false)
   enum class Views {
-    One,         // a or b
-    Wipe,        // a left of a line that is dragged, b right of it, in one picture
-    SideBySide,  // each view twice, a left and b right, with one camera
+    One,         // no comparison: either a or b is shown
+    Wipe,        // each view is divided by a movable line: a is shown left of the line, b right of it
+    SideBySide,  // each view is shown twice with the same camera: a at the left, b at the right
   } views = Views::One;
-  float share = 0.5f;  // of the view that a takes
+  float share = 0.5f;  // fraction of a view's width in which a is shown, [0, 1]
 };
 
 }  // namespace limber::editor

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A long drag never ends at an edge: the pointer that leaves the rectangle comes in again at the other side. Moves that
-// the window reported before it leapt are told from those after it by their place, so none counts as a leap; where the
-// desktop moves no pointers the drag goes on without it.
+// Keeps a long drag from ending at the edge of a view: when the pointer leaves a rectangle, it is moved ("leaps") to
+// the rectangle's opposite side. The leap does not count as a move of the user's hand. It is recognized by the
+// pointer's position, since moves from before the leap may arrive later. If the desktop refuses to move the pointer,
+// the drag goes on without leaps.
 #pragma once
 
 #include <optional>
@@ -12,19 +13,19 @@ namespace limber::editor {
 
 class PointerWrap {
  public:
-  // `margin`: pixels from the edge at which it leaps
+  // `margin`: the pointer leaps at this distance from the edge of the rectangle `inside`, pixels.
   PointerWrap() = default;
   PointerWrap(const Rect& inside, float margin) : inside_(inside), margin_(margin) {}
 
-  // By how much the hand moved.
+  // Returns how far the user's hand moved, pixels: `to` - `from`, less a leap between the two positions.
   glm::vec2 moved(const glm::vec2& from, const glm::vec2& to);
-  // What to move the pointer by now; zero mostly.
+  // Returns by how much the caller must move the pointer now, pixels. Zero unless the pointer has reached an edge.
   glm::vec2 leap(const glm::vec2& pointer);
 
  private:
   std::optional<Rect> inside_;
   float margin_ = 0;
-  glm::vec2 awaited_{0};  // a leap whose first move has not come yet
+  glm::vec2 awaited_{0};  // the last leap while no move made after it has arrived, pixels; zero: none
 };
 
 }  // namespace limber::editor

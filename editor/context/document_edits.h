@@ -5,12 +5,13 @@
 
 namespace limber::editor {
 
-// An edit of the user's own: commits the document and shows it.
+// Adds the document to the history as an edit named `label`, and requests a frame that shows it.
 void commit(Editor& editor, const std::string& label, Document next);
 
-// The user's scale times the monitor's, or less where the window is too small for it: the regions need 800 x 520.
+// Returns the scale of the interface: the user's scale times the monitor's. The scale is smaller in a small window, as
+// the window's regions need 800 x 520 pixels at scale 1.
 float scale_for(const Preferences& preferences, const Host& host);
-// Follows a change of the theme or scale. True when the look changed.
+// Applies the theme and the scale if either has changed. Returns whether one has.
 bool apply_look_if_changed(Editor& editor);
 
 }  // namespace limber::editor

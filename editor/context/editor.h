@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The editor: what is open, how the window is arranged, what the user is doing. Operators change it, panels draw it;
-// both get it as their argument. frame() is one turn: take events, dispatch them to operators, draw everything.
+// The editor's whole state: the open project, the window's arrangement, the user's current action. Operators change
+// this state and panels draw it; both get an Editor as their argument. frame() takes the input events, runs the
+// operators that they are bound to, and draws everything.
 #pragma once
 
 #include <array>
@@ -50,32 +51,33 @@ struct OverlapView;
 struct SeamView;
 struct BoneTable;
 
-// What a press of a button began; it gets every move of the pointer until the button is released, or Escape drops it.
+// A drag with a mouse button. Its function `moved` gets every move of the pointer until the button is released or
+// Escape cancels the drag.
 struct Drag {
   MouseButton button = MouseButton::Left;
-  std::function<void(Editor&, const glm::vec2& pixels)> moved;  // by how much since the last call
+  std::function<void(Editor&, const glm::vec2& pixels)> moved;  // `pixels`: pointer motion since the last call
   std::function<void(Editor&)> ended, cancelled;
-  PointerWrap wrap = {};  // of the view that the drag began in
+  PointerWrap wrap = {};  // moves the pointer back into the view in which the drag began
 };
 
-// A press that is still either a click or the beginning of a drag.
+// A press of a mouse button that may still become a click or a drag.
 struct PendingPress {
   Chord press, drag;
   glm::vec2 from;
   double since;
 };
 
-// Something in the middle of the window that everything else waits for; only one at a time.
+// A dialog in the middle of the window. It blocks everything else; only one dialog is open at a time.
 class Dialog {
  public:
   virtual ~Dialog() = default;
-  virtual void draw(Editor& editor) = 0;  // between begin_dialog and end_dialog of dialog.h
-  virtual void escape(Editor& editor);    // closes it
-  // A key that was pressed, before a text field sees it; true when the dialog took it.
+  virtual void draw(Editor& editor) = 0;  // calls begin_dialog() and end_dialog() of dialog.h
+  virtual void escape(Editor& editor);    // closes the dialog
+  // Handles a pressed key before a text field gets it. Returns whether the dialog used the key.
   virtual bool key(Editor&, const Chord&) { return false; }
 };
 
-// What is known of a recent file.
+// What the start screen shows about a recent file: whether the file is missing, and a small picture.
 struct RecentFacts {
   bool missing = false;
   std::shared_ptr<const render::Image> picture;
@@ -83,7 +85,7 @@ struct RecentFacts {
 
 class LivePose;
 
-// What a click can do to the left button in a view.
+// The tools of the tool strip. The selected tool decides what the left mouse button does in a view.
 enum class Tool { Select, CrossHair, Move, Rotate, Scale, Reach, Extrude };
 
 struct Editor : Ui {
@@ -92,48 +94,49 @@ struct Editor : Ui {
   Editor(const Editor&) = delete;
   Editor& operator=(const Editor&) = delete;
 
-  void frame(double now);  // seconds, of any steady clock
-  double rest() const;     // seconds that may pass until the next frame when nothing happens; 0: draw on
-  bool busy() const;       // with something beside the frames
+  void frame(double now);  // draws one frame; `now`: time of the frame on a steady clock, s
+  double rest() const;     // time until the next frame if no input arrives, s; 0: draw at once
+  bool busy() const;       // whether a thread or process is working for the editor
   bool at_rest() const { return rest() > 0 && !busy(); }
 
   Arrangement& arrangement() { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Arrangement& arrangement() const { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Document& document() const { return history.current(); }
-  // In place of an open one, from the next frame on. One that no act of the user's brought, such as the end of a job,
-  // waits until nothing is interrupted by it.
+  // Opens a dialog in the next frame and closes the one that is open. A dialog that no action of the user's caused,
+  // such as one at a job's end, waits until it does not interrupt the user.
   void open_dialog(std::unique_ptr<Dialog> dialog);
   void close_dialog();
   Host& host;
   Preferences preferences;
-  Path preferences_path;             // empty: they are not kept
-  bool preferences_problem = false;  // the last time they could not be
+  Path preferences_path;             // empty: the preferences are not written
+  bool preferences_problem = false;  // true: the last attempt to write the preferences failed
   std::string shown_theme;
   Keymap keymap;
   std::vector<Operator> operators;
   std::function<void(Editor&)> before_change = [](Editor&) {
-  };  // called before an operator that does not merely look around
+  };  // called before an operator that must not run during playback; stops the playback
   Messages messages;
-  bool error_details = false;  // unfolded in the error that is shown
+  bool error_details = false;  // whether the details of the shown error are unfolded
 
   // The project
   History history;
   Jobs jobs;
-  std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // what follows the end of a job, by id
-  Path worker_program = "/proc/self/exe";                                   // what runs `limber job`
-  bool workers_yield = true;                                                // to everything else on the machine
-  std::map<int, Task> tasks;                                                // jobs whose end the editor meets, by id
-  std::map<int, StepOfWork> step_of_job;                                    // what a running job is for
+  std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // called when a job ends, by the job's id
+  Path worker_program = "/proc/self/exe";                                   // the program that runs `limber job`
+  bool workers_yield = true;              // whether worker processes run at low priority
+  std::map<int, Task> tasks;              // the jobs that are background tasks, by id
+  std::map<int, StepOfWork> step_of_job;  // the workflow step that a job belongs to, by the job's id
   ProjectLife life;
-  std::vector<std::function<bool(Editor&)>> each_frame;  // called once a frame until they return false
-  Path project_path;                                     // empty: never saved
-  std::vector<NamedFile> inputs;  // what the project was read from since it was opened: never written over
-  std::string shown_title;        // of the window
-  std::string name;               // of the project or of the volume opened last
-  std::vector<Path> to_open;      // dropped on the window, or given on the command line
+  // Functions called once a frame; one that returns false is removed
+  std::vector<std::function<bool(Editor&)>> each_frame;
+  Path project_path;              // empty: never saved
+  std::vector<NamedFile> inputs;  // files that data of the project was read from; they are never overwritten
+  std::string shown_title;        // the window's title
+  std::string name;               // the name of the project, or of the volume opened last
+  std::vector<Path> to_open;      // files dropped on the window or given on the command line
 
-  // Between sittings
-  Folders folders;  // empty ones: nothing is kept
+  // Stored on disk between runs of the program
+  Folders folders;  // an empty path in it: nothing of that kind is stored
   RecentFiles recent_files;
   RecentFilesOnDisk recent_files_on_disk;
   std::map<Path, RecentFacts> recent_facts;
@@ -141,7 +144,7 @@ struct Editor : Ui {
 
   // The window
   bool start_screen = false;
-  int start_row = 0;  // of its recent files
+  int start_row = 0;  // index of the recent file that is selected on the start screen
   Tour tour;
   Workspace workspace = Workspace::Rig;
   Arrangements arrangements;
@@ -149,7 +152,7 @@ struct Editor : Ui {
   std::unique_ptr<Dialog> dialog;  // null: none
   bool quit = false;
 
-  // What is seen and done in it
+  // The user's selection, tool and other state of what is shown in the window
   ImGuiContext* imgui = nullptr;
   std::optional<Views> views;
   Selection selection;
@@ -157,66 +160,66 @@ struct Editor : Ui {
   struct {
     std::string search;
     bool searching = false, focus_search = false;
-    std::map<std::string, bool> open;  // rows that were folded or unfolded
+    std::map<std::string, bool> open;  // by row: whether the user unfolded (true) or folded (false) it
   } outliner;
   struct {
     std::string name;
     double value = 0;
-  } edited_number;  // while it is dragged or typed; the document changes once, at the end
+  } edited_number;  // the number that is being dragged or typed; the document changes once, when that ends
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
-  std::unique_ptr<TransformSettings> transform_settings;  // of bones; never null
-  std::unique_ptr<SkinDisplay> skin;                      // of weight_display.h; never null
-  std::string open_menu;                                  // of the top bar
-  std::string open_popup;           // a menu of menus.h wanted at the pointer in the next frame; "" for none
-  std::string shown_popup;          // the one that is open
-  bool open_pick_list = false;      // likewise
-  std::vector<Pickable> pick_list;  // what lies under the pointer, nearest first
+  std::unique_ptr<TransformSettings> transform_settings;  // how tools transform bones; never null
+  std::unique_ptr<SkinDisplay> skin;                      // declared in weight_display.h; never null
+  std::string open_menu;                                  // title of the top bar's open menu; "" for none
+  std::string open_popup;           // the menu of menus.h to open at the pointer in the next frame; "" for none
+  std::string shown_popup;          // the menu of menus.h that is open; "" for none
+  bool open_pick_list = false;      // true: the list of what lies under the pointer opens in the next frame
+  std::vector<Pickable> pick_list;  // bones and tissues under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
-  std::unique_ptr<FemView> fem;                // of fem_live_view.h; never null
-  std::unique_ptr<FemOverlay> fem_overlay;     // of fem_overlay.h; never null
-  std::unique_ptr<TestPose> trial;             // of test_pose.h; never null
-  std::unique_ptr<DifferenceView> difference;  // of difference_overlay.h; never null
-  std::unique_ptr<OverlapView> overlap;        // of overlap_overlay.h; never null
-  std::unique_ptr<SeamView> seams;             // of seam_view.h; never null
-  std::unique_ptr<BoneTable> bone_table;       // of bone_table.h; never null
+  std::unique_ptr<FemView> fem;                // declared in fem_live_view.h; never null
+  std::unique_ptr<FemOverlay> fem_overlay;     // declared in fem_overlay.h; never null
+  std::unique_ptr<TestPose> trial;             // declared in test_pose.h; never null
+  std::unique_ptr<DifferenceView> difference;  // declared in difference_overlay.h; never null
+  std::unique_ptr<OverlapView> overlap;        // declared in overlap_overlay.h; never null
+  std::unique_ptr<SeamView> seams;             // declared in seam_view.h; never null
+  std::unique_ptr<BoneTable> bone_table;       // declared in bone_table.h; never null
   struct {
-    std::string result;  // whose name is a text field now; "" for none
+    std::string result;  // the result whose name is being edited; "" for none
     std::string text;
     bool focused = false;
   } renaming_result;
   std::vector<KnownResult> known_results;
   struct {
     std::string method = deformation_methods().front().word;
-    double spacing = 0;        // mm; 0: as the volume
-    bool bones_apart = false;  // joints glide further than a voxel, where their bones need it
-    bool mass_exact = false;   // soft tissues keep their volume to the voxel's accuracy
-    // Of finite elements.
+    double spacing = 0;        // voxel size of the posed volume, mm; 0: as in the volume at rest
+    bool bones_apart = false;  // whether joints may shift by more than a voxel so that bones do not overlap
+    bool mass_exact = false;   // whether each soft tissue keeps its volume, exact to a voxel
+    // Options of the method finite elements
     bool contact = true;
     std::string quality = "normal";  // "draft", "normal", "fine"
   } resampling;
   struct {
-    bool keep_limits = true;                   // joints stop where their limits end
-    std::map<std::string, glm::dquat> copied;  // rotations by bone
+    bool keep_limits = true;                   // joints stop at their limits
+    std::map<std::string, glm::dquat> copied;  // the copied pose: rotation of each bone, by its name
   } posing;
   struct {
     std::string search;
-    std::array<bool, 4> hidden{};  // by severity
+    std::array<bool, 4> hidden{};  // whether messages of a severity are hidden, by severity
     std::size_t lines_seen = 0;
   } console;
-  std::map<int, double> stopping_since;  // jobs that were cancelled, by id
+  std::map<int, double> stopping_since;  // time at which a job that still runs was cancelled, s, by the job's id
   std::optional<Drag> drag;
   std::optional<PendingPress> pending_press;
   std::shared_ptr<Modal> modal;  // null: none
   PointerWrap modal_wrap;
-  std::unique_ptr<Timeline> timeline;             // of timeline.h; never null
-  Rect timeline_area;                             // its rows in the last picture; empty while it is not shown
-  float wheel_rest = 0;                           // of the slices' wheel: parts of a step that a pad has made
-  std::string last_operator;                      // id, for Repeat
-  std::unique_ptr<LastOperation> last_operation;  // of redo_last_operator.h; never null
+  std::unique_ptr<Timeline> timeline;  // declared in timeline.h; never null
+  Rect timeline_area;                  // the timeline's rows in the last frame; empty while not shown
+  float wheel_rest = 0;  // fraction of a wheel step over a slice that is still to be used: touch pads send fractions
+  std::string last_operator;                      // the id of the operator that Repeat runs
+  std::unique_ptr<LastOperation> last_operation;  // declared in redo_last_operator.h; never null
 
-  Cursor cursor = Cursor::Arrow;  // of this frame
+  Cursor cursor = Cursor::Arrow;  // the pointer's shape in this frame
   int hovered_splitter = -1;
   double splitter_since = 0;
 
@@ -228,10 +231,10 @@ struct Editor : Ui {
   void draw();
   void change_dialog();
   std::optional<std::unique_ptr<Dialog>> next_dialog_;
-  // What no act of the user's brought, until nothing is interrupted by it.
+  // Dialogs and errors that no action of the user's caused. They are shown once they do not interrupt the user.
   std::deque<std::unique_ptr<Dialog>> waiting_dialogs_;
   std::vector<ErrorMessage> waiting_errors_;
-  bool of_users_act_ = true;  // what is done now
+  bool of_users_act_ = true;  // whether an action of the user's caused what happens now
 };
 
 }  // namespace limber::editor

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What frames cost the thread that draws them, on real clocks: a script's own time is fixed and says nothing of it.
+// Measures how long frames take in the thread that draws them. Real clocks are used, since a script's clock is
+// simulated.
 //
-// Of every frame two times are kept, in milliseconds: how long it took, waiting for OpenGL included, and how long this
-// thread computed. The first is told by parts ("input", "body", "panels") in the order in which they ended. A script's
-// window is painted only for its pictures, which no frame counts.
+// Each frame has two times in milliseconds: the time from its begin to its end, including waits for OpenGL, and this
+// thread's CPU time. The first is split into parts ("input", "body", "panels") in the order in which they ended. The
+// time in which a script's window is painted for the script's pictures is not counted.
 #pragma once
 
 #include <chrono>
@@ -23,13 +24,13 @@ class FrameLog {
   };
 
   void begin();
-  void part(const char* name);         // what was done since the part before; literals only
-  void end(const std::string& doing);  // of the frame: for what it was drawn
+  void part(const char* name);  // ends a part that began at the end of the part before; `name` must be a string literal
+  void end(const std::string& doing);  // ends the frame; `doing` says why it was drawn
   const std::vector<Frame>& frames() const { return frames_; }
   void clear() { frames_.clear(); }
 
-  // A summary in lines that begin with "#" (worst, 95th percentile, median; what the worst frame did), then one frame a
-  // line: number, ms, ms computed, what it was drawn for, its parts.
+  // Returns a summary in lines that begin with "#" (worst time, 95th percentile, median, parts of the worst frame),
+  // then one line for each frame: number, time, CPU time, why it was drawn, its parts. Times are in ms.
   std::string text() const;
 
  private:
@@ -39,7 +40,8 @@ class FrameLog {
   double computed_before_ = 0;
 };
 
-// The value that so many percent of the others do not exceed; 0 of none.
+// Returns the percentile: the smallest value such that at least `percent` percent of the values are not larger. Returns
+// 0 if there are no values.
 double percentile(std::vector<double> values, double percent);
 
 }  // namespace limber::editor

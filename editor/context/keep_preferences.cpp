@@ -17,7 +17,7 @@ void import_keymap(Editor& editor, const Path& path) {
   const auto count = clashes(editor.keymap).size();
   if (count > 0)
     editor.messages.warn("Keys imported",
-                         std::to_string(count) + (count == 1 ? " key has" : " keys have") + " two meanings");
+                         std::to_string(count) + (count == 1 ? " key has" : " keys have") + " more than one command");
   else editor.messages.ok("Keys imported", path.filename().string());
 }
 
@@ -36,7 +36,7 @@ void write_preferences(Editor& editor) {
     write_file_atomically(editor.preferences_path, to_json(editor.preferences));
     editor.preferences_problem = false;
   } catch (const std::exception& error) {
-    if (!editor.preferences_problem) editor.messages.warn("Preferences are not kept", error.what());
+    if (!editor.preferences_problem) editor.messages.warn("Preferences cannot be saved", error.what());
     editor.preferences_problem = true;
   }
 }

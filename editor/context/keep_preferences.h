@@ -5,13 +5,15 @@
 
 namespace limber::editor {
 
-// After a change: acts on the editor at once, and is written to Editor::preferences_path unless that is empty.
+// Applies changed preferences to the editor, and writes them to the file Editor::preferences_path unless that is empty.
 void keep_preferences(Editor& editor);
 void apply_preferences(Editor& editor);
-// Only into the file; a failure becomes a warning, once.
+// Writes the preferences to the disk without applying them. Of several failures in a row, only the first shows a
+// warning.
 void write_preferences(Editor& editor);
 
-// The keys of the moment as a key map; and such a file in their place, kept as changes of the preset.
+// Export the current key map to a file, and import a key map file. On import, the file's differences from the preset
+// become the user's key changes.
 void export_keymap(Editor& editor, const Path& path);
 void import_keymap(Editor& editor, const Path& path);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the window is arranged, as JSON text: kept in a project and, for the next start, in the preferences.
+// Converts the window's arrangements to JSON text and back. The text is stored in projects, and in the preferences for
+// the next start of the program.
 #pragma once
 
 #include <string>
@@ -8,9 +9,10 @@
 
 namespace limber::editor {
 
-// An array, one for each workspace.
+// Returns a JSON array with one object for each workspace.
 std::string json_text(const Arrangements& arrangements);
-// What is missing or out of range stays as it is; where no view is named as maximized, none is.
+// Sets the arrangements from JSON text. A value that is missing or out of range leaves the arrangement's value as it
+// is; the only exception is "maximized", without which no view is maximized.
 void restore(const std::string& json, Arrangements& arrangements);
 
 }  // namespace limber::editor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A tool that takes all input until it is confirmed or dropped, as walking does. Each of its functions returns whether
-// it goes on.
+// The base class of modal tools, such as walking. A modal tool gets all input until the user confirms or cancels it.
+// Each function that handles input returns whether the tool continues.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace limber::editor {
 struct Editor;
 struct ViewPlace;
 
-// Of the status bar.
+// A hint in the status bar: the names of keys, and what these keys do.
 struct KeyHint {
   std::vector<std::string> caps;
   std::string words;
@@ -28,15 +28,15 @@ class Modal {
   virtual bool wheel(Editor&, float /*steps*/) { return true; }
   virtual bool button(Editor&, const ButtonChanged&) { return true; }
   virtual bool key(Editor&, const KeyChanged&) { return true; }
-  // Once a frame, after the input.
+  // Called once a frame, after the input functions.
   virtual bool frame(Editor&, double /*seconds*/) { return true; }
-  // Over a view, after its picture.
+  // Draws the tool's graphics over a view, whose picture has been drawn before.
   virtual void draw(Editor&, const ViewPlace&) {}
-  virtual bool moving() const { return false; }  // draws on without input
-  virtual void cancel(Editor&) {}                // what it did is undone
+  virtual bool moving() const { return false; }  // whether frames must be drawn even without input
+  virtual void cancel(Editor&) {}                // undoes what the tool did
   virtual std::vector<KeyHint> hints(const Editor&) const { return {}; }
   virtual bool hides_pointer() const { return false; }
-  virtual std::string title() const { return {}; }  // under the view's name; "" for none
+  virtual std::string title() const { return {}; }  // shown under the view's name; "" for none
 };
 
 }  // namespace limber::editor

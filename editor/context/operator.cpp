@@ -11,7 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-// For Repeat and for the search, which offers what was used last and most.
+// Records the use of an operator: for the command Repeat, and for the search, which lists the latest and the most used
+// operators first.
 void note_use(Editor& editor, const Operator& op) {
   if (op.id == "search.commands" || op.id == "edit.repeat_last" || op.id == "edit.adjust_last" ||
       needs_pointer(editor, op))
@@ -24,7 +25,8 @@ void note_use(Editor& editor, const Operator& op) {
   editor.preferences.command_counts[op.id] += 1;
 }
 
-// Looking around and choosing do not touch the pose.
+// Returns whether the animation keeps playing while the operator runs. This is so for operators that do not change the
+// pose, such as turning a view or selecting.
 bool goes_on_while_playing(const Operator& op) {
   constexpr const char* kSuch[] = {"view.",    "slice.",  "select.", "motion.",  "workspace.",
                                    "compare.", "search.", "help.",   "file.save"};
@@ -51,7 +53,8 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
   } catch (const Error& error) {
     editor.messages.show_error(error.what(), label);
   } catch (const std::bad_alloc&) {
-    editor.messages.show_error("There is not enough memory: " + label + ": close something, or use a coarser volume");
+    editor.messages.show_error("There is not enough memory: " + label +
+                               ": close other programs, or use a coarser volume");
   } catch (const std::exception& error) {
     editor.messages.show_error(std::string("A mistake of the program itself: ") + label + ": " + error.what());
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Widgets that stand for operators: each shows the operator's tool tip, and why it cannot run.
+// Buttons, menu rows and check boxes that run operators. Each shows the operator's tool tip, with the reason if it
+// cannot run.
 #pragma once
 
 #include <string>
@@ -12,17 +13,18 @@ namespace limber::editor {
 struct Editor;
 struct Operator;
 
-// A button for an operator: its icon, label, tool tip and why it cannot run. `label` "" shows the icon alone.
+// Draws an operator's button with its icon and `label`. With the label "", only the icon is shown. Returns whether the
+// button was clicked.
 bool operator_button(Editor& editor, std::string_view id, const Rect& rect, const std::string& label,
                      ButtonStyle style = ButtonStyle::Plain);
 
-// A row of a popup for an operator.
+// Draws an operator's row in a popup menu.
 void operator_menu_item(Editor& editor, std::string_view id);
 
-// A check box for an operator that is on or off.
+// Draws a check box for an operator that switches something on and off.
 void operator_box(Editor& editor, std::string_view id, const Rect& rect, const std::string& label);
 
-// Name, key, what it does, and why it cannot run now.
+// Shows the operator's tool tip: name, key, what it does, and why it cannot run now.
 void operator_tooltip(Editor& editor, const Operator& op, const Rect& rect);
 
 }  // namespace limber::editor

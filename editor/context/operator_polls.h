@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Why an operator cannot run, for many of them.
+// Checks that many operators share. Each returns the reason why an operator cannot run now, or "" if it can.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace limber::editor {
 inline std::string needs_volume(const Editor& editor) { return editor.document().volume ? "" : "Open a volume first"; }
 inline std::string needs_tissue(const Editor& editor) {
   if (!editor.document().volume) return "Open a volume first";
-  return editor.selection.tissue ? "" : "Choose a tissue first";
+  return editor.selection.tissue ? "" : "Select a tissue first";
 }
 
 inline std::string needs_bone(const Editor& editor) {
   if (!editor.document().armature) return "Import a rig first";
   return editor.selection.bone && *editor.selection.bone < std::ssize(editor.document().armature->bones)
              ? ""
-             : "Choose a bone first";
+             : "Select a bone first";
 }
 
 }  // namespace limber::editor

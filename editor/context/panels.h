@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The regions of the window and what stands in them: one file each. Panels draw and ask; what the user wants goes
-// through an operator.
+// Declares the functions that draw the window's regions and the panels in them. Panels only draw and read the input; to
+// change something, they run an operator.
 #pragma once
 
 #include "editor/context/editor.h"
@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// Regions
+// Regions of the window
 void draw_top_bar(Editor& editor);
 void draw_tool_header(Editor& editor);
 void draw_tool_strip(Editor& editor);
@@ -20,21 +20,22 @@ void draw_splitters(Editor& editor);
 void draw_start_screen(Editor& editor);
 void draw_tour(Editor& editor);
 
-// In the views
+// What is drawn over the views
 void draw_body_overlay(Editor& editor, const ViewPlace& place);
 void draw_slice_overlay(Editor& editor, const ViewPlace& place);
-bool draw_weight_legend(Editor& editor, const Rect& view);  // true where there is one
-bool draw_fem_legend(Editor& editor, const Rect& view);     // the same of finite elements
-// Of marked voxels: where volumes differ, or claim a voxel twice. Returns how much of the corner it takes, in pixels at
-// scale 1.
+bool draw_weight_legend(Editor& editor, const Rect& view);  // returns whether it drew one
+bool draw_fem_legend(Editor& editor, const Rect& view);     // returns whether it drew one
+// Draws the legend of the marked voxels: voxels in which two volumes differ, or to which two points of the body at rest
+// were moved. Returns the legend's height in pixels at scale 1; 0: no legend.
 float draw_marks_legend(Editor& editor, const Rect& view);
-void draw_side_chip(Editor& editor, const ViewPlace& place);  // in a title's place: whose side it is
+// Draws a label in place of a compared view's title: A or B, and the name of the shown result.
+void draw_side_chip(Editor& editor, const ViewPlace& place);
 void put_swatch(const Look& look, const glm::vec2& corner, Colour colour);
 void draw_weights_at_pointer(Editor& editor);
 void draw_empty_view(Editor& editor, const Rect& rect);
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state);
-// Finds what the pointer is over.
+// Updates Views::hover, which describes what lies under the pointer.
 void hover_views(Editor& editor);
 
 // Sections of the sidebar
@@ -61,13 +62,14 @@ void draw_resample(Editor& editor, Column& column);
 void draw_gates(Editor& editor, Column& column);
 void draw_provenance(Editor& editor, Column& column);
 
-// In the bottom area
+// Panels of the bottom area
 void draw_console(Editor& editor, const Rect& rect);
 void draw_results(Editor& editor, const Rect& rect);
 void draw_change_plot(Editor& editor, const Rect& rect);
 void draw_timeline(Editor& editor, const Rect& rect);
 
-// In the status bar: the job at work takes its place left of `right`; returns what is left.
+// Draws the running job into the status bar, with its right end at `right`. Returns the x of the job's left end, where
+// the remaining space ends.
 float draw_job_slot(Editor& editor, const Rect& bar, float right);
 
 // Messages

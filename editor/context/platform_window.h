@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the editor lives: a window of the desktop (glfw_window.h) or a picture in memory (headless_window.h). Both have
-// a current OpenGL 3.3 core context and push the user's events into one queue; the editor cannot tell which one it is
-// in.
+// The window that the editor runs in: a window of the desktop (glfw_window.h) or a picture in memory
+// (headless_window.h). Both have a current OpenGL 3.3 core context and push the user's events into a queue, so that the
+// editor works the same in either.
 #pragma once
 
 #include <functional>
@@ -20,18 +20,20 @@ class Host {
  public:
   virtual ~Host() = default;
 
-  virtual glm::ivec2 size() const = 0;  // pixels of the picture
+  virtual glm::ivec2 size() const = 0;  // the window's inner size, pixels
   virtual double monitor_scale() const = 0;
   virtual bool close_requested() const = 0;
   virtual void forget_close_request() = 0;
 
-  // Returns at the first event, at wake(), or after `seconds`; 0 only gathers what has happened.
+  // Waits until an event arrives, wake() is called, or `seconds` have passed. With 0 seconds, collects pending events
+  // and returns at once.
   virtual void wait(double seconds) = 0;
-  virtual void wake() = 0;  // from any thread
-  // Moves the pointer by so many pixels, where the desktop allows; its next move is seen there.
+  virtual void wake() = 0;  // ends wait(); may be called from any thread
+  // Moves the pointer by so many pixels, if the desktop allows it. The next PointerMoved event starts from the new
+  // position.
   virtual void shift_pointer(const glm::vec2& by) = 0;
-  // Shows what `paint` draws into the bound framebuffer; a host that nobody looks at may paint later, until the next
-  // present().
+  // Calls `paint`, which draws into the bound framebuffer, and shows what was drawn. A host without a visible window
+  // may call `paint` later, but before the next present().
   virtual void present(const std::function<void()>& paint) = 0;
 
   virtual std::string clipboard() = 0;
@@ -39,7 +41,7 @@ class Host {
   virtual void set_cursor(Cursor cursor) = 0;
   virtual void set_title(const std::string& title) = 0;
   virtual void toggle_full_screen() = 0;
-  // With the program that the desktop has for it; false where there is none.
+  // Opens a file in the program that the desktop uses for such files. Returns false if there is none.
   virtual bool open_file(const Path&) { return false; }
 
   EventQueue events;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pointer is over, as far as keys and presses go by it.
+// Finds what lies under the pointer, since the meaning of keys and mouse buttons depends on it.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace limber::editor {
 
-// The key map's contexts for the pointer's place, first to last.
+// Returns the key map's contexts that apply at the pointer's position, in the order in which they are searched.
 std::vector<std::string> contexts(const Editor& editor);
-// The view under the pointer; nullptr where a menu, dialog or another region covers it.
+// Returns the view under the pointer; nullptr where a menu, dialog or another region covers it.
 const ViewPlace* hovered_view(const Editor& editor);
-// Over the timeline's rows, not the buttons above them.
+// Returns whether the pointer is over the timeline's rows, not the buttons above them.
 bool over_timeline(const Editor& editor);
 
 }  // namespace limber::editor

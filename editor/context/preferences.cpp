@@ -36,12 +36,11 @@ Preferences read_preferences(const Path& path, std::string& problem) {
     return {};
   }
   if (problem.empty()) return preferences;
-  // Out of the way of the next start, and not lost.
+  // The damaged file is renamed, so that it is not lost and the next start does not read it again.
   const Path aside = path.string() + ".damaged";
   std::filesystem::rename(path, aside, ignored);
-  problem =
-      Error(problem, path.string(), "the program's own are used; the old file is kept as " + aside.filename().string())
-          .what();
+  problem = Error(problem, path.string(), "the defaults are used; the old file is kept as " + aside.filename().string())
+                .what();
   return preferences;
 }
 

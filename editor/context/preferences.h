@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What one user likes, for all projects; kept in $XDG_CONFIG_HOME/limber/preferences.json (~/.config without it).
+// A user's preferences, which apply to all projects. They are stored in $XDG_CONFIG_HOME/limber/preferences.json;
+// $XDG_CONFIG_HOME is ~/.config by default.
 #pragma once
 
 #include <map>
@@ -15,31 +16,31 @@ namespace limber::editor {
 struct Preferences {
   // Interface
   std::string theme = "dark";
-  double scale = 1;            // times the monitor's, [0.75, 3]
+  double scale = 1;            // scale of the interface relative to the monitor's scale, [0.75, 3]
   double tooltip_delay = 0.5;  // s, [0, 3]
   bool reduce_motion = false;
 
-  // View, as the editor starts
+  // What is shown in the views when the editor starts
   bool grid = true, axes = true, scale_bar = true, letters = true, cross_hair = true;
-  std::string display = "solid";  // "xray", "tissue"
+  std::string display = "solid";  // "solid", "xray" or "tissue"
 
   // Undo and saving
   int undo_limit_mb = 1024;  // [64, 65536]
-  int autosave_minutes = 0;  // saves the project's file when it has one; 0: only when asked
+  int autosave_minutes = 0;  // interval of automatic saving for a project that has a file, [0, 240]; 0: never
 
   // Jobs
   int jobs_at_once = 2;       // [1, 8]
-  int worker_memory_mb = 0;   // that a resampling may take; 0: no limit
-  double worker_minutes = 0;  // likewise
+  int worker_memory_mb = 0;   // memory that a resampling may use; 0: no limit
+  double worker_minutes = 0;  // time that a resampling may take; 0: no limit
 
   // Folders
-  std::string scratch_folder;  // for what a resampling reads and writes; "": the system's
+  std::string scratch_folder;  // for the temporary files of a resampling; "": the system's
 
-  Arrangements arrangements = default_arrangements();  // as the window was left; a project has its own
-  std::string keymap = "blender";                      // the preset: also "maya"
-  KeyChanges keys;                                     // from the preset's
+  Arrangements arrangements = default_arrangements();  // those of the last use; a project stores its own
+  std::string keymap = "blender";                      // the preset: "blender" or "maya"
+  KeyChanges keys;                                     // the user's changes of the preset's keys
   bool advanced_steps = false;
-  std::vector<std::string> recent_commands;  // last first, at most kMostRecent
+  std::vector<std::string> recent_commands;  // ids of operators, latest first, at most kMostRecent
   std::map<std::string, int> command_counts;
 
   static constexpr std::size_t kMostRecent = 20;
@@ -48,12 +49,12 @@ struct Preferences {
 };
 
 Path preferences_path();
-// Values out of range are brought into it, unknown ones left out. A missing file gives the defaults; a damaged one too,
-// with a line in `problem`.
+// Reads the preferences. Numbers are clamped to their range and unknown entries are ignored. If the file is missing or
+// damaged, the defaults are returned. If it is damaged, `problem` says what is wrong.
 Preferences read_preferences(const Path& path, std::string& problem);
 Preferences preferences_from_json(const std::string& text, std::string& problem);
 std::string to_json(const Preferences& preferences);
 
-// "blender" or "maya", as the program brings it.
+// Returns one of the program's own key maps, "blender" or "maya".
 Keymap keymap_preset(const std::string& name);
 }  // namespace limber::editor

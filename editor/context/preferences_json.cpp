@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Preferences as JSON and back.
+// Converts preferences to JSON text and back.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One list of what is kept, for reading and writing.
+// Calls `visit` with the group, name, value and range of each preference. This one list serves both to read and to
+// write.
 template <class Visit, class P>
 void visit(P& p, const Visit& visit) {
   visit("interface", "theme", p.theme, {}, {});

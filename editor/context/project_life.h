@@ -11,14 +11,14 @@
 
 namespace limber::editor {
 
-// Which file the project is, and what of it is kept.
+// How much of the open project has been written to the disk: to its journal (all edits, for recovery) and to its file.
 struct ProjectLife {
-  std::shared_ptr<Session> session;      // null until there is something to keep
-  std::int64_t kept_revision = 0;        // handed to the session last
-  std::int64_t saved_at = 0;             // s since 1970; 0: not in this sitting
-  std::optional<double> unsaved_since;   // the editor's time; none: nothing is unsaved
-  std::string trouble;                   // why edits are not kept just now; "" when they are
-  std::vector<Recoverable> recoverable;  // what earlier sittings left
+  std::shared_ptr<Session> session;      // writes the journal; null until there is something to write
+  std::int64_t kept_revision = 0;        // the last revision of the history that was passed to the session
+  std::int64_t saved_at = 0;             // time of the last save, s since 1970; 0: not saved since the program started
+  std::optional<double> unsaved_since;   // start of the autosave interval, s on the editor's clock; none: all saved
+  std::string trouble;                   // why edits cannot be written to the journal now; "" when they can
+  std::vector<Recoverable> recoverable;  // unsaved work that earlier runs of the program left
 };
 
 }  // namespace limber::editor

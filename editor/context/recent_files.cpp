@@ -20,7 +20,7 @@ constexpr std::size_t kMostFolders = 8;
 constexpr std::uint64_t kLargestSettings = 4 << 20;  // bytes
 constexpr const char* kSchema = "limber-remembered/1";
 
-// Absent or of another type: as before.
+// Reads a value of a JSON object. `value` stays as it is if the entry is absent or of another type.
 template <class T>
 void take(const Json& json, const char* key, T& value) {
   const auto found = json.find(key);
@@ -63,7 +63,7 @@ std::string read_settings_text(const Path& file, const std::string& schema, std:
   const Json json = Json::parse(sound_json(text), nullptr, false);
   if (json.is_object() && json.value("schema", Json()) == schema) return text;
   fs::rename(file, file.string() + ".damaged", error);
-  warning = Error("settings were damaged and begin anew", file.string(),
+  warning = Error("the settings file is damaged and was reset", file.string(),
                   "the old file is kept as " + file.filename().string() + ".damaged")
                 .what();
   return "";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the editor remembers for comfort, beside the preferences: recent files, the folders that were looked
-// into, how far the tour has come. Losing it loses no work, so a damaged file is set aside with a message.
+// Stores the recent files, the folders last used in file dialogs and the tour's progress between runs of the program.
+// They hold no work of the user's. So if the file is damaged, it is renamed with a warning and the program starts
+// without it.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +16,15 @@ namespace limber::editor {
 
 struct Recent {
   Path path;              // absolute
-  std::int64_t time = 0;  // s since 1970, when it was opened or saved last
+  std::int64_t time = 0;  // when the file was last opened or saved, s since 1970
 
   bool operator==(const Recent&) const = default;
 };
 
 struct RecentFiles {
   std::vector<Recent> recents;          // latest first
-  std::map<std::string, Path> folders;  // of file dialogs, by purpose
-  std::vector<Path> recent_folders;     // of file dialogs, latest first
+  std::map<std::string, Path> folders;  // the folder where a file dialog was last used, by the dialog's purpose
+  std::vector<Path> recent_folders;     // folders used in any file dialog, latest first
   bool show_start = true;
   bool hidden_files = false;
   int tour_step = 0;
@@ -31,25 +32,26 @@ struct RecentFiles {
   bool operator==(const RecentFiles&) const = default;
 };
 
-// What of it is on the disk.
+// What the disk holds of the recent files, to find out whether they must be written.
 struct RecentFilesOnDisk {
   RecentFiles contents;
-  std::vector<Recent> named;         // those that have operators
-  std::optional<double> changed_at;  // the editor's time
-  bool failure_told = false;
+  std::vector<Recent> named;         // the recent files for which an operator exists that opens the file
+  std::optional<double> changed_at;  // time of the first change that is not written yet, seconds on the editor's clock
+  bool failure_told = false;         // whether the user has been told that writing failed
 };
 
 void add_recent(RecentFiles& recent_files, const Path& path, std::int64_t time);
 void add_recent_folder(RecentFiles& recent_files, const Path& folder);
 void forget_recent(RecentFiles& recent_files, const Path& path);
 
-// `warning` says why a file could not be used; it is then set aside as NAME.damaged. A missing file is no failure.
+// Reads the recent files. If the file cannot be used, `warning` says why; a damaged file is renamed NAME.damaged. A
+// missing file gives no warning.
 RecentFiles read_recent_files(const Path& file, std::string& warning);
-// Throws Error when it cannot be written.
+// Writes the recent files. Throws Error when the file cannot be written.
 void write_recent_files(const RecentFiles& recent_files, const Path& file);
 
-// Text of a file of settings that should be a JSON object with this schema; "" when there is none. A damaged one is set
-// aside.
+// Returns the text of a settings file, which must be a JSON object with this schema. Returns "" if the file is missing
+// or damaged. A damaged file is renamed NAME.damaged, and `warning` says so.
 std::string read_settings_text(const Path& file, const std::string& schema, std::string& warning);
 
 }  // namespace limber::editor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far each tissue reaches in a volume: one pass over the voxels, made when a volume is opened, so that framing and
-// jumping to a tissue cost nothing.
+// Computes each tissue's bounding box in voxels, in one pass over a volume. The boxes are kept, so that zooming to a
+// tissue takes no time.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace limber::editor {
 
 struct VoxelBox {
-  glm::ivec3 low{1 << 30}, high{-1};  // first and last voxel; high < low: none
+  glm::ivec3 low{1 << 30}, high{-1};  // first and last voxel; high < low: the box is empty
 
   bool empty() const { return high.x < low.x; }
   void add(const VoxelBox& other) {
@@ -22,7 +22,7 @@ struct VoxelBox {
 
 struct Extents {
   std::shared_ptr<const LabelVolume> volume;
-  std::vector<VoxelBox> boxes;  // by label
+  std::vector<VoxelBox> boxes;  // 65536 boxes, indexed by label
 };
 Extents extents_of(std::shared_ptr<const LabelVolume> volume);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far the tour of the editor has come.
+// The progress of the editor's guided tour.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace limber::editor {
 
-// What a step compares with: the editor when the step began.
+// The editor's state when a step of the tour began. The step is done when the user has changed what it asks for.
 struct TourStart {
-  glm::dquat turn{1, 0, 0, 0};
+  glm::dquat turn{1, 0, 0, 0};  // orientation of the 3D view's camera (world_from_view)
   glm::dvec3 cross_hair{0};
-  std::int64_t position = 0;  // in the history
-  int hidden = 0;             // tissues
+  std::int64_t position = 0;  // index of the history's current step
+  int hidden = 0;             // number of hidden tissues
   std::size_t results = 0;
-  int statistics = 0;  // how often they were counted
+  int statistics = 0;  // how often the command Statistics has been run
 };
 
 struct Tour {

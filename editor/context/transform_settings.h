@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How bones are taken hold of: the axes that gizmos and locks go by, what a transform snaps to.
-// Not a part of the document: changing it is no edit.
+// Settings of the tools that transform bones, such as the axes that gizmos and axis locks use and what a transform
+// snaps to. The settings are not part of the document, so changing them is no edit.
 #pragma once
 
 #include <memory>
@@ -26,42 +26,43 @@ struct TransformSettings {
   enum class Part { Whole, Head, Tail };
 
   Space space = Space::Global;
-  bool auto_ik = true;      // a dragged joint takes its limb along
-  bool x_mirror = false;    // the other side does the same, mirrored
-  Part part = Part::Whole;  // of the active bone, in the rig
+  bool auto_ik = true;      // whether dragging a joint moves its limb by inverse kinematics
+  bool x_mirror = false;    // whether the bone on the body's other side makes the mirrored motion
+  Part part = Part::Whole;  // which part of the active bone is selected in the Rig workspace
   Snap snap = Snap::Steps;
-  bool snapping = false;  // always; Ctrl then leaves it
-  struct {                // a pole that is dragged, in place of the document's
+  bool snapping = false;  // true: snaps unless Ctrl is held; false: snaps while Ctrl is held
+  struct {                // the pole target (it directs the knee or elbow) that is being dragged
     std::string bone;     // "" for none
     glm::dvec3 place{0};
   } shown_pole;
 
-  std::shared_ptr<ProposedJoint> proposed_joint;  // of joint_axis_fit.h; null: nothing is proposed
-  std::shared_ptr<KnownRigCheck> rig_check;       // of rig_check.h; null: not checked yet
-  bool rig_check_marks = true;                    // over the views
+  std::shared_ptr<ProposedJoint> proposed_joint;  // declared in joint_axis_fit.h; null: no joint is proposed
+  std::shared_ptr<KnownRigCheck> rig_check;       // declared in rig_check.h; null: not checked yet
+  bool rig_check_marks = true;                    // whether the views mark the problems that the check found
 
-  struct {             // the bone of the outliner whose row is pressed
+  struct {             // the bone whose row in the outliner is being dragged
     std::string bone;  // "" for none
     glm::vec2 begin{0};
     bool moved = false;
   } row_drag;
 
-  std::string library_pose;  // the chosen pose of the library; a body's own by library_name() of body_pose_cards.h
-  struct {                   // the poses that any body can take, on the rig
+  std::string library_pose;  // selected pose of the library; for body poses: library_name() of body_pose_cards.h
+  struct {                   // the program's own body poses, made for the current rig
     std::shared_ptr<const Armature> armature;
-    PoseLibrary poses;  // with pictures once they were shown
+    PoseLibrary poses;  // the poses' pictures are drawn when they are first shown
   } body_poses;
-  struct {  // the one whose card is pressed, and where that began
+  struct {  // the pose whose card is being dragged, and the pointer's x when the drag began
     std::string pose;
     float begin = 0;
     bool moved = false;
   } library_drag;
 };
 
-// Columns x, y, z of a space for a bone of a posed rig. A root's parent is the world.
+// Returns the axes of a coordinate space as columns x, y, z, for a bone of a posed rig. For a root bone, the space
+// Parent is the world.
 glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const ViewProjection& view);
 
-// Where the bone's own axes point in that pose: columns x, y (along the bone), z.
+// Returns the bone's own axes in the pose, in world coordinates, as columns x, y (along the bone), z.
 glm::dmat3 posed_axes(const Armature& armature, const Pose& pose, int bone);
 
 }  // namespace limber::editor

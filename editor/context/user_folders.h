@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the editor keeps what it remembers between sessions, after the XDG rules.
+// The folders in which the editor stores its own files, chosen by the XDG Base Directory Specification.
 #pragma once
 
 #include "core/base/file.h"
 
 namespace limber::editor {
 
-// An empty path: nothing of that kind is kept.
+// The folders for the editor's own files. An empty path means that no files of that kind are stored.
 struct Folders {
   Path config;  // settings, recent files
-  Path cache;   // small pictures; may vanish at any time
+  Path cache;   // small pictures; may be deleted at any time
   Path edits;   // journals of projects that were never saved
 };
 
-// $XDG_CONFIG_HOME/limber (~/.config/limber), $XDG_CACHE_HOME/limber (~/.cache/limber), $XDG_STATE_HOME/limber/edits.
+// Returns the folders $XDG_CONFIG_HOME/limber (by default ~/.config/limber), $XDG_CACHE_HOME/limber (by default
+// ~/.cache/limber) and $XDG_STATE_HOME/limber/edits.
 Folders user_folders();
 
-// "~/anatomy/arm.mha" for what lies in the user's home.
+// Returns the path as text, shortened like "~/anatomy/arm.mha" inside the user's home.
 std::string short_path(const Path& path);
 Path home_folder();  // "/" when there is none
 

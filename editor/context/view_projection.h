@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A view of the window as a camera, 3D or a slice: where a point of the world is seen, and what lies under a pixel.
-// Pixels are the window's; a slice looks along its normal, everything in it at one scale.
+// Projects world points to pixels of a view and back, for the 3D view and the slices alike. Pixels are the window's;
+// lengths are mm. A slice is a parallel projection along its normal.
 #pragma once
 
 #include <optional>
@@ -15,27 +15,29 @@ struct Editor;
 struct ViewProjection {
   ViewProjection(const Editor& editor, const ViewPlace& place);
 
-  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // nothing behind the eye
+  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // no value for a point behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
-  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;   // unit
-  double millimetres_per_pixel(const glm::dvec3& point) const;  // across the line of sight
+  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;   // unit vector
+  double millimetres_per_pixel(const glm::dvec3& point) const;  // at the point, perpendicular to the line of sight
 
-  // All of the world in 3D; in a slice what lies within 20 mm of it.
+  // Returns whether the view shows the point: always in 3D; in a slice if the point lies within 20 mm of the plane.
   bool shows(const glm::dvec3& point) const;
 
-  // The point under the pixel in the plane through `point` with that normal; nothing where the line of sight misses it.
+  // Returns the point where the pixel's line of sight meets the plane through `point` with that normal. Nothing if the
+  // line of sight misses the plane.
   std::optional<glm::dvec3> in_plane(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& normal) const;
-  // How far along the line through `point` (unit direction) it comes nearest to what is under the pixel; nothing where
-  // the line is seen end on.
+  // Finds the point of a line that is nearest to the pixel's line of sight. The line runs through `point` along the
+  // unit vector `direction`. Returns the found point's signed distance from `point` along the line, mm. Nothing if the
+  // line and the line of sight are parallel.
   std::optional<double> along_line(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& direction) const;
 
   ViewPlace place;
-  render::Camera camera;              // of the 3D view
-  render::SliceCamera slice;          // of the others
-  glm::dvec3 right, up, towards_eye;  // of the picture; unit
+  render::Camera camera;              // used if this is the 3D view
+  render::SliceCamera slice;          // used if this is a slice
+  glm::dvec3 right, up, towards_eye;  // the picture's axes in the world, unit vectors
 };
 
-// The 3D view; nothing when it is not shown.
+// Returns the projection of the 3D view; nothing when that view is not shown.
 std::optional<ViewProjection> body_seen(const Editor& editor);
 
 }  // namespace limber::editor

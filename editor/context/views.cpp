@@ -34,7 +34,7 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 }
 
 Views::Views(int largest_texture) : renderer(largest_texture) {
-  // From the front, a little from the left and from above.
+  // The first camera looks from the front, a little from the left and from above.
   body.camera = render::orbited(render::looking_from(render::StandardView::Front, body.camera), {-75, 25});
   body.picture = std::make_unique<render::View3D>(renderer);
   for (int axis = 0; axis < 3; ++axis) {
@@ -63,9 +63,10 @@ std::string name_of(ViewId id) {
 }
 
 namespace {
-// A face at the volume's end hides nothing, for a posed body goes beyond it.
+// Returns the low and high corner of the clip box in voxels. A face at the volume's border is moved far away, so that
+// it does not cut a posed body, which may reach beyond the volume.
 std::array<glm::dvec3, 2> cut_of(const ClipBox& box, const Grid& grid) {
-  constexpr double kFar = 1e6;  // voxels
+  constexpr double kFar = 1e6;  // position of a face that cuts nothing, voxels
   std::array<glm::dvec3, 2> cut{box.low, box.high};
   for (int axis = 0; axis < 3; ++axis) {
     if (box.low[axis] <= -0.5) cut[0][axis] = -kFar;
@@ -161,7 +162,7 @@ void shift(SliceState& slice, const glm::dvec2& pixels) {
 }
 
 void fit(SliceState& slice, const Box& box, const glm::vec2& size) {
-  constexpr double kShare = 0.86;  // of the picture that the body fills
+  constexpr double kShare = 0.86;  // fraction of the picture's width or height that the box fills
   const render::SliceFrame frame = render::frame_of(slice.camera.axis);
   const glm::dvec3 extent = box.high - box.low;
   const glm::dvec2 millimetres{glm::dot(glm::abs(frame.right), extent), glm::dot(glm::abs(frame.down), extent)};

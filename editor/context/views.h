@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pictures of the body in the middle of the window: one in 3D and three slices, linked by a cross-hair.
+// The state of the views in the middle of the window: a 3D view and three slices, linked by a cross-hair.
 #pragma once
 
 #include <array>
@@ -18,38 +18,39 @@
 
 namespace limber::editor {
 
-// A camera on its way: eased out over 180 ms, ended by any input.
+// An animated move of the camera. It takes 180 ms and slows down towards its end; any input ends it.
 struct CameraMove {
   render::Camera from, to;
   double start = 0;
 };
-render::Camera between(const render::Camera& from, const render::Camera& to, double t);  // t in [0, 1]
+// Returns the camera at the fraction t of a move, [0, 1].
+render::Camera between(const render::Camera& from, const render::Camera& to, double t);
 
 struct BodyView {
   render::Camera camera;
   std::optional<CameraMove> move;
-  std::string name;  // "Front", while seen from there; else empty
+  std::string name;  // "Front" while the body is seen from there; empty between the standard views
   std::unique_ptr<render::View3D> picture;
-  std::unique_ptr<render::View3D> other;  // of the scene that it is compared with
+  std::unique_ptr<render::View3D> other;  // the view's second picture, of Views::other_scene, for comparing
 };
 
 struct SliceState {
   render::SliceCamera camera;
-  bool fitted = false;  // to the body, which waits until the slice is shown and has a size
+  bool fitted = false;  // whether the camera has been set to show the body; this needs the view's size
   std::unique_ptr<render::SliceView> picture, other;
 };
 
-// What is picked in the scene. Not a part of the document: choosing is no edit.
+// The selected tissues and bones. They are not part of the document: selecting is no edit.
 struct Selection {
-  std::optional<Label> tissue;  // the active one
-  std::set<Label> tissues;      // with the active one
+  std::optional<Label> tissue;  // the active tissue
+  std::set<Label> tissues;      // all selected tissues, including the active one
   std::optional<int> bone;
   std::set<int> bones;
 };
 
-// One of the things that lie under the pointer.
+// A bone or a tissue that lies under the pointer.
 struct Pickable {
-  std::optional<int> bone;  // none: the tissue
+  std::optional<int> bone;  // no value: a tissue is under the pointer, with this label
   Label tissue = 0;
 
   bool operator==(const Pickable&) const = default;
@@ -57,26 +58,26 @@ struct Pickable {
 
 struct BoneWeight {
   std::string bone;
-  double value;  // of 1
+  double value;  // the weight, [0, 1]
 };
 
-// What the pointer is over.
+// What lies under the pointer in the views.
 struct Hover {
   std::optional<ViewId> view;
-  bool inside = false;  // of the body
+  bool inside = false;  // whether the point is inside the body
   Label label = 0;
-  glm::ivec3 voxel{0};              // at rest where the body is posed
-  glm::dvec3 point{0};              // where the pointer is
-  std::vector<BoneWeight> weights;  // of that voxel, largest first; empty where there are none
+  glm::ivec3 voxel{0};              // voxel of the volume at rest, also if the body is shown posed
+  glm::dvec3 point{0};              // the point under the pointer, world, mm
+  std::vector<BoneWeight> weights;  // the voxel's skin weights, largest first; empty if it has none
 };
 
 struct Views {
-  // Needs a current context; throws Error when it is too old.
+  // Needs a current OpenGL context; throws Error when its version is too old.
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;
   BodyView body;
-  std::array<SliceState, 3> slices;  // by render::SliceAxis
+  std::array<SliceState, 3> slices;  // indexed by render::SliceAxis
   glm::dvec3 cross_hair{0};          // world, mm
   bool show_cross_hair = true;
   render::Display display = render::Display::Solid;
@@ -87,18 +88,19 @@ struct Views {
   ViewId active = ViewId::Body;
   Hover hover;
 
-  std::shared_ptr<const Extents> extents;             // of the document's volume
-  std::shared_ptr<const TissueVoxels> tissue_voxels;  // likewise, once weights are asked for
+  std::shared_ptr<const Extents> extents;             // the tissues' bounding boxes in the document's volume
+  std::shared_ptr<const TissueVoxels> tissue_voxels;  // those of the volume tissue_voxels_of; computed at first use
   std::shared_ptr<const LabelVolume> tissue_voxels_of;
-  // What is shown instead of the document's while the user drags; dropped or committed at the end.
+  // What the views show in place of the document's own objects while the user drags. At the end of the drag, these
+  // objects are put into the document or dropped. Null: the document's own is shown.
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
   std::shared_ptr<const Pose> preview_pose;
   std::shared_ptr<const Armature> preview_armature;
   std::shared_ptr<const SkinWeights> preview_weights;
-  glm::vec2 handle_from{0};                  // where the pointer pressed the handle that is dragged
-  render::Scene scene;                       // of the last frame
-  std::optional<render::Scene> other_scene;  // what it is compared with; nothing: no comparison
+  glm::vec2 handle_from{0};                  // the pointer's position at which the drag of a handle began, pixels
+  render::Scene scene;                       // the scene of the last frame
+  std::optional<render::Scene> other_scene;  // scene of result A in a comparison; no value: nothing is compared
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
 };
@@ -108,33 +110,38 @@ ViewId view_of(render::SliceAxis axis);
 SliceState& slice_of(Views& views, ViewId id);
 std::string name_of(ViewId id);
 
-// The scene that shows this document.
+// Sets Views::scene so that the views show this document.
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
 
-// World box of the volume's grid, or of 300 mm without one.
+// Returns the bounding box of the volume's grid in the world, mm. Without a volume, returns a cube of 300 mm.
 struct Box {
   glm::dvec3 low, high;
 };
 Box world_box(const Document& document);
-// The same around one tissue, or around all that are visible.
+// Returns the bounding box in the world, mm, of one tissue, or of all visible tissues if `tissue` has no value. If
+// these have no voxel, returns the volume's box.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
 
-// The voxel that a scene shows at a point of the world; none where that is nothing of a posed body.
+// Returns the voxel of the volume at rest that is shown at a world point of the scene, in which the body may be posed.
+// Nothing if the posed body has no tissue there.
 std::optional<glm::ivec3> voxel_shown_at(const render::Scene& scene, const glm::dvec3& world);
 
-// Shifts what a slice shows by so many pixels.
+// Moves a slice's picture by so many pixels.
 void shift(SliceState& slice, const glm::dvec2& pixels);
-// The tissue voxels of the document's volume, found once; it has one.
+// Returns the tissue voxels of the document's volume. They are computed once for each volume. The document must have a
+// volume.
 const std::shared_ptr<const TissueVoxels>& tissue_voxels(Views& views, const Document& document);
-// The weights of a voxel of the document's volume.
+// Returns the skin weights of a voxel of the document's volume, or empty if the voxel has none. While a tool shows
+// changed weights (Views::preview_weights), returns those.
 std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel);
 
-// The slice's camera sees that box, `size` pixels large.
+// Sets the slice's camera so that a view of `size` pixels shows the whole box.
 void fit(SliceState& slice, const Box& box, const glm::vec2& size);
-// A point inside the body near the middle of that box: the middle of what its axial slice there holds.
+// Returns a point near the middle of the box that very likely lies inside the body: the centroid of the tissue in the
+// axial slice through the middle of the box.
 glm::dvec3 middle_of_body(const Document& document, const Box& box);
 
-// The slice picture of `camera`, `size` pixels large, as points of the world and back.
+// Convert a pixel of a slice view, `size` pixels large, to a world point in mm and back.
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size);
 glm::vec2 pixel_of(const render::SliceCamera& camera, const glm::dvec3& world, const glm::vec2& size);
 

@@ -57,8 +57,8 @@ class QuestionDialog final : public Dialog {
   }
 
   Question question_;
-  bool shown_ = false;      // the key that opened it does not answer it
-  bool had_error_ = false;  // keys belong to the message above
+  bool shown_ = false;  // drawn in an earlier frame; only then Return answers: it may be the key that opened the dialog
+  bool had_error_ = false;  // true: an error message covered the dialog in the last frame and gets the keys
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A question after the user's own act: a title, a line or two, answers at the right, the best one last.
+// A dialog that asks a question. It has a title, a line of text or two, and a button for each answer at the lower
+// right; the recommended answer is the last one.
 #pragma once
 
 #include <functional>
@@ -12,15 +13,15 @@ namespace limber::editor {
 
 struct Answer {
   std::string label;
-  std::function<void(Editor&)> act;  // empty: nothing is done
-  bool primary = false;              // Return chooses it
+  std::function<void(Editor&)> act;  // called when the user selects the answer; empty: nothing happens
+  bool primary = false;              // Return selects this answer
 };
 
 struct Question {
   std::string title;
   std::vector<std::string> lines;
   const char* icon = "";
-  std::vector<Answer> answers;  // Escape means the first, when that does nothing; else it closes the question alone
+  std::vector<Answer> answers;  // from left to right; Escape closes the dialog without an answer
 };
 
 void ask(Editor& editor, Question question);

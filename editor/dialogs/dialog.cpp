@@ -13,7 +13,7 @@ Rect begin_dialog(Editor& editor, const std::string& title, float width, float h
   const glm::vec2 corner = glm::round((window - size) * 0.5f);
   const Rect rect{corner, corner + size};
 
-  // The dimmed rest of the window takes every press.
+  // This region dims the whole window and catches every press of a mouse button outside the dialog.
   begin_region(editor, Region::Dialog, "dim", editor.layout.window, with_alpha(0xFF000000, 0.45f));
   end_region(editor);
   begin_region(editor, Region::Dialog, "dialog", rect, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The frame of a dialog. A panel derives from Dialog (editor.h) and is put into Editor::dialog.
+// Draws the frame of a dialog: its background, title and Close button. The dialog itself derives from Dialog (editor.h)
+// and is opened by Editor::open_dialog().
 #pragma once
 
 #include <functional>
@@ -9,8 +10,9 @@
 
 namespace limber::editor {
 
-// Centred on the window, everything behind it dimmed; height 0: as high as its content. Width and height at scale 1.
-// Returns the content's rectangle. `close`: what its cross does, in place of closing Editor::dialog.
+// Begins a dialog in the middle of the window and dims everything behind it. Width and height are pixels at scale 1.
+// Returns the rectangle of the dialog's content. The Close button calls `close`; if that is empty, it closes
+// Editor::dialog.
 Rect begin_dialog(Editor& editor, const std::string& title, float width, float height,
                   const std::function<void()>& close = {});
 void end_dialog(Editor& editor);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture = 240;
 constexpr std::size_t kMostBeside = 4;
-constexpr int kMostLines = 5;  // of what comes out
+constexpr int kMostLines = 5;  // largest number of lines for the text that says what the action will do
 
 bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
   const Look& look = editor.look;
@@ -55,21 +55,22 @@ class Form final : public Dialog {
  private:
   FormRequest request_;
   bool accept_ = false;
-  bool focused_ = false;               // the first field that is typed into has been given the keyboard
-  std::string words_;                  // of the last picture: what it is laid out for
-  std::vector<std::string> problems_;  // of each field, as they stood when no button was down: what it is laid out for
+  bool focused_ = false;               // whether the first text or number field has been given the keyboard
+  std::string words_;                  // text of the action's outcome, for which the dialog is laid out
+  std::vector<std::string> problems_;  // each field's problem for which the dialog is laid out; "" for none
 };
 
-// What is wrong with a number; empty where nothing is.
+// Returns what is wrong with the number in a field, for the user; "" if it is in range or the field holds no number.
 std::string problem_of(const FormField& field) {
   if (field.kind != FormField::Kind::Number || (field.value >= field.low && field.value <= field.high)) return "";
   char low[48], high[48];
   std::snprintf(low, sizeof low, field.format, field.low);
   std::snprintf(high, sizeof high, field.format, field.high);
-  return std::string("From ") + low + " to " + high + (*field.unit ? std::string(" ") + field.unit : "") + ".";
+  return std::string("Enter a number from ") + low + " to " + high +
+         (*field.unit ? std::string(" ") + field.unit : "") + ".";
 }
 
-// Without what is wrong with it; at scale 1.
+// Returns the height of a field's row in pixels at scale 1, without the line for its problem.
 float height_of(const Look& look, const FormField& field) {
   if (field.kind != FormField::Kind::Fact) return kRow;
   return std::max(
@@ -80,7 +81,7 @@ void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float description =
       height_of_wrapped(look.fonts.regular, request_.description, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
-  // Nothing moves under a pressed button.
+  // The layout changes only while the left mouse button is up, so that nothing moves under the pointer during a press.
   if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
     problems_.clear();
     for (const FormField& field : request_.fields) problems_.push_back(problem_of(field));
@@ -182,7 +183,7 @@ bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_w
     committed =
         judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
   if (ImGui::IsItemHovered())
-    tooltip(editor, rect, field.label, field.description + "\nDrag it, or click it and type.");
+    tooltip(editor, rect, field.label, field.description + "\nDrag to change the number, or click and type.");
   return committed;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A dialog of a few fields and one thing to do with them. Enter does it, Escape leaves.
+// A dialog with a few fields and one action that uses their values. Enter runs the action, Escape closes the dialog.
 #pragma once
 
 #include <functional>
@@ -13,15 +13,15 @@ namespace limber::editor {
 
 struct FormField {
   std::string label;
-  std::string description;  // its tool tip
+  std::string description;  // the field's tool tip
 
   enum class Kind { Number, Choice, Text, Fact } kind = Kind::Number;
-  double value = 0, low = 0, high = 1;  // of a number
+  double value = 0, low = 0, high = 1;  // for a Number
   const char* format = "%.0f";
   const char* unit = "";
-  std::vector<std::string> choices;  // of a choice; up to four stand beside one another, more in a list
+  std::vector<std::string> choices;  // for a Choice: up to four are shown as buttons in a row, more as a list
   int chosen = 0;
-  std::string text;  // of a text; of a fact, which cannot be changed
+  std::string text;  // for a Text (the user edits it) or a Fact (only shown)
 };
 FormField number_of(std::string label, std::string description, double value, double low, double high,
                     const char* format, const char* unit = "");
@@ -30,32 +30,35 @@ FormField choice_of(std::string label, std::string description, std::vector<std:
 FormField text_of(std::string label, std::string description, std::string text);
 FormField fact_of(std::string label, std::string text);
 
-// Nothing is wrong, but the fields ask for nothing yet.
+// Thrown by FormRequest::outcome while the user still has to fill in fields. `words` tells the user so; it is not shown
+// as an error.
 struct NotYet {
   std::string words;
 };
 
-// What becomes of a number that is typed outside its range: the nearest in it, or it stays, to be refused.
+// What happens to a typed number outside its range. Clamped: it is set to the nearest limit. Stays: it is kept, and the
+// form refuses it.
 enum class OutOfRange { Clamped, Stays };
 
-// A row of a field, its label so wide at its left. True when its value was changed: numbers once they are let go, or
-// typed.
-//   focus  what is typed goes into it
+// Draws a row with a label at the left and a field. Returns true when the user has changed the field's value; for a
+// number, in the frame in which the drag or typing ends.
+//   focus  gives the field the keyboard
 bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus = false,
                 OutOfRange numbers = OutOfRange::Clamped);
 
-// A number outside its range is refused with a line under its field, and the button waits. The first field that is
-// typed into has the keyboard.
+// The contents of a form. A number outside its range disables the form's primary button, and a line under the field
+// says why. The first text or number field gets the keyboard.
 struct FormRequest {
   std::string title;
-  std::string description;  // what it does, above the fields
-  std::string action;       // the primary button's word
+  std::string description;  // what the form does; shown above the fields
+  std::string action;       // the label of the primary button
   std::vector<FormField> fields;
-  // Below the fields, anew whenever they change: what will come out of it. Throws Error for what cannot be done: shown
-  // in place of it, and the button waits. So it does without a warning where a NotYet is thrown.
+  // Returns a text that says what the action will do with these fields; it is shown below the fields. If the action
+  // cannot be done, throws Error: the error's text is shown instead and the button is disabled. Throws NotYet to
+  // disable the button without a warning.
   std::function<std::string(const Editor&, const std::vector<FormField>&)> outcome;
   std::function<void(Editor&, const std::vector<FormField>&)> act;
-  // Beside the fields, where there is one: what the fields mean, as a picture.
+  // Draws a picture beside the fields that shows what the fields mean. Empty: no picture.
   std::function<void(Editor&, const Rect&, const std::vector<FormField>&)> picture;
 };
 std::unique_ptr<Dialog> make_form(FormRequest request);

@@ -25,7 +25,7 @@ void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, co
 
 std::string why_not_redo(const Editor& editor) {
   const LastOperation& last = *editor.last_operation;
-  if (editor.modal) return "Finish what you are doing first";
+  if (editor.modal) return "Finish or cancel the active tool first";
   if (!last.label.empty() && last.revision == editor.history.revision()) return "";
   if (editor.history.position() == 0) return "Nothing has been done yet";
   return editor.history.steps()[editor.history.position()].label + " has nothing to adjust";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The operation that was done last, done again with other numbers, as Blender's redo panel does: each change takes its
-// step back and does it anew, so that it stays one step of the history. What acts once and can act again with other
-// values hands itself over here: forms and transforms all do.
+// Lets the user change the numbers of the last operation afterwards, as Blender's redo panel does. Each change undoes
+// the operation and does it again with the new numbers, so that the history keeps one step. Forms and transforms run
+// their operations by act_and_allow_redo(), which allows this.
 #pragma once
 
 #include <cstdint>
@@ -17,33 +17,36 @@ namespace limber::editor {
 using ActWith = std::function<void(Editor&, const std::vector<FormField>&)>;
 
 struct LastOperation {
-  std::string label;  // of its edit; "" for none
+  std::string label;  // the history's label of its edit; "": there is nothing to redo
   std::vector<FormField> fields;
-  std::vector<FormField> shown = fields;  // while one of them is dragged
+  std::vector<FormField> shown = fields;  // the fields as displayed, which differ from `fields` while the user drags
   ActWith act;
-  std::int64_t revision = -1;  // of the document that it left
-  bool made_a_step = true;     // not where its numbers come to nothing
+  // The history's revision after the operation. The operation can be redone only while this is the current revision.
+  std::int64_t revision = -1;
+  bool made_a_step = true;  // false: the operation changed nothing, so there is no step to undo
 
-  Selection selection;  // before it
+  Selection selection;  // the selection before the operation, restored before it is redone
   TransformSettings::Part part = TransformSettings::Part::Whole;
 
-  bool unfolded = false;  // its box in the view
+  bool unfolded = false;  // whether the operation's panel in the view is unfolded
   bool wanted_at_pointer = false;
 };
 
-// Acts, and may do so again where that made one step.
-//   first  what it does this time, where that is not the act with these fields
+// Calls act(editor, fields). If that adds exactly one step to the history, the user may redo it with other fields.
+//   first  is called this time in place of `act`, if not empty; later calls use `act`
 void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
                         const std::function<void(Editor&)>& first = {});
 
-// Why there is nothing to adjust now; "" where there is.
+// Returns why the last operation cannot be adjusted now; "" when it can.
 std::string why_not_redo(const Editor& editor);
-// What is thrown becomes a message, and all stays as it was.
+// Undoes the last operation and does it again with other fields. If it throws, the error is shown as a message and the
+// document stays as it was.
 void redo_last_operator(Editor& editor, const std::vector<FormField>& fields);
 
-// At the lower left of a view.
+// Draws the panel with the last operation's fields at the lower left of a view.
 void draw_last_operation(Editor& editor, const Rect& view);
-// At the pointer, once wanted.
+// Draws the panel with the last operation's fields as a popup, which opens at the pointer when
+// LastOperation::wanted_at_pointer is set.
 void draw_last_operation_popup(Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The program's own documents, read in the window: chapters at the left, the text beside them.
+// A dialog that shows the program's own documents: chapters at the left, the text at the right.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,11 @@
 
 namespace limber::editor {
 
-// `asset_name`: a Markdown file of the assets. Throws Error when it is missing.
+// Makes a dialog that shows a Markdown file of the assets. Throws Error when the file is missing.
 std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name);
 
-// A document with the rows of the program's tables, as words, in place of "{table.volume_formats}" and the like.
+// Replaces marks such as "{table.volume_formats}" in a document by the contents of the program's tables, so that the
+// documents always list what the program supports. Returns the new text.
 std::string with_tables(std::string text);
 
 }  // namespace limber::editor

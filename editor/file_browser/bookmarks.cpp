@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRecentFolders = 6;
 
-// Disks and sticks that are mounted where desktops mount them.
+// Adds the disks and memory sticks that are mounted under /media, /run/media and /mnt, where desktops mount them.
 void add_volumes(std::vector<Place>& places) {
   const char* user = std::getenv("USER");
   for (const Path& base : {user ? Path("/media") / user : Path("/media"),

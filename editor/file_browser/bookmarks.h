@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where file dialogs lead with one click: the project's folder, home and its usual folders, disks, folders of recent
-// files.
+// Lists the folders that file dialogs offer at the left: the project's folder, home and its usual folders, disks, and
+// folders of recent files.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct Place {
   std::string name;
   Path path;
 };
-std::vector<Place> places_of(const Editor& editor);  // those that are there
+std::vector<Place> places_of(const Editor& editor);  // folders that do not exist are left out
 bool is_folder(const Path& path);
 
 }  // namespace limber::editor

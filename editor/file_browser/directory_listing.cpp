@@ -19,14 +19,15 @@ using Clock = std::chrono::steady_clock;
 namespace {
 
 constexpr auto kPublishEvery = std::chrono::milliseconds(50);
-constexpr int kDicomTries = 16;  // files without a known end that are looked into
+constexpr int kDicomTries = 16;  // at most this many files of a folder are opened to check for DICOM
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
-// Scanners write names without an end, or .dcm, .ima.
+// Returns whether a file may be DICOM, judged by its name. Scanners write names without an extension, with digits as
+// the extension, or with the extension .dcm or .ima.
 bool may_be_dicom(const std::string& name) {
   const std::string end = lower(Path(name).extension().string());
   const bool number = end.size() > 1 && std::all_of(end.begin() + 1, end.end(), [](char c) {
@@ -55,7 +56,8 @@ struct DirectoryReader::Board {
   bool news = false, stop = false;
   std::function<void()> on_change;
 
-  // False when nobody listens any more.
+  // Makes the entries read so far available to DirectoryReader::news(). Returns false if the DirectoryReader has been
+  // destroyed.
   bool publish(const DirectoryContents& now) {
     const std::lock_guard lock(mutex);
     if (stop) return false;
@@ -86,7 +88,7 @@ void DirectoryReader::read(const std::shared_ptr<Board>& board, const Path& fold
     published = Clock::now();
   }
   if (error)
-    contents.failure = error == std::errc::permission_denied ? "You may not look into this folder"
+    contents.failure = error == std::errc::permission_denied ? "You have no permission to read this folder"
                        : error == std::errc::no_such_file_or_directory
                            ? "This folder does not exist"
                            : "This folder cannot be read: " + error.message();
@@ -146,7 +148,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     ++j;
   }
   if ((i < a.size()) != (j < b.size())) return i >= a.size();
-  return a < b;  // equal but for case or leading zeros
+  return a < b;  // here the names differ only in case or in leading zeros
 }
 
 std::vector<int> shown_entries(const std::vector<DirectoryEntry>& entries, const DirectoryView& view) {

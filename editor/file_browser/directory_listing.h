@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A folder's entries, read in a thread of their own, so that a slow disk or a hundred thousand files stop nobody; and
-// what a file dialog shows of them: filtered by type and name, sorted by a column.
+// Reads a folder's entries in a thread of its own, so that a slow disk or a hundred thousand files do not block the
+// editor. Also selects and sorts the entries that a file dialog shows: by type and name, and by a column.
 #pragma once
 
 #include <condition_variable>
@@ -21,7 +21,7 @@ struct DirectoryEntry {
   std::string name;
   bool folder = false;
   std::uint64_t size = 0;  // bytes
-  std::int64_t time = 0;   // of the last change, s since 1970
+  std::int64_t time = 0;   // time of the last change, s since 1970
 
   bool operator==(const DirectoryEntry&) const = default;
 };
@@ -30,20 +30,20 @@ struct DirectoryContents {
   std::vector<DirectoryEntry> entries;
   bool holds_dicom = false;
   bool complete = false;
-  std::string failure;  // why it cannot be read, one line
+  std::string failure;  // why the folder cannot be read, one line; empty: no failure
 };
 
 class DirectoryReader {
  public:
-  // `on_change` is called from the reader's thread.
+  // Starts to read the folder. `on_change` is called from the reader's thread whenever more entries have been read.
   explicit DirectoryReader(Path folder, std::function<void()> on_change = {});
-  ~DirectoryReader();  // does not wait for a disk that hangs
+  ~DirectoryReader();  // does not wait for the reader's thread, since a disk may hang
   DirectoryReader(const DirectoryReader&) = delete;
   DirectoryReader& operator=(const DirectoryReader&) = delete;
 
   const Path& folder() const { return folder_; }
-  bool wait(double seconds) const;  // until it is complete; false when it is not
-  // What is there by now; nothing when that has not changed since the last call.
+  bool wait(double seconds) const;  // waits until the folder has been read; returns false when the time is over
+  // Returns the contents read so far, or nothing if they have not changed since the last call.
   std::optional<DirectoryContents> news();
 
  private:
@@ -53,23 +53,24 @@ class DirectoryReader {
   std::shared_ptr<Board> board_;
 };
 
-// A kind of files: "Volumes" by the ends of their names; no ends: all files.
+// A type of files, such as "Volumes", recognized by the endings of their names. With no endings, it includes all files.
 struct FileFilter {
   std::string name;
-  std::vector<std::string> ends;  // lower case, with the dot
+  std::vector<std::string> ends;  // in lower case, with the dot: ".mha"
 };
 bool matches(const FileFilter& filter, const std::string& name);
 
 enum class SortBy { Name, Size, Time };
 struct DirectoryView {
-  const FileFilter* filter = nullptr;  // of files; folders are always shown
-  std::string search;                  // what names must hold, in any case of letters
+  const FileFilter* filter = nullptr;  // which files are shown (folders always are); null: all
+  std::string search;                  // text that shown names must contain, ignoring case
   bool hidden = false;
   bool folders_only = false;
   SortBy by = SortBy::Name;
   bool falling = false;
 };
-// Places in `entries` of what is shown: folders first, names in the order a reader expects ("scan 9" before "scan 10").
+// Returns the indices of the entries to show, in the order to show them: folders first. Numbers in names are sorted by
+// their value ("scan 9" before "scan 10").
 std::vector<int> shown_entries(const std::vector<DirectoryEntry>& entries, const DirectoryView& view);
 bool natural_less(const std::string& a, const std::string& b);
 

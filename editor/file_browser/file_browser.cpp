@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kFirstWait = 0.08;  // s that the editor waits for a folder, so that most appear at once
-constexpr int kPage = 12;            // rows of PageUp and PageDown
+constexpr double kFirstWait = 0.08;  // longest wait for a folder's entries, s, so that most folders appear at once
+constexpr int kPage = 12;            // rows that PageUp and PageDown move by
 
 bool pressed(Key key, bool repeat = false) { return ImGui::IsKeyPressed(static_cast<int>(key), repeat); }
 bool pressed_return() { return pressed(Key::Return) || pressed(Key::NumEnter); }
 
-// Refuses, with a message, to write over what the project was read from. True when it has.
+// Returns whether writing to this path would overwrite a file that the project was read from. If so, warns the user.
 bool refuses_to_write(Editor& editor, const Path& path, bool as_project) {
   std::vector<NamedFile> inputs = editor.inputs, outputs;
   if (!as_project && !editor.project_path.empty()) inputs.push_back({"the project", editor.project_path});
@@ -165,7 +165,7 @@ void FileBrowser::set_name(const std::string& name) {
   refocus_ = true;
 }
 
-// In place of the one that the name has.
+// Replaces the ending of the name to save by the filter's first ending. Does nothing if the name's ending is unknown.
 void FileBrowser::take_ending(const FileFilter& filter) {
   if (filter.ends.empty()) return;
   std::size_t longest = 0;
@@ -250,10 +250,11 @@ void FileBrowser::enter(Editor& editor, const DirectoryEntry& entry) {
 void FileBrowser::make_folder(Editor& editor) {
   const Path path = folder_ / *new_folder_;
   if (new_folder_->empty() || new_folder_->find('/') != std::string::npos)
-    return void(remark_ = "A folder's name is not empty and holds no /");
+    return void(remark_ = "A folder's name must not be empty or contain /");
   std::error_code error;
   if (!fs::create_directory(path, error))
-    return void(remark_ = error ? "The folder cannot be made: " + error.message() : "It is there already");
+    return void(remark_ = error ? "The folder cannot be created: " + error.message()
+                                : "There already is a file or folder of this name");
   new_folder_.reset();
   go_to(editor, path);
 }

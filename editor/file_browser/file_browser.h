@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The dialog in which files and folders are chosen, to open or to save: places at the left, the folder's path above a
-// list of name, size and date, a filter by type. Typing searches names; arrows, Return, Backspace, Tab and Escape do
-// all that the mouse does. It begins where it was left for the same purpose.
+// The dialog in which the user selects a file or folder to open or to save. It shows bookmarks at the left, the path of
+// the current folder, a list of its entries (name, size, date), and a filter by file type. Typing searches the names.
+// The arrow keys, Return, Backspace, Tab and Escape can do all that the mouse can. The dialog opens in the folder that
+// was last used for the same purpose.
 #pragma once
 
 #include <functional>
@@ -16,16 +17,17 @@ namespace limber::editor {
 struct FileRequest {
   enum class Kind { Open, OpenFolder, Save };
 
-  std::string purpose;  // where one was is remembered for each
+  std::string purpose;  // what the file is for; the last folder is remembered for each purpose
   std::string title;
-  std::string action;  // the primary button's word
+  std::string action;  // the label of the primary button
   Kind kind = Kind::Open;
-  std::vector<FileFilter> filters;  // the first is chosen; "All files" is added; when saving, its first end is appended
-  std::string name;                 // proposed, when saving
-  bool takes_dicom = false;         // a folder of DICOM images is offered to be opened as one
-  Path folder;                      // to begin in, where the purpose has none yet
+  std::vector<FileFilter> filters;  // file types to show; the first is active, "All files" is added; saving appends the
+                                    // active type's first ending
+  std::string name;                 // for saving: the proposed file name
+  bool takes_dicom = false;         // whether to offer to open a folder of DICOM images as one volume
+  Path folder;                      // folder to begin in if none was used for the purpose yet
   std::function<void(Editor&, const Path&)> chosen;
-  std::function<void(Editor&)> left;  // without a choice; may be empty
+  std::function<void(Editor&)> left;  // called when the dialog is closed without a selection; may be empty
 };
 
 void browse(Editor& editor, FileRequest request);

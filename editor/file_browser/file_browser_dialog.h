@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The dialog behind browse(): file_browser.cpp is what it does, file_browser_view.cpp how it looks.
+// The file dialog that browse() opens. file_browser.cpp defines what it does, file_browser_view.cpp draws it.
 #pragma once
 
 #include <memory>
@@ -25,17 +25,18 @@ class FileBrowser final : public Dialog {
   bool folders_only() const { return request_.kind == FileRequest::Kind::OpenFolder; }
 
   void go_to(Editor& editor, const Path& folder);
-  // What has been read meanwhile, and the rows it makes.
+  // Takes over the folder's entries that the reader has read since the last call, and updates the list's rows.
   void follow(Editor& editor);
   void arrange_rows(Editor& editor);
   const DirectoryEntry* chosen() const { return row_ < std::ssize(rows_) ? &contents_.entries[rows_[row_]] : nullptr; }
   void select(const std::string& name);
   bool path_is_typed() const { return search_.starts_with("/") || search_.starts_with("~"); }
 
-  // Keys: everything without a mouse.
+  // Handles the pressed keys. The keyboard can do all that the mouse can.
   void take_keys(Editor& editor);
   void move_row(Editor&);
-  // A field that is being typed in knows only what was typed: a text from elsewhere makes it another field.
+  // Sets the text of the name field. The field gets a new ImGui id, since ImGui ignores a new text for a field that is
+  // being typed in.
   void set_name(const std::string& name);
   void take_ending(const FileFilter& filter);
   void go_up(Editor& editor);
@@ -43,7 +44,7 @@ class FileBrowser final : public Dialog {
 
   void leave(Editor& editor);
   void finish(Editor& editor, const Path& path);
-  // Return or the primary button.
+  // Handles Return and the primary button: opens or saves the selected file, or enters the selected folder.
   void accept(Editor& editor);
   void accept_typed(Editor& editor);
   void accept_name(Editor& editor);
@@ -51,14 +52,15 @@ class FileBrowser final : public Dialog {
   void make_folder(Editor& editor);
 
   void draw_places(Editor& editor, const Rect& rect);
-  // Crumbs, from the left as many of the last as fit; at the right the search.
+  // Draws the folder's path as a row of buttons, one for each folder in it, and the search field at the right. If not
+  // all fit, the last folders of the path are drawn.
   void draw_path(Editor& editor, const Rect& rect);
   static std::string crumb(const Path& path);
   void draw_search(Editor& editor, const Rect& rect);
-  // The one field of text has the keyboard whenever nothing else is being pressed.
+  // Returns whether the dialog's text field should take the keyboard. It should whenever no other widget is in use.
   bool wants_focus(Editor& editor);
   void draw_list(Editor& editor, const Rect& rect);
-  // True when it is to be opened.
+  // Draws the row of a file or folder. Returns true when the row was double clicked.
   bool draw_row(Editor& editor, const DirectoryEntry& entry, const Rect& row, int index, const glm::vec2& columns,
                 std::int64_t now);
   static const char* icon_of(const std::string& name);
@@ -78,7 +80,7 @@ class FileBrowser final : public Dialog {
   Path folder_;
   std::unique_ptr<DirectoryReader> reader_;
   DirectoryContents contents_;
-  std::vector<int> rows_;  // shown, as places in the contents
+  std::vector<int> rows_;  // the list's rows, as indices of contents_.entries
   std::string search_, name_, remark_, select_after_reading_;
   std::optional<std::string> new_folder_;
   std::optional<Path> replace_;
@@ -88,8 +90,8 @@ class FileBrowser final : public Dialog {
   bool falling_ = false, changed_ = true, reveal_ = false, refocus_ = true, row_moved_ = false, filter_open_ = false,
        focus_new_folder_ = false;
   bool text_was_empty_ = true;
-  bool seen_ = false;       // the key that opened it does nothing in it
-  bool had_error_ = false;  // keys belong to the message above
+  bool seen_ = false;  // drawn in an earlier frame; before that, a pressed key may be the one that opened the dialog
+  bool had_error_ = false;  // true: an error message covered the dialog in the last frame and gets the keys
 };
 
 }  // namespace limber::editor

@@ -67,7 +67,7 @@ void FileBrowser::draw_path(Editor& editor, const Rect& rect) {
   const float search_width = saving() ? 0 : look.px(190), middle = rect.centre().y, half = look.px(13);
   const Rect up{{rect.low.x + look.px(10), middle - half}, {rect.low.x + look.px(36), middle + half}};
   if (button(editor, "Up", up, {"\uf062", "", ButtonStyle::Flat, folder_ != "/"})) go_up(editor);
-  if (ImGui::IsItemHovered()) tooltip(editor, up, "Up", "To the folder that this one is in (Backspace).");
+  if (ImGui::IsItemHovered()) tooltip(editor, up, "Up", "Go to the parent folder (Backspace).");
   const PathScope scope(editor, "path");
   std::vector<Path> steps;
   for (Path step = folder_;; step = step.parent_path()) {
@@ -112,7 +112,7 @@ std::string FileBrowser::crumb(const Path& path) {
 void FileBrowser::draw_search(Editor& editor, const Rect& rect) {
   const std::string before = search_;
   ImGui::PushID(text_);
-  text_field(editor, "Search names", rect, search_, "Type to search, or a path", wants_focus(editor));
+  text_field(editor, "Search names", rect, search_, "Search names, or type a path", wants_focus(editor));
   ImGui::PopID();
   if (search_ != before) {
     changed_ = reveal_ = true;
@@ -220,7 +220,7 @@ void FileBrowser::column_head(Editor& editor, const char* title, const Rect& rec
   put_text(editor, look.fonts.small, by_ == by || state.hovered ? look.theme.text : look.theme.text2, rect, words,
            align);
   if (!state.clicked) return;
-  falling_ = by_ == by ? !falling_ : by != SortBy::Name;  // the largest and the latest first
+  falling_ = by_ == by ? !falling_ : by != SortBy::Name;  // sizes and dates: largest and latest first
   by_ = by;
   changed_ = reveal_ = true;
 }
@@ -231,7 +231,7 @@ float FileBrowser::draw_dicom_offer(Editor& editor, const Rect& rect) {
   fill({rect.low, {rect.low.x + look.px(3), rect.high.y}}, look.theme.accent_text);
   put_text(editor, look.fonts.regular, look.theme.text,
            Rect{{rect.low.x + look.px(14), rect.low.y}, {rect.high.x - look.px(190), rect.high.y}},
-           "This folder holds DICOM images");
+           "This folder contains DICOM images");
   const Rect place{{rect.high.x - look.px(180), rect.low.y + look.px(7)},
                    {rect.high.x - look.px(10), rect.high.y - look.px(7)}};
   if (button(editor, "Open as one volume", place, {icon::kVolume, "Open as one volume"})) finish_folder(editor);
@@ -252,7 +252,8 @@ float FileBrowser::draw_new_folder(Editor& editor, const Rect& rect) {
     make_folder(editor);
     return rect.high.y;
   }
-  if (button(editor, "No folder", {{rect.high.x - look.px(80), field.low.y}, {rect.high.x - look.px(10), field.high.y}},
+  if (button(editor, "Cancel new folder",
+             {{rect.high.x - look.px(80), field.low.y}, {rect.high.x - look.px(10), field.high.y}},
              {"", "Cancel", ButtonStyle::Flat}))
     new_folder_.reset();
   return rect.high.y;
@@ -261,12 +262,12 @@ float FileBrowser::draw_new_folder(Editor& editor, const Rect& rect) {
 void FileBrowser::draw_empty(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   std::string words = !contents_.failure.empty() ? contents_.failure : !contents_.complete ? "Reading\u2026" : "";
-  if (words.empty() && !search_.empty() && !path_is_typed()) words = "No name holds \u201c" + search_ + "\u201d";
-  if (words.empty() && path_is_typed()) words = "Return goes to this path";
+  if (words.empty() && !search_.empty() && !path_is_typed()) words = "No name contains \u201c" + search_ + "\u201d";
+  if (words.empty() && path_is_typed()) words = "Press Return to open this path";
   if (words.empty())
     words = contents_.entries.empty() ? "This folder is empty"
-            : folders_only()          ? "No folders here"
-                                      : "Nothing of this type here";
+            : folders_only()          ? "This folder contains no folders"
+                                      : "This folder contains no files of this type";
   put_text(editor, look.fonts.regular, contents_.failure.empty() ? look.theme.text2 : look.theme.warn, rect, words,
            Align::Centre);
 }
@@ -282,7 +283,8 @@ void FileBrowser::draw_foot(Editor& editor, const Rect& rect) {
     focus_new_folder_ = true;
   }
   if (ImGui::IsItemHovered())
-    tooltip(editor, {{x, low}, {x + look.px(30), high}}, "New folder", "Makes a folder in the one that is shown.");
+    tooltip(editor, {{x, low}, {x + look.px(30), high}}, "New folder",
+            "Create a new folder in the folder that is shown.");
   x += look.px(34);
   bool hidden = editor.recent_files.hidden_files;
   if (checkbox(editor, "Hidden files", {{x, low}, {x + look.px(104), high}}, "Hidden files", hidden))
@@ -363,7 +365,7 @@ void FileBrowser::draw_replace(Editor& editor, const Rect& rect) {
            icon::kWarning);
   put_text(editor, look.fonts.regular, look.theme.text,
            Rect{{rect.low.x + look.px(42), low}, {rect.high.x - look.px(210), high}},
-           replace_->filename().string() + " is there already");
+           replace_->filename().string() + " already exists");
   float right = rect.high.x - look.px(12);
   const Path path = *replace_;
   if (button(editor, "Replace", {{right - look.px(88), low}, {right, high}}, {"", "Replace"}))

@@ -15,8 +15,8 @@ ScratchFolder::ScratchFolder(const std::string& inside) {
   const Path base = inside.empty() ? std::filesystem::temp_directory_path(failure) : Path(inside);
   std::string name = (base / "limber-XXXXXX").string();
   if (!::mkdtemp(name.data()))
-    throw Error("no scratch folder can be made", base.string(),
-                std::string(std::strerror(errno)) + ": choose another one in the preferences");
+    throw Error("the scratch folder cannot be created", base.string(),
+                std::string(std::strerror(errno)) + ": select another one in the preferences");
   path_ = name;
   unfinished_ = std::make_unique<Unfinished>(path_);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A folder for files on their way: empty at first, gone with all that is in it at the end; after a crash, at the next
-// start.
+// A temporary folder, which is empty at first. The destructor deletes it with its content. After a crash, the next
+// start of the program deletes it.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@ namespace limber::editor {
 
 class ScratchFolder {
  public:
-  //   inside  "": where the system keeps such files
-  //   throws Error when it cannot be made
+  // Makes the temporary folder. Throws Error when it cannot be made.
+  //   inside  the parent folder; "": the system's folder for temporary files
   explicit ScratchFolder(const std::string& inside);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

@@ -19,7 +19,8 @@ std::string thumbnail_png(Editor& editor) {
   scene.outlined.reset();
   scene.dark_background = true;
   render::View3D picture(views.renderer);
-  // The second call comes after a long rest: a whole picture at once.
+  // Each call advances the clock `now` by a second. The renderer so takes the view to be idle, and draws it in full
+  // detail.
   for (double now = 0; now == 0 || !picture.complete(); now += 1)
     picture.draw(scene, views.body.camera, kThumbnailSize, now, 1);
   return render::png_of(picture.read());
@@ -57,7 +58,7 @@ void look_at_recents(Editor& editor) {
         if (!packed.empty()) one.picture = std::make_shared<render::Image>(render::parse_png(packed, path.string()));
         else if (!cache.empty())
           one.picture = std::make_shared<render::Image>(render::read_png(cached_thumbnail(cache, path)));
-      } catch (const Error&) {  // none
+      } catch (const Error&) {  // a picture that cannot be read is left out
       }
     }
     return [facts](Editor& e) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small pictures of projects and volumes for the start screen: drawn by the renderer itself, kept in the project's
-// file, or in the cache for volumes.
+// Makes and stores small pictures of projects and volumes for the start screen. A project's picture is stored in the
+// project's file, a volume's picture in the cache folder.
 #pragma once
 
 #include <map>
@@ -14,14 +14,17 @@ namespace limber::editor {
 
 inline constexpr glm::ivec2 kThumbnailSize{240, 160};  // pixels
 
-// The body as the 3D view shows it now, as a PNG; "" without a volume.
+// Renders the body as the 3D view shows it now. Returns the picture as the bytes of a PNG file; "" without a volume.
 std::string thumbnail_png(Editor& editor);
-// Keeps it in the cache for the file at `path`, which has no place for a picture of its own. Failures do not matter.
+// Stores the current picture in the cache folder for the volume file at `path`, which cannot hold a picture itself.
+// Failures are ignored.
 void keep_thumbnail(Editor& editor, const Path& path);
-// Where it is kept: the name changes with the file.
+// Returns the path in the cache folder of the picture of the file at `path`. The picture's name changes whenever the
+// file changes.
 Path cached_thumbnail(const Path& cache, const Path& path);
 
-// Finds out, beside the editor, which recent files are still there, and their pictures: into Editor::recent_facts.
+// Starts a background task that finds out which recent files still exist, reads their pictures, and sets
+// Editor::recent_facts.
 void look_at_recents(Editor& editor);
 
 }  // namespace limber::editor

@@ -32,7 +32,7 @@ namespace limber::editor {
 
 namespace {
 
-// As it moves the rig; without a rig, the motion itself.
+// Returns the rig's motion in the active clip's frame range; without a rig, returns the clip's own motion.
 Motion motion_of_clip(const Document& document) {
   const std::shared_ptr<const Clip> clip = document.clips[static_cast<std::size_t>(document.clip)];
   if (!document.armature) return *clip->motion;
@@ -66,7 +66,7 @@ void check_export(ExportKind kind, const Path& path) {
   else check_place(path);
 }
 
-// A picture of the body, drawn to its end.
+// Draws the body in as many frames as a complete picture needs, and returns the picture.
 render::Image picture_of_body(Views& views, const render::Camera& camera, const glm::ivec2& size) {
   render::View3D picture(views.renderer);
   for (double now = 0; now == 0 || !picture.complete(); now += 1) picture.draw(views.scene, camera, size, now, 1);
@@ -78,7 +78,8 @@ glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
   return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
 }
 
-// Pictures that the editor's thread has drawn (the context is its own), for the task that writes them.
+// Passes pictures from the editor's thread to the task that writes them. The editor's thread draws them, because it
+// owns the GL context.
 struct TurntableBoard {
   std::mutex mutex;
   std::condition_variable changed;
@@ -99,17 +100,18 @@ std::string why_not_export(const Editor& editor, ExportKind kind) {
   switch (kind) {
     case ExportKind::Volume:
     case ExportKind::Tissues: return document.volume ? "" : "Open a volume first";
-    case ExportKind::Rig: return document.armature ? "" : "There is no rig yet";
-    case ExportKind::Weights: return document.weights ? "" : "There are no weights yet";
-    case ExportKind::Pose: return document.pose ? "" : "There is no pose yet";
+    case ExportKind::Rig: return document.armature ? "" : "Import a rig first";
+    case ExportKind::Weights: return document.weights ? "" : "Compute the weights first";
+    case ExportKind::Pose: return document.pose ? "" : "There is no pose yet: pose the rig first";
     case ExportKind::Motion:
-      return document.shown_clip() && (document.armature || document.shown_clip()->motion) ? ""
-                                                                                           : "There is no motion yet";
+      return document.shown_clip() && (document.armature || document.shown_clip()->motion)
+                 ? ""
+                 : "There is no motion yet: import one first";
     case ExportKind::Gltf:
       return !document.volume     ? "Open a volume first"
-             : !document.armature ? "There is no rig yet"
+             : !document.armature ? "Import a rig first"
              : document.weights   ? ""
-                                  : "There are no weights yet";
+                                  : "Compute the weights first";
   }
   return "";
 }
@@ -128,7 +130,7 @@ void export_file(Editor& editor, ExportKind kind, const Path& path) {
 
 namespace {
 
-// Of the label that most rest voxels in a tet have.
+// Returns the posed mesh for exporters. A tet's label is the most frequent label of the voxels inside it at rest.
 TetMesh posed_mesh(const Result& result, const TissueTable& tissues) {
   const SolvedMesh& solved = *result.solved;
   const LabelVolume& rest = *result.from_volume;
@@ -153,7 +155,7 @@ std::vector<TissueMaterial> materials_at(const TissueTable& tissues, double freq
   std::string unmatched;
   for (const std::string& name : found.unmatched) unmatched += (unmatched.empty() ? "" : ", ") + name;
   if (!unmatched.empty())
-    throw Error("no dielectric properties are known of: " + unmatched, "tissues",
+    throw Error("no dielectric properties are known for: " + unmatched, "tissues",
                 "rename or merge them, or convert the exported volume with `limber convert --properties`");
   return std::move(found.materials);
 }
@@ -172,7 +174,7 @@ void write_with(const Exporter& exporter, const Result& result, const TissueTabl
                path);
 }
 
-//   frequency  Hz, of exporters that go by it
+// Starts the task that writes the result. frequency: of the simulated field, Hz; only some exporters use it.
 void start_export(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
   const Document& document = editor.document();
   const auto tissues = result->from_tissues ? result->from_tissues : document.tissues;
@@ -195,22 +197,22 @@ void ask_frequency(Editor& editor, const std::shared_ptr<const Result>& result, 
   const auto tissues = result->from_tissues ? result->from_tissues : editor.document().tissues;
   const auto outcome = [tissues](const Editor&, const std::vector<FormField>& fields) {
     return std::to_string(materials_at(*tissues, fields[0].value * 1e6).size()) +
-           " tissues with permittivity and conductivity of the published tables.";
+           " tissues get permittivity and conductivity from the published tables.";
   };
   const auto act = [result, path](Editor& e, const std::vector<FormField>& fields) {
     start_export(e, result, path, fields[0].value * 1e6);
   };
   editor.open_dialog(make_form({"Export " + path.filename().string(),
-                                "Permittivity and conductivity of tissue go by the frequency of the field.",
+                                "The permittivity and conductivity of tissue depend on the frequency of the field.",
                                 "Export",
-                                {number_of("Frequency", "Of the field that is simulated.", 900, kLowestFrequency / 1e6,
-                                           kHighestFrequency / 1e6, "%g", "MHz")},
+                                {number_of("Frequency", "The frequency of the simulated field.", 900,
+                                           kLowestFrequency / 1e6, kHighestFrequency / 1e6, "%g", "MHz")},
                                 outcome,
                                 act,
                                 {}}));
 }
 
-// A page of all results, oldest first.
+// Starts the task that writes a report page of all results, oldest first, and opens it.
 void export_page(Editor& editor, const Path& path) {
   const Document& document = editor.document();
   SessionPage session{editor.name.empty() ? "Untitled" : Path(editor.name).stem().string(), {}, document.tissues};
@@ -236,7 +238,7 @@ void export_result(Editor& editor, const std::shared_ptr<const Result>& result, 
   if (exporter) check_place(path);
   else check_writable(path);
   if (exporter && !exporter->takes_voxels && !has_mesh(*result))
-    throw Error("the result has no mesh", result->name, "choose one by finite elements that bends something");
+    throw Error("the result has no mesh", result->name, "select a FEM result whose pose bends a joint");
   if (exporter && exporter->needs_frequency) ask_frequency(editor, result, path);
   else start_export(editor, result, path, 0);
 }
@@ -267,7 +269,7 @@ void export_picture(Editor& editor, const Path& path) {
 
 namespace {
 
-// A turn of the body, one picture a frame, so that the editor stays live.
+// The state of a running turntable. It draws one picture per frame, so that the editor stays responsive.
 struct Turntable {
   std::unique_ptr<render::View3D> view;
   render::Camera camera;
@@ -315,7 +317,7 @@ void begin_turntable(Editor& editor, const Path& path, int pictures) {
   turn->camera = editor.views->body.camera;
   turn->size = size_of_view(editor, ViewId::Body);
   turn->pictures = pictures;
-  // Of the body as it was when the turn began, whatever is done to it meanwhile.
+  // The scene is a copy, so that edits during the turn do not change the later pictures.
   editor.each_frame.push_back([board, turn, scene = editor.views->scene](Editor& e) {
     const std::lock_guard lock(board->mutex);
     if (board->over || turn->drawn >= turn->pictures) return false;
@@ -341,7 +343,7 @@ void export_turntable(Editor& editor, const Path& path, int pictures) {
   ask(editor,
       {.title = "Replace pictures?",
        .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " + last +
-                     " are there already.",
+                     " already exist.",
                  path.parent_path().string()},
        .icon = icon::kWarning,
        .answers = {{"Cancel", {}}, {"Replace", [path, pictures](Editor& e) { begin_turntable(e, path, pictures); }}}});

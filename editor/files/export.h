@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files go out, beside the live editor; each whole or not at all.
+// Exports parts of the project, results, reports and pictures. Tasks write the files while the editor stays responsive;
+// a file is written completely or not at all.
 #pragma once
 
 #include "editor/context/editor.h"
@@ -7,18 +8,20 @@
 namespace limber::editor {
 
 enum class ExportKind { Volume, Tissues, Rig, Weights, Pose, Motion, Gltf };
-std::string why_not_export(const Editor& editor, ExportKind kind);  // "" when there is something to write
+// Returns why this part of the project cannot be exported now; "" when it can.
+std::string why_not_export(const Editor& editor, ExportKind kind);
 void export_file(Editor& editor, ExportKind kind, const Path& path);
-// As the name says: a volume, surfaces, what a simulation takes (which may ask for its frequency first), or the posed
-// mesh.
+// Writes the result in the format of the file's ending: a volume, surfaces, the posed mesh, or the input of a
+// simulation program. For some programs, a dialog first asks for the frequency of the simulated field.
 void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
-// .html: a page of all results, which the desktop's browser then shows. JSON as it is, or by another ending a text to
-// read.
+// Writes a report in the format of the file's ending. `.html`: a page of all results, which the browser then opens.
+// `.json`: the result's report as stored. Any other ending: the result's report as readable text.
 void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
 
-// The active view as it is shown now, without the window around it.
+// Writes the active view as shown now, without the window around it.
 void export_picture(Editor& editor, const Path& path);
-// NAME-0000.png and on: the 3D view turned all around, one picture a frame so that the editor stays live.
+// Writes the pictures NAME-0000.png, NAME-0001.png and so on, in which the camera turns once around the body. Draws one
+// picture per frame, so that the editor stays responsive.
 void export_turntable(Editor& editor, const Path& path, int pictures = 36);
 
 }  // namespace limber::editor

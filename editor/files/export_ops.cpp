@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parts of the project, results and their reports, and pictures into files.
+// Operators that export parts of the project, results, reports and pictures.
 #include <algorithm>
 
 #include "core/export/exporter.h"
@@ -21,11 +21,11 @@ std::string stem_of(const Editor& editor) {
 struct ExportFacts {
   const char *id, *label, *description;
   ExportKind kind;
-  std::vector<FileFilter> filters;  // the first one's first end is proposed
-  const char* suffix;               // of the proposed name
+  std::vector<FileFilter> filters;  // formats; the first one's first ending is proposed
+  const char* suffix;               // appended to the proposed file name
 };
 
-// "Export glTF" of "glTF...".
+// Returns the dialog title for an operator's label: "glTF..." -> "Export glTF".
 std::string title_of(const std::string& label) { return "Export " + label.substr(0, label.find("...")); }
 
 Operator export_operator(const ExportFacts& facts) {
@@ -67,15 +67,16 @@ Operator picture_operator(const char* id, const char* label, const char* descrip
           needs_volume};
 }
 
-// A name that files can have: "Fore 30°, DQ" -> "limb, Fore 30°, DQ".
+// Returns a file name made of the project's and the result's names: "limb, Forearm, DQ". Replaces "/" by "-", because
+// file names cannot contain it.
 std::string file_name_of(const Editor& editor, const Result& result) {
   std::string name = stem_of(editor) + ", " + result.name;
   std::replace(name.begin(), name.end(), '/', '-');
   return name;
 }
 
-// Of the result that the table is about, whatever is shown when the file is chosen.
-//   name  that is proposed, without its end
+// Asks for a file and writes the currently selected result to it, even if another result is selected when the user
+// accepts the file. name: proposed file name without its ending.
 void browse_for_result(Editor& editor, const std::string& title, const char* purpose, const std::string& name,
                        const std::vector<FileFilter>& filters,
                        void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
@@ -98,70 +99,71 @@ std::vector<FileFilter> formats_of(const Result& result) {
 }
 
 std::string needs_result(const Editor& editor) {
-  return editor.document().results.empty() ? "Nothing was resampled yet" : "";
+  return editor.document().results.empty() ? "Resample a pose first" : "";
 }
 
 }  // namespace
 
 std::vector<Operator> export_operators() {
   return {
-      export_operator({"file.export_volume", "Volume...", "Writes the labelled voxels.", ExportKind::Volume,
+      export_operator({"file.export_volume", "Volume...", "Export the volume with its labels.", ExportKind::Volume,
                        writable_volumes(), ""}),
       export_operator(
           {"file.export_tissues",
            "Tissues...",
-           "Writes names, colours and kinds of the tissues.",
+           "Export the names, colours and kinds of the tissues.",
            ExportKind::Tissues,
            {{"Limber tissues", {".json"}}, {"Slicer colour table", {".ctbl"}}, {"ITK-SNAP labels", {".txt"}}},
            "-tissues"}),
       export_operator({"file.export_rig",
                        "Rig...",
-                       "Writes the skeleton at rest.",
+                       "Export the skeleton in its rest pose.",
                        ExportKind::Rig,
                        {{"Limber rig", {".json"}}, {"Bender armature", {".vtk"}}, {"BVH", {".bvh"}}},
                        "-rig"}),
       export_operator({"file.export_weights",
                        "Weights...",
-                       "Writes how tissue follows the bones.",
+                       "Export the weights that tell how tissue follows the bones.",
                        ExportKind::Weights,
                        {{"Weights", {".nrrd"}}},
                        "-weights"}),
       export_operator({"file.export_pose",
                        "Pose...",
-                       "Writes the pose of the rig.",
+                       "Export the current pose of the rig.",
                        ExportKind::Pose,
                        {{"Limber pose", {".json"}}},
                        "-pose"}),
       export_operator({"file.export_motion",
                        "Motion...",
-                       "Writes the motion as BVH.",
+                       "Export the active motion as BVH.",
                        ExportKind::Motion,
                        {{"BVH", {".bvh"}}},
                        "-motion"}),
       export_operator({"file.export_gltf",
                        "glTF...",
-                       "Writes the surface, the skeleton, the weights and every clip for other programs.",
+                       "Export the surface, skeleton, weights and every clip for other programs.",
                        ExportKind::Gltf,
                        {{"glTF", {".glb"}}},
                        ""}),
       {"file.export", "Export...", icon::kExport, "Result",
-       "Writes the chosen result: voxels, surfaces, or what openEMS, gprMax and others take.",
+       "Export the selected result as voxels, as surfaces, or as input for openEMS, gprMax and others.",
        [](Editor& e) {
          browse_for_result(e, "Export " + chosen_result(e)->name, "export", file_name_of(e, *chosen_result(e)),
                            formats_of(*chosen_result(e)), export_result);
        },
        needs_result},
       {"report.open", "Report...", icon::kReport, "Result",
-       "Writes a page of all results, with pictures and gates, and opens it; or the chosen one's figures as text or "
-       "JSON.",
+       "Write a page of all results with pictures and quality gates and open it, or write the selected result's report "
+       "as text or JSON.",
        [](Editor& e) {
          browse_for_result(e, "Report", "report", stem_of(e) + "-results",
                            {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},
                            export_report);
        },
        needs_result},
-      picture_operator("view.screenshot", "Picture...", "Writes the active view as a PNG.", "", export_picture),
-      picture_operator("view.turntable", "Turntable...", "Writes 36 pictures all around the body.", "-turn",
+      picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", "", export_picture),
+      picture_operator("view.turntable", "Turntable...",
+                       "Export 36 pictures of the body, with the camera turning once around it.", "-turn",
                        [](Editor& e, const Path& path) { export_turntable(e, path); }),
   };
 }

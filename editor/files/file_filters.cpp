@@ -24,7 +24,7 @@ std::vector<FileFilter> writable_volumes() {
 }
 
 FileFilter readable_files() {
-  FileFilter filter{"All that can be opened", {".limber"}};
+  FileFilter filter{"All supported files", {".limber"}};
   const std::vector<std::string> volumes = volume_files().ends;
   filter.ends.insert(filter.ends.end(), volumes.begin(), volumes.end());
   for (const char* ending : {".bvh", ".json", ".vtk", ".arm", ".gltf", ".glb", ".ctbl"}) filter.ends.push_back(ending);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the operators of files have in common.
+// File filters for dialogs, and the operators that open recent files.
 #pragma once
 
 #include "editor/context/editor.h"
@@ -8,11 +8,11 @@
 namespace limber::editor {
 
 inline constexpr int kRecentOperators = 10;
-// "file.recent_1" and on: one operator for each of the latest files.
+// Creates the operators "file.recent_1" and so on, one for each recent file.
 void name_recent_operators(Editor& editor);
 
-FileFilter volume_files();                   // every format that can be read
-std::vector<FileFilter> writable_volumes();  // one for each format
-FileFilter readable_files();                 // all that can be opened
+FileFilter volume_files();                   // one filter for all volume formats that can be read
+std::vector<FileFilter> writable_volumes();  // a filter for each volume format that can be written
+FileFilter readable_files();                 // one filter for all files that can be opened
 
 }  // namespace limber::editor

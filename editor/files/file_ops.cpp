@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects: made, opened, saved, left.
+// Operators that create, open, save and recover projects, and quit the editor.
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/file_browser/file_browser.h"
@@ -46,10 +46,10 @@ void recover_latest(Editor& editor) {
   const Recoverable latest = all.front();
   answers.push_back({"Discard", [latest](Editor& e) { discard_leftover(e, latest); }});
   answers.push_back({"Recover", [latest](Editor& e) { recover(e, latest); }, true});
-  const std::string name = latest.project.empty() ? "A project without a name" : latest.project.stem().string();
+  const std::string name = latest.project.empty() ? "An unnamed project" : latest.project.stem().string();
   ask(editor, {.title = "Recover unsaved edits",
                .lines = {name + " closed unexpectedly. " + std::to_string(latest.edits) +
-                         " edits are kept, the last one: " + latest.label + "."},
+                         " unsaved edits can be recovered. The last one: " + latest.label + "."},
                .icon = icon::kHistory,
                .answers = std::move(answers)});
 }
@@ -62,42 +62,45 @@ void quit(Editor& editor) {
 }
 
 Operator sample(const char* id, Sample which) {
-  return {
-      id, facts_of(which).name, icon::kVolume, "File", "Opens a made-up body to try things on.", [which](Editor& e) {
-        open_sample(e, which);
-      }};
+  return {id,
+          facts_of(which).name,
+          icon::kVolume,
+          "File",
+          "Open a synthetic body to try the editor on.",
+          [which](Editor& e) { open_sample(e, which); }};
 }
 
 std::string nothing_open(const Editor& editor) {
   return editor.document().volume || editor.document().armature || !editor.document().clips.empty()
              ? ""
-             : "There is nothing to save yet";
+             : "The project is empty: there is nothing to save";
 }
 
 }  // namespace
 
 std::vector<Operator> file_operators() {
   return {
-      {"file.new", "New", icon::kNew, "File", "Begins an empty project.", new_project},
-      {"file.open", "Open...", icon::kOpen, "File", "Opens a project, or a volume, rig or motion as a new one.", open},
+      {"file.new", "New", icon::kNew, "File", "Start an empty project.", new_project},
+      {"file.open", "Open...", icon::kOpen, "File", "Open a project, or a volume, rig or motion as a new project.",
+       open},
       {"file.open_recent", "Start screen", icon::kHistory, "File",
-       "Shows recent projects, samples and what can be recovered.", show_start_screen},
+       "Show recent projects, samples and recoverable edits.", show_start_screen},
       sample("file.sample_arm", Sample::Arm),
       sample("file.sample_arm_xray", Sample::ArmXray),
       sample("file.sample_body", Sample::Body),
       sample("file.sample_body_open", Sample::BodyTissues),
-      {"file.save", "Save", icon::kSave, "File", "Writes what changed into the project's file.",
+      {"file.save", "Save", icon::kSave, "File", "Save the changes to the project's file.",
        [](Editor& e) { save_project(e); }, nothing_open},
-      {"file.save_as", "Save as...", "", "File", "Writes the project under another name and goes on with that.",
+      {"file.save_as", "Save as...", "", "File", "Save the project under another name. Later edits go to the new file.",
        [](Editor& e) { ask_where_to_save(e); }, nothing_open},
       {"file.save_copy", "Save a copy...", "", "File",
-       "Writes the project under another name and goes on with this one.", save_copy, nothing_open},
-      {"help.tour", "Tour", icon::kTour, "Help", "Shows the editor on a sample, step by step.", start_tour},
-      {"file.recover", "Recover...", icon::kHistory, "File", "Recovers unsaved changes after a crash.", recover_latest,
+       "Save a copy of the project under another name. Later edits stay in the current file.", save_copy, nothing_open},
+      {"help.tour", "Tour", icon::kTour, "Help", "Show the main steps of the editor on a sample body.", start_tour},
+      {"file.recover", "Recover...", icon::kHistory, "File", "Recover unsaved changes after a crash.", recover_latest,
        [](const Editor& e) {
          return e.life.recoverable.empty() ? std::string("There is nothing to recover") : std::string();
        }},
-      {"file.quit", "Quit", icon::kClose, "File", "Ends the editor.", quit},
+      {"file.quit", "Quit", icon::kClose, "File", "Close the editor; asks about unsaved changes.", quit},
   };
 }
 
@@ -106,7 +109,7 @@ void name_recent_operators(Editor& editor) {
   for (int i = 0; i < std::min<int>(kRecentOperators, std::ssize(editor.recent_files.recents)); ++i) {
     const Path path = editor.recent_files.recents[i].path;
     editor.operators.push_back({"file.recent_" + std::to_string(i + 1), path.filename().string(), icon::kHistory,
-                                "File", "Opens " + short_path(path) + ".",
+                                "File", "Open " + short_path(path) + ".",
                                 [path](Editor& e) { open_files(e, {path}); }});
   }
 }

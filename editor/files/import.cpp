@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kLargestJson = 64 << 20;  // bytes of a rig or pose
+constexpr std::uint64_t kLargestJson = 64 << 20;  // largest accepted JSON file of a rig or pose, bytes
 
 std::string extension_of(const Path& path) {
   std::string end = path.extension().string();
@@ -48,7 +48,7 @@ FileKind kind_of_json(const Path& path) {
   if (is_tissue_table(path)) return FileKind::Tissues;
   const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestJson), path.string()), nullptr, false);
   if (json.is_object() && json.contains("bones")) return json["bones"].is_array() ? FileKind::Rig : FileKind::Pose;
-  throw Error("this JSON file is neither a rig, a pose nor a tissue table", path.string(), "choose another file");
+  throw Error("this JSON file is neither a rig, a pose nor a tissue table", path.string(), "select another file");
 }
 
 template <class T>
@@ -62,7 +62,8 @@ void warn_of(Editor& editor, const Path& path, const std::vector<std::string>& w
   for (const std::string& warning : warnings) editor.messages.warn(path.filename().string(), warning);
 }
 
-// What was made for another volume does not fit this one.
+// Returns a document that has the file's tissues and volume type. It has no rig or weights, because those of the
+// previous document were made for another volume.
 Document with_volume(const VolumeFile& file) {
   Document document;
   document.tissues = shared(merge_tissue_tables(file.tissues, nullptr));
@@ -87,7 +88,7 @@ std::string name_of(FileKind kind) {
   return "";
 }
 
-// The file, and what is read with a volume.
+// Returns the file itself and, for a volume, the other files that are read with it.
 std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
   std::vector<NamedFile> inputs;
   for (const Path& file : kind == FileKind::Volume ? files_of_volume(path) : std::vector<Path>{path})
@@ -95,13 +96,14 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
   return inputs;
 }
 
-// ---- work: reads beside the editor, fits against the document as it was then
+// ---- reading in tasks, with a copy of the document made when the task began
 
-// A volume's file: labels, a grey image, or both where whole values look like one.
+// The content of a volume file: labels, or a grey image. It is both if its values are whole numbers, as labels are, but
+// look like grey values.
 struct ReadVolume {
   std::optional<VolumeFile> labels;
   std::shared_ptr<const GreyVolume> image;
-  std::string doubt;  // of an image: why it is no label volume
+  std::string doubt;  // why the file seems to be a grey image and no label volume; "": it is labels
 };
 
 ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
@@ -110,7 +112,7 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
     read.labels = read_volume(path, progress);
   } catch (const Error&) {
     if (summarize_volume(path).is_label) throw;
-    read.doubt = "its values are no whole numbers, or more than 65 535";
+    read.doubt = "its values are not whole numbers, or exceed 65 535";
   }
   if (read.labels)
     if (const auto doubt = grey_image_doubt(read.labels->volume, read.labels->tissues)) read.doubt = *doubt;
@@ -118,7 +120,7 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   return read;
 }
 
-// Labels go in; of a grey image it is shown first, and only an answer takes it as labels.
+// Opens labels at once. Shows a grey image in a dialog first, and opens it as labels only if the user agrees.
 void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
   if (!read.image) return take(editor);
   show_grey_image(editor, {.image = read.image,
@@ -132,25 +134,26 @@ using Change = std::function<void(Document&)>;
 struct Import {
   Change change;
   std::vector<std::string> warnings;
-  double inside = 1;     // of a rig: the share of its bones' length that is in tissue
-  ReadVolume read = {};  // of a volume
+  double inside = 1;     // for a rig: fraction of its bone length inside tissue
+  ReadVolume read = {};  // for a volume: its content
   std::vector<NamedFile> inputs = {};
 };
 
 Import read_tissues(const Path& path, const Document& now) {
-  if (!now.volume) refuse("tissues need a volume", path, "open the volume that they name first");
+  if (!now.volume) refuse("tissues need a volume", path, "open their volume first");
   const TissueTable table = read_tissue_table(path);
   const bool any = std::any_of(table.tissues.begin(), table.tissues.end(),
                                [&](const Tissue& t) { return now.tissues->find_file_value(t.file_value); });
-  if (!any) refuse("none of these tissues is in the volume", path, "choose the table that belongs to it");
+  if (!any) refuse("none of these tissues is in the volume", path, "select the table of this volume");
   auto merged = shared(merge_tissue_tables(*now.tissues, &table));
   return {[merged](Document& d) { d.tissues = merged; }};
 }
 
-// A rig of which less is in tissue belongs to another body or to other units.
+// Least fraction of a rig's bone length that should lie inside tissue. Below it, the rig probably belongs to another
+// body or uses another unit of length.
 constexpr double kMisplaced = 0.5;
 
-// A BVH file's joints stand upright whichever of its axes points up.
+// Reads a rig. BVH files normally have y up; one with z up is rotated, so that the rig stands upright.
 ArmatureFile read_upright(const Path& path) {
   if (extension_of(path) != ".bvh") return read_armature_file(path);
   Motion motion = read_bvh(path);
@@ -161,7 +164,8 @@ ArmatureFile read_upright(const Path& path) {
   if (up.by == UpGuess::By::Nothing) up = up_axis_of(motion);
   if (up.axis == UpAxis::Z) rest = y_up_from_z_up(rest);
   ArmatureFile file{armature_of(rest), "BVH", motion.warnings};
-  if (up.axis == UpAxis::Z) file.warnings.push_back("Its z axis points up (" + reason_of(up) + "): turned upright.");
+  if (up.axis == UpAxis::Z)
+    file.warnings.push_back("Its z axis points up (" + reason_of(up) + "), so it was turned upright.");
   return file;
 }
 
@@ -196,11 +200,11 @@ Import read_pose_file(const Path& path, const Document& now) {
 
 Import read_motion(const Path& path) {
   Motion read = read_bvh(path);
-  if (read.frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or choose another file");
+  if (read.frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or select another file");
   if (const UpGuess up = up_axis_of(read); up.axis == UpAxis::Z) {
     read = y_up_from_z_up(read);
     read.warnings.push_back("Its z axis points up (" + reason_of(up) +
-                            "): turned upright. File > Import > Motion lets you choose.");
+                            "), so it was turned upright. File > Import > Motion lets you select the axis.");
   }
   auto motion = shared(std::move(read));
   return {[motion, name = path.stem().string()](Document& d) { add_clip(d, clip_for(d, motion, name)); },
@@ -232,7 +236,7 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
           file.warnings, 1, std::move(read)};
 }
 
-// What an import was fitted against must still be there when it ends.
+// Returns whether the parts of the document that an import depends on are the same at its end (now) as at its start.
 bool same_basis(FileKind kind, const Document& then, const Document& now) {
   if (kind == FileKind::Volume || kind == FileKind::Motion) return true;
   if (then.volume != now.volume) return false;
@@ -240,7 +244,7 @@ bool same_basis(FileKind kind, const Document& then, const Document& now) {
                                    : kind == FileKind::Rig || then.armature == now.armature;
 }
 
-// Each file once the one before it is in.
+// Opens the files one after another. Each waits until the one before it is part of the document.
 void open_in_order(Editor& editor, std::vector<std::pair<FileKind, Path>> files, Then then) {
   if (files.empty()) {
     if (then) then(editor);
@@ -273,18 +277,19 @@ FileKind kind_of(const Path& path) {
   if (fs::is_directory(path, error)) {
     if (is_dicom_folder(path)) return FileKind::Volume;
     throw Error("this folder holds no DICOM images", path.string(),
-                "choose the folder in which the images themselves lie");
+                "select the folder that contains the images themselves");
   }
   if (is_project(path)) return FileKind::Project;
   const std::string end = extension_of(path);
   if (end == ".limber")
-    throw Error("this is no Limber project, or its beginning is damaged", path.string(), "choose another file");
+    throw Error("this is not a Limber project, or its beginning is damaged", path.string(), "select another file");
   if (end == ".json") return kind_of_json(path);
   if (end == ".bvh") return FileKind::Motion;
   if (end == ".vtk" || end == ".arm" || end == ".gltf" || end == ".glb") return FileKind::Rig;
   if (is_weights_path(path)) return FileKind::Weights;
   if (is_volume_path(path)) return FileKind::Volume;
-  return is_tissue_table(path) ? FileKind::Tissues : FileKind::Volume;  // a volume's reader says what is wrong with it
+  // An unknown file counts as a volume, because the volume reader reports what is wrong with it.
+  return is_tissue_table(path) ? FileKind::Tissues : FileKind::Volume;
 }
 
 void open_files(Editor& editor, std::vector<Path> paths, Then then) {
@@ -300,7 +305,8 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
     std::stable_sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 1; i < files.size(); ++i)
       if (files[i].first <= FileKind::Volume)
-        throw Error("these are several volumes or projects", files[i].second.string(), "open one of them");
+        throw Error("only one volume or project can be opened at a time", files[i].second.string(),
+                    "open one of these files");
     return [files, then](Editor& e) { open_in_order(e, files, then); };
   });
 }
@@ -345,7 +351,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
         import->inputs = inputs_of(kind, path);
         const Finish take = [import, kind, path, then, before](Editor& e) {
           if (!same_basis(kind, before, e.document()))
-            refuse("the project changed while the file was read", path, "import it once more");
+            refuse("the project changed while the file was read", path, "import it again");
           Document next = e.document();
           import->change(next);
           commit(e, imported(path), std::move(next));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files come in: told apart by their content, read beside the live editor, and taken only when they are whole and fit
-// what is open. A volume or a project takes the open one's place; everything else is an edit of the open project.
+// Opens and imports files. The kind of a file is found from its content. Tasks read the files while the editor stays
+// responsive; a file changes the project only if it is complete and fits the project. A volume or a project replaces
+// the open one; any other file is imported as an edit of the open project.
 #pragma once
 
 #include <string>
@@ -11,27 +12,29 @@
 
 namespace limber::editor {
 
-// In the order in which files that come together are taken in.
+// Kinds of files. If several files are opened together, they are imported in this order.
 enum class FileKind { Project, Volume, Tissues, Rig, Weights, Motion, Pose };
-// Throws Error for what is missing, or is of no kind that is read.
+// Returns the kind of a file. Throws Error if the file is missing or of no kind that can be read.
 FileKind kind_of(const Path& path);
 
-// Dropped, given on the command line, or chosen in Open: what they are is found out first.
+// Opens files that were dropped, given on the command line, or selected in the Open dialog. Finds out their kinds
+// first.
 void open_files(Editor& editor, std::vector<Path> paths, Then then = {});
 void open_volume(Editor& editor, const Path& path, Then then = {});
 
-// Into the open project, as one edit. A volume replaces the open one and all that was made for it. A grey image is only
-// shown (panels/grey_image.h), here and in open_volume, until an answer takes it as labels all the same.
+// Imports a file into the open project as one edit. A volume replaces the open one and removes everything made for it.
+// As in open_volume(), a grey image is first shown in a dialog (editor/volume/grey_image_panel.h), and becomes a label
+// volume only if the user agrees.
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then = {});
 
 enum class Sample { Arm, ArmXray, Body, BodyTissues };
 struct SampleFacts {
-  const char *name, *facts, *picture;  // of assets/samples
+  const char *name, *facts, *picture;  // picture: a file in assets/samples
 };
 const SampleFacts& facts_of(Sample sample);
 void open_sample(Editor& editor, Sample sample, Then then = {});
 
-// The files that were dropped or given on the command line.
+// Opens the files that were dropped or given on the command line and are not open yet.
 void open_waiting_files(Editor& editor);
 
 }  // namespace limber::editor

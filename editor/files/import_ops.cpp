@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files into the open project.
+// Operators that import files into the open project.
 #include "editor/context/operator_polls.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/files/file_filters.h"
@@ -47,7 +47,7 @@ void import_dicom(Editor& editor) {
                   .chosen = [](Editor& e, const Path& path) { open_files(e, {path}); }});
 }
 
-// Whatever it is: a volume replaces, the rest is added.
+// Imports a file of any kind. A volume replaces the open one; any other file is added to the project.
 void import_any(Editor& editor) {
   browse(editor, {.purpose = "import",
                   .title = "Import",
@@ -75,40 +75,41 @@ std::string needs_rig(const Editor& editor) { return editor.document().armature 
 
 std::vector<Operator> import_operators() {
   return {
-      {"file.import", "Import...", icon::kImport, "File", "Brings a file of any kind into the open project.",
+      {"file.import", "Import...", icon::kImport, "File", "Import a file of any kind into the open project.",
        import_any},
-      import_operator({"file.import_volume", "Volume...", "Replaces the volume; what was made for the old one goes.",
+      import_operator({"file.import_volume", "Volume...",
+                       "Import a volume in place of the open one. Removes everything made for the old volume.",
                        FileKind::Volume, volume_files()},
                       nullptr),
-      {"file.import_dicom", "DICOM folder...", icon::kImport, "File", "Opens a folder of images as one volume.",
+      {"file.import_dicom", "DICOM folder...", icon::kImport, "File", "Open a folder of DICOM images as one volume.",
        import_dicom},
       import_operator({"file.import_rig",
                        "Rig...",
-                       "Brings a skeleton into the project.",
+                       "Import a skeleton into the project.",
                        FileKind::Rig,
                        {"Rigs", {".json", ".vtk", ".arm", ".bvh", ".gltf", ".glb"}}},
                       nullptr),
       import_operator({"file.import_motion",
                        "Motion...",
-                       "Brings a BVH motion into the project.",
+                       "Import a BVH motion into the project.",
                        FileKind::Motion,
                        {"Motions", {".bvh"}}},
                       nullptr),
       import_operator({"file.import_weights",
                        "Weights...",
-                       "Brings skin weights into the project.",
+                       "Import skin weights into the project.",
                        FileKind::Weights,
                        {"Weights", {".nrrd", ".mha"}}},
                       needs_rig_and_volume),
       import_operator({"file.import_tissues",
                        "Tissues...",
-                       "Names, colours and kinds of the tissues.",
+                       "Import the names, colours and kinds of the tissues.",
                        FileKind::Tissues,
                        {"Tissue tables", {".json", ".ctbl", ".txt", ".label"}}},
                       needs_volume),
       import_operator({"file.import_pose",
                        "Pose...",
-                       "Brings a pose of the rig into the project.",
+                       "Import a pose of the rig into the project.",
                        FileKind::Pose,
                        {"Poses", {".json"}}},
                       needs_rig),

@@ -38,7 +38,7 @@ Project project_of(Editor& editor) {
   return project;
 }
 
-// After a save, in the editor's thread.
+// Marks the revision as saved. Call it in the editor's thread after a save.
 void met_save(Editor& editor, const Path& path, std::int64_t revision, const std::string& remark) {
   editor.history.mark_saved(revision);
   editor.life.saved_at = seconds_now();
@@ -48,7 +48,7 @@ void met_save(Editor& editor, const Path& path, std::int64_t revision, const std
   if (!remark.empty()) editor.messages.info(path.filename().string(), remark);
 }
 
-// The journal has the latest state before the file is written: so a save that fails loses nothing.
+// Writes the latest state to the session's journal, so that a save that fails loses no edits. Returns the session.
 std::shared_ptr<Session> session_with_edits(Editor& editor) {
   auto session = session_of(editor);
   session->keep(editor.document(), editor.history.steps()[editor.history.position()].label);
@@ -75,8 +75,8 @@ void open_copy(Editor& editor, const Path& path, Then then) {
 void offer_copy(Editor& editor, const Path& path, Then then) {
   ask(editor,
       {.title = path.filename().string() + " is open in another Limber",
-       .lines = {"Two editors never write one project. Close it there, or look at a copy of its last save: the copy is "
-                 "saved under a name of its own."},
+       .lines = {"Only one editor can write a project. Close it there, or open a copy of its last save and save that "
+                 "under another name."},
        .icon = icon::kInfo,
        .answers = {{"Cancel", {}}, {"Open a copy", [path, then](Editor& e) { open_copy(e, path, then); }, true}}});
 }
@@ -110,12 +110,13 @@ void offer_leftover(Editor& editor, bool wanted) {
   };
   ask(editor, {.title = session->path().stem().string() + " closed unexpectedly",
                .lines = {counted(leftover->edits) + " after the last save " + (leftover->edits == 1 ? "is" : "are") +
-                         " kept, the last one: " + leftover->label + "."},
+                         " kept for recovery. The last one: " + leftover->label + "."},
                .icon = icon::kSave,
                .answers = {{"Discard", drop}, {"Recover", recover_into_open, true}}});
 }
 
-// Into the project's own file, for those who prefer that to the journal alone.
+// Saves the project's file when the interval set in the preferences has passed. It is for users who want more than the
+// journal, which stores every edit anyway.
 void autosave(Editor& editor) {
   ProjectLife& life = editor.life;
   if (!editor.history.unsaved() || editor.project_path.empty() || editor.preferences.autosave_minutes == 0)
@@ -130,7 +131,7 @@ void autosave(Editor& editor) {
 }  // namespace
 
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
-  // What was edited while the file was being read was not agreed upon.
+  // Before the file was read, the user agreed to discard the unsaved edits. If there are newer edits, ask again.
   if (editor.history.unsaved() && editor.history.revision() != opened->agreed)
     return ask_about_unsaved(editor, [opened](Editor& e) {
       opened->agreed = e.history.revision();
@@ -157,7 +158,7 @@ void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
   try {
     if (!opened->editor.empty()) restore_editor_state(editor, opened->editor);
   } catch (const Error& error) {
-    editor.messages.warn("Views and tools begin anew", error.what());
+    editor.messages.warn("Views and tools were reset", error.what());
   }
   editor.touch();
   if (opened->session) offer_leftover(editor, opened->recover);
@@ -169,7 +170,7 @@ void ask_about_unsaved(Editor& editor, Then go_on) {
   const std::string name = editor.name.empty() ? "this project" : editor.name;
   ask(editor,
       {.title = "Save changes to " + name + "?",
-       .lines = {"Without saving, the edits since the last save are dropped."},
+       .lines = {"If you do not save, the edits since the last save are lost."},
        .icon = icon::kSave,
        .answers = {
            {"Cancel", {}}, {"Don't save", go_on}, {"Save", [go_on](Editor& e) { save_project(e, go_on); }, true}}});
@@ -188,7 +189,7 @@ void open_project(Editor& editor, const Path& path, Then then, Leftover leftover
   std::error_code error;
   const Path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
   if (editor.life.session && editor.life.session->path() == file && !error)
-    return editor.messages.info(path.filename().string(), "It is open already");
+    return editor.messages.info(path.filename().string(), "This project is already open");
   ask_about_unsaved(editor, [file, then, leftover](Editor& e) {
     start_task(
         e, "Open " + file.filename().string(),
@@ -266,7 +267,7 @@ void save_project_copy(Editor& editor, const Path& path) {
   });
 }
 
-// ---- what earlier sittings left
+// ---- recovery of edits left by sessions that ended in a crash
 
 void look_for_leftovers(Editor& editor) {
   if (editor.folders.edits.empty()) return;
@@ -279,7 +280,7 @@ void look_for_leftovers(Editor& editor) {
 void recover(Editor& editor, const Recoverable& leftover) {
   std::error_code ignored;
   const Path beside = leftover.project.empty() ? Path() : journal_path(leftover.project);
-  // A project whose file and journal stand as usual is opened, and offers what is left of itself.
+  // If the project's file exists with its journal beside it, open the project and recover its edits there.
   if (!leftover.project.empty() && std::filesystem::exists(leftover.project, ignored) && leftover.journal == beside)
     return open_project(editor, leftover.project, {}, Leftover::Recover);
   ask_about_unsaved(editor, [leftover](Editor& e) {
@@ -294,7 +295,7 @@ void recover(Editor& editor, const Recoverable& leftover) {
           opened->label = "Recovered: " + recovered.label;
           opened->unsaved = true;
           opened->agreed = agreed;
-          // The old journal goes only when the new one has everything.
+          // The old journal is deleted only when the new one contains all recovered edits.
           opened->session = Session::start(settings);
           opened->session->keep(opened->document, opened->label);
           if (opened->session->flush(60)) limber::discard(leftover.journal, folder.empty() ? edits_folder() : folder);
@@ -324,12 +325,12 @@ void keep_edits(Editor& editor) {
   if (trouble == life.trouble) return;
   life.trouble = trouble;
   editor.touch();
-  if (trouble.empty()) return editor.messages.ok("Your edits are kept again");
+  if (trouble.empty()) return editor.messages.ok("Your edits are saved for recovery again");
   const auto description = trouble.find(". ");
   if (description != std::string::npos)
     return editor.messages.warn(trouble.substr(0, description), trouble.substr(description + 2));
   const ErrorMessage parts = parts_of(trouble);
-  editor.messages.warn("Edits are not kept on disk: " + parts.what,
+  editor.messages.warn("Edits are not saved for recovery: " + parts.what,
                        parts.what_to_do.empty() ? parts.where : parts.what_to_do);
 }
 

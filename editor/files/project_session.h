@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From the first edit to the last save: which file the project is, what of it is saved, and the journal that keeps
-// every edit meanwhile (core/project/session.h). Reading and writing are tasks beside the live editor.
+// Opens, saves and recovers the project. Tracks its file, which edits are saved, and the journal, which stores every
+// edit between saves (core/project/session.h). Tasks read and write files while the editor stays responsive.
 #pragma once
 
 #include <cstdint>
@@ -18,40 +18,41 @@ namespace limber::editor {
 
 using Then = std::function<void(Editor&)>;
 
-// A project's state as it was read, to take the open one's place.
+// A project's state as read from a file, ready to replace the open project.
 struct Opened {
   Document document;
-  std::string name;                        // shown in the top bar
-  std::string label;                       // the first step of the history
-  std::shared_ptr<Session> session;        // of a project's file; null for one that has none yet
-  std::string editor;                      // its views and layout
-  std::shared_ptr<const Extents> extents;  // of its volume; null: found when they are needed
-  bool unsaved = false;                    // as after a recovery
-  std::int64_t agreed = 0;                 // the revision that the user agreed to leave
-  bool recover = false;                    // what a crash left of it is wanted, and needs no question
-  Then then;                               // what goes on after it
-  std::vector<NamedFile> inputs;           // what it was read from, without a project's file
+  std::string name;                        // project name in the top bar
+  std::string label;                       // label of the first step in the history
+  std::shared_ptr<Session> session;        // session of the project's file; null without a file
+  std::string editor;                      // views and layout, as JSON (view_state_json.h)
+  std::shared_ptr<const Extents> extents;  // bounding boxes of the tissues; null: computed when needed
+  bool unsaved = false;                    // true after a recovery: the project counts as unsaved
+  std::int64_t agreed = 0;                 // revision of the open project that the user agreed to replace
+  bool recover = false;                    // true: recover edits left by a crash without asking
+  Then then;                               // called after the project is open
+  std::vector<NamedFile> inputs;           // without a project file: the files that were read
 };
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened);
 
-// Asks whether unsaved edits are to be saved (Save, Don't save, Cancel) before `go_on`; at once when there are none.
+// Asks whether to save unsaved edits (Save, Don't save, Cancel), then calls `go_on`. Without unsaved edits, calls
+// `go_on` at once.
 void ask_about_unsaved(Editor& editor, Then go_on);
 void new_project(Editor& editor);
-enum class Leftover { Ask, Recover };  // what a crash left of the project
+enum class Leftover { Ask, Recover };  // what to do with edits left by a crash
 void open_project(Editor& editor, const Path& path, Then then = {}, Leftover leftover = Leftover::Ask);
 
-// Asks for a name when it has none.
+// Saves the project; asks for a file name if it has none.
 void save_project(Editor& editor, Then then = {});
 void save_project_as(Editor& editor, const Path& path, Then then = {});
 void save_project_copy(Editor& editor, const Path& path);
 void ask_where_to_save(Editor& editor, Then then = {});
 
-// Leftovers of sittings that did not end well.
+// Find, recover or discard the edits left by sessions that ended in a crash.
 void look_for_leftovers(Editor& editor);
 void recover(Editor& editor, const Recoverable& leftover);
 void discard_leftover(Editor& editor, const Recoverable& leftover);
 
-// Once a frame: hands new edits to the journal, and tells of trouble with it.
+// Passes new edits to the journal, and tells the user if they cannot be stored. Call once per frame.
 void keep_edits(Editor& editor);
 
 }  // namespace limber::editor

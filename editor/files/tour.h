@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A short walk through the editor on the sample arm: a bubble points at the real thing, and the step is over when it
-// has been done. Where the user stopped is kept, and goes on there.
+// A short tour of the editor on the sample arm. A bubble points at the widget of each step, and the step ends when the
+// user has done what it says. The current step is stored, so that the tour can resume there later.
 #pragma once
 
 #include <string>
@@ -13,15 +13,15 @@ namespace limber::editor {
 struct Editor;
 
 struct TourStep {
-  const char *title, *text, *widget, *operator_id;  // the operator gives the keys that are shown
+  const char *title, *text, *widget, *operator_id;  // operator_id: the bubble shows its keys
   bool (*done)(const Editor&, const TourStart&);
 };
 const std::vector<TourStep>& tour_steps();
 
 void start_tour(Editor& editor);
-void go_to_step(Editor& editor, int step);  // beyond the last: the tour is over
+void go_to_step(Editor& editor, int step);  // a step beyond the last ends the tour
 void end_tour(Editor& editor);
-// Once a frame: goes on when the step has been done.
+// Goes to the tour's next step when the current step is done. Call once per frame.
 void follow_tour(Editor& editor);
 
 }  // namespace limber::editor

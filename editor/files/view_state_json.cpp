@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr const char* kSchema = "limber-editor/1";
-constexpr double kFarthest = 1e6;  // mm, from which a place is seen or lies
+constexpr double kFarthest = 1e6;  // mm: largest accepted camera distance or coordinate
 
 template <class Vector>
 Json json_of(const Vector& v) {
@@ -37,7 +37,7 @@ void take(const Json& json, const char* key, double low, double high, Number& va
   if (number >= low && number <= high) value = static_cast<Number>(number);
 }
 
-// One of `count` choices, kept as its number.
+// Reads an enum value that is stored as a number. Ignores a number that is not in [0, count).
 template <class Choice>
 void take_choice(const Json& json, const char* key, int count, Choice& value) {
   int number = -1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What of the editor belongs to a project and is not its document: workspace, arrangement of the window, cameras, what
-// is shown. Kept as JSON in the project's file; whatever of it cannot be read is left as it is.
+// Writes and reads the state of the editor that a project's file stores beside the document: workspace, window
+// arrangement, cameras, display settings. It is JSON; a value that cannot be read leaves the editor's value unchanged.
 #pragma once
 
 #include <string>

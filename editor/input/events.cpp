@@ -7,14 +7,14 @@ namespace limber::editor {
 
 namespace {
 
-// A key that inserts the character that comes with it.
+// Returns whether a text field does nothing with the key but insert the key's character.
 bool inserts(Key key, const Modifiers& held) {
   const bool printed =
       (key >= Key::A && key <= Key::Digit9) || key == Key::Space || (key >= Key::Comma && key <= Key::NumPlus);
   return printed && !held.ctrl && !held.alt;
 }
 
-// What of a frame has been seen so far, to tell whether one more event fits.
+// Summarizes the events that a frame has taken so far. fits() tells whether the frame can also take the given event.
 struct Seen {
   KeysFor keys_for;
   Modifiers held;
@@ -29,7 +29,7 @@ struct Seen {
   bool fits(const Wheeled&) const { return !any_button && !any_key; }
   bool fits(const KeyChanged& event) const {
     if (any_button || wheel) return false;
-    if (event.key == Key::Ctrl && event.down && text) return false;  // ImGui takes no text while it is down
+    if (event.key == Key::Ctrl && event.down && text) return false;  // ImGui ignores typed text while Ctrl is down
     if (keys_for == KeysFor::Text && !any_key && (event.key >= Key::Ctrl || inserts(event.key, held))) return true;
     return !keys[static_cast<std::size_t>(event.key)] && !text && !(keys_for == KeysFor::Text && any_key);
   }
@@ -44,7 +44,8 @@ struct Seen {
     if (event.key == Key::Ctrl) held.ctrl = event.down;
     if (event.key == Key::Alt) held.alt = event.down;
     const bool together = keys_for == KeysFor::Text && (event.key >= Key::Ctrl || inserts(event.key, held));
-    // Modifiers go together with the key or button that they modify.
+    // A modifier key (Ctrl, Shift, ...) does not count as a key here, so that the key or button that it modifies still
+    // fits into the same frame.
     if (event.key < Key::Ctrl && !together) any_key = true;
     keys[static_cast<std::size_t>(event.key)] = !together;
   }
@@ -85,7 +86,8 @@ void InputState::apply(const Event& event) {
     wheel_sideways += wheeled->sideways;
   }
   if (const auto* key = std::get_if<KeyChanged>(&event)) keys[static_cast<std::size_t>(key->key)] = key->down;
-  // What is released while another window has the focus is never heard of.
+  // The editor gets no event for keys and buttons that are released while another window has the focus. So all of them
+  // count as released when the focus is lost.
   if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
     std::fill(std::begin(buttons), std::end(buttons), false);
     std::fill(std::begin(keys), std::end(keys), false);
@@ -126,7 +128,7 @@ void tell_imgui(const std::vector<Event>& events, const InputState& state) {
   io.MouseWheelH = state.wheel_sideways;
   for (std::size_t key = 0; key < static_cast<std::size_t>(Key::Count); ++key) io.KeysDown[key] = state.keys[key];
   io.KeyCtrl = state.down(Key::Ctrl);
-  if (io.KeyCtrl) io.KeysDown[static_cast<std::size_t>(Key::Tab)] = false;  // else ImGui lists its own windows
+  if (io.KeyCtrl) io.KeysDown[static_cast<std::size_t>(Key::Tab)] = false;  // Ctrl+Tab would open a list of windows
   io.KeyShift = state.down(Key::Shift);
   io.KeyAlt = state.down(Key::Alt);
   io.KeySuper = state.down(Key::Super);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the user did, in order. The window's callbacks, scripts and tests push events into one queue; each frame takes
-// from it as much as cannot be mistaken: it stops before the second change of a key or button, before a move that
-// follows a press, before text that follows another text's key. So a key pressed and released between two frames is
-// seen twice: down in one frame, up in the next. While a text field has the keyboard, keys that only insert a character
-// go together, up to the next one that does more, such as Backspace. Nothing is dropped.
+// The queue of the user's input events, which the window's callbacks, scripts and tests push. ImGui sees only the state
+// after all events of a frame, not their order. So a frame takes events only as long as their order does not matter: it
+// stops before the second change of the same key or button, before a pointer move that follows a press, and before a
+// key that follows typed text. A key that is pressed and released between two frames is thus down in one frame and up
+// in the next. While a text field has the keyboard, one frame takes all keys that only insert a character, up to the
+// next key that does more, such as Backspace. No event is dropped.
 #pragma once
 
 #include <deque>
@@ -19,20 +20,20 @@
 namespace limber::editor {
 
 struct PointerMoved {
-  glm::vec2 position;  // pixels of the window's picture
+  glm::vec2 position;  // pixels of the window
 };
 struct ButtonChanged {
   MouseButton button;
   bool down;
 };
 struct Wheeled {
-  float steps;         // positive: away from the user
-  float sideways = 0;  // of two fingers on a pad; positive: to the left
+  float steps;         // steps of the mouse wheel; positive: turned away from the user
+  float sideways = 0;  // the same for a sideways swipe on a touch pad; positive: to the left
 };
 struct KeyChanged {
   Key key;
   bool down;
-  bool repeated = false;  // held down
+  bool repeated = false;  // true: sent again because the key is held down
 };
 struct TextTyped {
   char32_t character;
@@ -50,7 +51,8 @@ enum class KeysFor { Commands, Text };
 class EventQueue {
  public:
   void push(Event event);
-  // The events of the next frame, taken out. `held` are the modifiers that are down before them.
+  // Takes the events of the next frame out of the queue. `held` are the modifier keys that are down before these
+  // events.
   std::vector<Event> take_frame(KeysFor keys = KeysFor::Commands, Modifiers held = {});
   bool empty() const;
 
@@ -59,12 +61,12 @@ class EventQueue {
   std::deque<Event> events_;
 };
 
-// Which keys and buttons are down and where the pointer is, after events.
+// The state of the keys, the mouse buttons and the pointer after the events that apply() was called with.
 struct InputState {
-  glm::vec2 pointer{-1e6f};  // outside every region
+  glm::vec2 pointer{-1e6f};  // pixels of the window; at first outside of it
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(Key::Count)] = {};
-  float wheel = 0, wheel_sideways = 0;  // of this frame
+  float wheel = 0, wheel_sideways = 0;  // steps of the mouse wheel in this frame
 
   bool down(Key key) const { return keys[static_cast<std::size_t>(key)]; }
   bool down(MouseButton button) const { return buttons[static_cast<std::size_t>(button)]; }
@@ -72,9 +74,10 @@ struct InputState {
   void apply(const Event& event);
 };
 
-// Gives a frame's events to the current ImGui context, before ImGui::NewFrame. `state` is the one after them.
+// Passes a frame's events to the current ImGui context. `state` is the input state after these events. Call it before
+// ImGui::NewFrame.
 void tell_imgui(const std::vector<Event>& events, const InputState& state);
-// Once per context: which of our keys are ImGui's.
+// Tells the current ImGui context which Key each of ImGui's keys is. Call it once per context.
 void teach_imgui_keys();
 
 }  // namespace limber::editor

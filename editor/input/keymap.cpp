@@ -12,13 +12,13 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::uint64_t kLargestFile = 1 << 20;  // ours has 13 kB; to find clashes takes the square of it
+constexpr std::uint64_t kLargestFile = 1 << 20;  // bytes; the presets have 13 kB. Finding clashes takes quadratic time
 
 Binding binding_of(const nlohmann::json& json, const std::string& context, const Path& path) {
   const std::string place = path.string() + ", context " + context;
   if (!json.is_object() || !json.contains("key") || !json["key"].is_string() || !json.contains("operator") ||
       !json["operator"].is_string())
-    throw Error("a binding needs \"key\" and \"operator\"", place, "complete it");
+    throw Error("a binding needs \"key\" and \"operator\"", place, "add what is missing");
   const std::string key = json["key"];
   const auto chord = chord_from_text(key);
   if (!chord)
@@ -57,7 +57,7 @@ Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
   const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-keymap/1" || !json.contains("contexts") ||
       !json["contexts"].is_object())
-    throw Error("this is not a key map", path.string(), "choose another file");
+    throw Error("this is not a key map", path.string(), "select another file");
   Keymap keymap;
   for (const auto& [context, bindings] : json["contexts"].items()) {
     if (!bindings.is_array())

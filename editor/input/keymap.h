@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which chord starts which operator, by context (global, view3d, slice, select, and one for each workspace); read from
-// assets/keymap.json. The first context in which a chord has a meaning wins, so a key may mean one thing in a place.
+// The key map: which operator a chord (key or button with modifiers) runs in each context. Contexts are global, view3d,
+// slice, select, and one for each workspace. They are searched in order and the first that binds a chord wins, so that
+// a key can have another meaning in one view or workspace. The presets are assets/keymap*.json.
 #pragma once
 
 #include <map>
@@ -22,14 +23,16 @@ struct Binding {
 struct Keymap {
   std::map<std::string, std::vector<Binding>> contexts;
 
-  // The operator of a chord in the first of these contexts that knows it; nullptr for none.
+  // Returns the id of the operator that a chord runs: in the first context of `in` that binds the chord. Returns
+  // nullptr if none of them does.
   const std::string* find(const Chord& chord, const std::vector<std::string>& in) const;
-  // The chord to show beside an operator's name: its first, looking into `first` before the other contexts.
+  // Returns the chord to show beside an operator's name: the operator's first binding. The contexts `first` are
+  // searched before all others.
   std::optional<Chord> chord_of(std::string_view operator_id, const std::vector<std::string>& first = {}) const;
 };
 
-// Throws Error for a file that is no key map, an unreadable chord, or, unless they are let in, a chord with two
-// meanings in one context.
+// Whether a key map file may bind one chord to two operators in the same context. With Refuse, read_keymap() throws
+// Error for such a chord. With either, it throws Error for a file that is no key map and for an unreadable chord.
 enum class TwoMeanings { Refuse, LetIn };
 Keymap read_keymap(const Path& path, TwoMeanings two_meanings = TwoMeanings::Refuse);
 std::string to_json(const Keymap& keymap);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a user changed in the key map: for an operator in a context, the keys it has instead of its own. Two operators
-// may then want one key; the first of the context has it, and clashes() tells.
+// The user's changes of the key map: for an operator in a context, the keys that replace its original ones. After such
+// a change, two operators of a context may have the same key. The first of them gets the key, and clashes() reports
+// both.
 #pragma once
 
 #include <map>
@@ -13,24 +14,25 @@
 namespace limber::editor {
 
 using KeyChanges =
-    std::map<std::pair<std::string, std::string>, std::vector<std::string>>;  // context, operator -> keys
+    std::map<std::pair<std::string, std::string>, std::vector<std::string>>;  // (context, operator) -> keys
 
-// The key map with the changes made. Keys that cannot be read are left out.
+// Returns the key map with these changes applied. Keys that cannot be read are left out.
 Keymap changed(Keymap keymap, const KeyChanges& changes);
-// Gives `chord` to the operator in place of the keys it has there; the same as its own keys: no change any more.
+// Records in `changes` that the operator has these chords in the context. If these are its original chords, the
+// operator's entry in `changes` is removed instead.
 void rebind(KeyChanges& changes, const Keymap& original, const std::string& context, const std::string& operator_id,
             const std::vector<Chord>& chords);
 
-// What must be changed in `original` so that it does what `wanted` does.
+// Returns the changes that turn the key map `original` into `wanted`.
 KeyChanges differences(const Keymap& original, const Keymap& wanted);
 
-// A list of objects with context, operator and keys; what cannot be read of it is left out.
+// Reads a JSON list of objects with context, operator and keys; entries that cannot be read are left out.
 KeyChanges key_changes_from_json(const std::string& text);
 
 struct Clash {
   std::string context;
   Chord chord;
-  std::vector<std::string> operators;  // the first one has the key
+  std::vector<std::string> operators;  // at least two; the first one gets the key
 };
 std::vector<Clash> clashes(const Keymap& keymap);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keys, mouse buttons and the chords made of them, with the names that key maps, menus and recordings use:
-// "Ctrl+Shift+Z", "Alt+LMBdrag", "Num.", "Wheel", "`". Letters and digits are those that the user's layout prints.
+// "Ctrl+Shift+Z", "Alt+LMBdrag", "Num.", "Wheel", "`". Letters and digits follow the user's keyboard layout.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,8 @@ struct Modifiers {
   bool operator==(const Modifiers&) const = default;
 };
 
-// What the user does at once. A press of a button is a click where a drag of the same button has a meaning too.
+// A key, button press, drag or wheel step together with its modifiers. If a press and a drag of the same button are
+// both bound, the press runs its operator only when the button is released without a drag, as a click.
 struct Chord {
   enum class Kind { Key, Press, Drag, Wheel } kind = Kind::Key;
   Modifiers modifiers;

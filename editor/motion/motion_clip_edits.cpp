@@ -20,9 +20,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm of a file's unit; 0: found
+constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm per length unit of the BVH file; 0: fit to the rig
 
-// What is known of a motion before it comes in.
+// A motion that was read from a file, before the user confirms its import.
 struct Incoming {
   std::shared_ptr<const Motion> motion;
   std::string name;
@@ -32,13 +32,14 @@ struct Incoming {
 
 std::string facts_of(const Motion& motion) {
   char text[160];
-  std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames in a second.",
+  std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames per second.",
                 static_cast<int>(motion.joints.size()), motion.frame_count, motion.frame_count * motion.frame_time,
                 1 / motion.frame_time);
   return text;
 }
 
-// "ZXY; differs in 3 joints: Hips (XYZ), ..."
+// Returns as text the most frequent rotation order of the joints and which joints have another order:
+// "ZXY; differs in 3 joints: Hips XYZ, ..."
 std::string orders_of(const Motion& motion) {
   constexpr std::size_t kNamed = 4;
   std::map<std::string, std::vector<std::string>> joints;
@@ -49,7 +50,7 @@ std::string orders_of(const Motion& motion) {
         order += static_cast<char>('X' + static_cast<int>(channel) - static_cast<int>(BvhChannel::Xrotation));
     if (!order.empty()) joints[order].push_back(joint.name);
   }
-  if (joints.empty()) return "No joint turns.";
+  if (joints.empty()) return "No joint has rotations.";
   const auto most = std::max_element(joints.begin(), joints.end(),
                                      [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
   std::string others;
@@ -65,12 +66,12 @@ std::string orders_of(const Motion& motion) {
 }
 
 std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr<const Armature>& armature) {
-  if (!armature) return "There is no rig yet: joints and bones are matched when there is one.";
+  if (!armature) return "There is no rig yet: joints and bones are matched when a rig is imported.";
   const ClipOnRig on_rig(std::make_shared<const Clip>(clip_of(std::move(motion), "")), armature);
-  if (!on_rig.retarget()) return "It moves no bone of this rig by its names: match them by hand in the map.";
+  if (!on_rig.retarget()) return "No joint's name matches a bone of this rig: match them by hand with Map...";
   const Matching matching = matching_of(on_rig);
   char text[160];
-  std::snprintf(text, sizeof text, "%d joints move %d of %d bones, %d of them without doubt.", matching.joints,
+  std::snprintf(text, sizeof text, "%d joints move %d of %d bones; %d of these matches are certain.", matching.joints,
                 matching.bones, static_cast<int>(armature->bones.size()), matching.sure);
   return text;
 }
@@ -85,7 +86,7 @@ void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormFie
   clip.retarget.scale = kUnits[fields[0].chosen];
   add_clip(next, std::move(clip));
   commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
-  if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "Its z axis points up.");
+  if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "The z axis points up in the file.");
 }
 
 void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
@@ -95,7 +96,7 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
     const bool as_guessed = fields[1].chosen == static_cast<int>(incoming->up.axis);
     if (const std::string reason = reason_of(incoming->up);
         !reason.empty() && (!as_guessed || incoming->up.axis == UpAxis::Z))
-      words += (as_guessed ? " Z is up: " : " Mind the axis: ") + reason + ".";
+      words += (as_guessed ? " Z is up: " : " Check the up axis: ") + reason + ".";
     if (std::abs(fields[3].value - clip_of(incoming->motion, "").rate) > 1e-3) {
       char text[64];
       std::snprintf(text, sizeof text, " Plays in %.2f s.", incoming->motion->frame_count / fields[3].value);
@@ -110,14 +111,15 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
   };
   editor.open_dialog(make_form(
       {"Import " + incoming->name + ".bvh",
-       "A new clip of this motion, carried over to the rig.",
+       "Adds this motion as a new clip and retargets it to the rig.",
        "Import",
-       {choice_of("Scale", "How far the body travels: as far as its legs carry it, or in the file's own unit.",
+       {choice_of("Scale",
+                  "Scale of the motion's distances: fitted to the rig's legs, or given by the unit of the file.",
                   {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
         choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
-        number_of("First frame", "Where it begins in the timeline.", 0, -100'000, 100'000, "%.0f"),
-        number_of("Frame rate", "Frames in a second. The file's own unless it is known to be wrong.", rate, 1, 1000,
-                  "%.6g", "fps"),
+        number_of("First frame", "Frame of the timeline at which the clip begins.", 0, -100'000, 100'000, "%.0f"),
+        number_of("Frame rate", "Frames per second, as stored in the file. Change this only if the file is wrong.",
+                  rate, 1, 1000, "%.6g", "fps"),
         fact_of("Rotations", orders_of(*incoming->motion))},
        outcome,
        [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); },
@@ -188,7 +190,7 @@ void import_motion(Editor& editor, const Path& path) {
                incoming->motion = std::make_shared<const Motion>(read_bvh(path));
                incoming->name = path.stem().string();
                if (incoming->motion->frame_count == 0)
-                 throw Error("this motion has no frames", path.string(), "import it as a rig, or choose another file");
+                 throw Error("this motion has no frames", path.string(), "import it as a rig, or select another file");
                incoming->up = up_axis_of(*incoming->motion);
                incoming->facts = facts_of(*incoming->motion);
                incoming->match = match_of(incoming->motion, armature);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clips and what they do to the rig: coming in, being chosen, matched and cut.
+// Imports and selects motion clips, and returns how a clip's joints are matched to the bones of the rig.
 #pragma once
 
 #include <string>
@@ -10,23 +10,25 @@
 
 namespace limber::editor {
 
-// How much of the rig a clip moves.
+// The number of bones of the rig that a clip moves, and how certain their matches are.
 struct Matching {
-  int bones = 0, joints = 0;  // moved ones, and the joints that move them
-  int sure = 0;               // bones whose names leave no doubt
+  int bones = 0, joints = 0;  // number of bones that the clip moves, and of joints that move them
+  int sure = 0;               // number of bones whose names match a joint with certainty
 };
 Matching matching_of(const ClipOnRig& clip);
 int moved_bones(const ClipOnRig& clip);
-// The map that is in use: the clip's own, or the one by names; empty where nothing matches.
+// Returns the retarget map that the clip uses: the map stored in the clip, or the match by names if the stored map has
+// no entries; empty when no name matches.
 RetargetMap map_in_use(const ClipOnRig& clip);
 
-// The motion as a clip at its own rate. One that was written for the document's rig travels as it was written.
+// Returns a clip that begins at frame `start` and plays the motion at the motion's own frame rate. If the motion's
+// skeleton equals the document's rig in position and size, the clip moves the body exactly as far as the motion does.
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
 void choose_clip(Editor& editor, int clip);
-// Asks how the motion of that file shall come in: its scale, axes, first frame and rate.
+// Reads a BVH file and opens a dialog that asks for the scale, up axis, first frame and frame rate of the new clip.
 void import_motion(Editor& editor, const Path& path);
-// The list of bones and the joints that move them.
+// Opens the dialog of the retarget map, which lists each bone of the rig and the joint of the motion that moves it.
 void open_map(Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clips: how they move the rig, and what is made of them.
+// Operators on motion clips: how a clip moves the rig (retarget map, travel of the body, rest poses), renaming,
+// deleting, trimming and resampling.
 #include <algorithm>
 #include <cmath>
 
@@ -18,10 +19,10 @@ namespace {
 
 const FileFilter kMaps{"Maps", {".json"}};
 
-// A name that no other clip has.
+// Opens a dialog that asks for a new name of the shown clip. A number is added when another clip has that name.
 void ask_clip_name(Editor& editor) {
   editor.open_dialog(make_form({"Rename clip",
-                                "Another name for the shown clip.",
+                                "Changes the name of the shown clip.",
                                 "Rename",
                                 {text_of("Name", "The clip's name.", shown_clip(editor)->name)},
                                 [](const Editor&, const std::vector<FormField>& fields) -> std::string {
@@ -75,7 +76,10 @@ Operator reference(const char* id, const char* label, const char* description, R
       [which](const RetargetSettings& s) { return s.reference == which; });
 }
 
-// Offsets that were read from a file give way to what is said.
+// Returns an operator that sets how the arms are held in the rest pose of the clip or of the rig, such as a T-pose. It
+// discards the rest offsets that were read from a map file, because they would replace those that are computed for the
+// new rest pose.
+//   whose  member of RestStances: `source` is the clip, `rig` the rig
 Operator rest(const char* id, const char* label, const char* description, RestStance RestStances::*whose,
               RestStance which) {
   return {id,
@@ -94,7 +98,7 @@ Operator rest(const char* id, const char* label, const char* description, RestSt
           [=](const Editor& e) { return shown_clip(e) && shown_clip(e)->map.stances.*whose == which; }};
 }
 
-// Into sight; where the sidebar is closed it opens.
+// Opens the sidebar of the Pose workspace and shows its Motion section.
 void show_retargeting(Editor& editor) {
   editor.workspace = Workspace::Pose;
   editor.arrangement().sidebar = true;
@@ -109,7 +113,7 @@ void map_by_names(Editor& editor) {
 void load_map(Editor& editor) {
   const bool from_dialog = editor.dialog != nullptr;
   browse(editor, {.purpose = "map",
-                  .title = "Load a map",
+                  .title = "Load a retarget map",
                   .action = "Load",
                   .filters = {kMaps},
                   .chosen = [from_dialog](Editor& e, const Path& path) {
@@ -124,7 +128,7 @@ void load_map(Editor& editor) {
 void save_map(Editor& editor) {
   const bool from_dialog = editor.dialog != nullptr;
   browse(editor, {.purpose = "map",
-                  .title = "Save the map",
+                  .title = "Save the retarget map",
                   .action = "Save",
                   .kind = FileRequest::Kind::Save,
                   .filters = {kMaps},
@@ -150,13 +154,14 @@ void delete_clip(Editor& editor) {
   commit(editor, "Delete clip " + name, std::move(next));
 }
 
-// What plays becomes all there is of the motion; keys and markers outside go.
+// Trims the shown clip to its playing range. Frames of the motion outside the range are no longer used, and keys and
+// markers outside are deleted.
 void trim(Editor& editor) {
   edit_clip(editor, "Trim clip", PoseThen::FromClip, [](Clip& clip) {
     const int low = clip.range_start, high = std::max(low, clip.range_end);
     if (clip.motion) {
       if (high < clip.start || low > clip.end())
-        throw Error("the range lies outside the motion", clip.name, "move it over the frames that shall stay");
+        throw Error("the range lies outside the motion", clip.name, "move it over the frames to keep");
       const int first = std::clamp(clip.first + low - clip.start, clip.first, clip.last),
                 last = std::clamp(clip.first + high - clip.start, first, clip.last);
       clip.start = std::max(low, clip.start);
@@ -181,7 +186,8 @@ void untrim(Editor& editor) {
   });
 }
 
-// Everything that stands at a frame goes with the moment that it meant.
+// Resamples the clip to another rate, in frames per second. Keys, markers and the playing range get new frame numbers,
+// so that they stay at the same time.
 void change_rate(Clip& clip, double rate) {
   const double ratio = rate / clip.rate;
   const auto moved = [&](int frame) { return clip.start + static_cast<int>(std::round((frame - clip.start) * ratio)); };
@@ -205,9 +211,9 @@ void change_rate(Clip& clip, double rate) {
 void ask_rate(Editor& editor) {
   editor.open_dialog(make_form(
       {"Resample the clip",
-       "The same motion with another number of frames in a second; keys and markers keep their moments.",
+       "Changes the number of frames per second. Motion, keys and markers keep their times.",
        "Resample",
-       {number_of("Frame rate", "Frames in a second.", shown_clip(editor)->rate, 1, 1000, "%.6g", "fps")},
+       {number_of("Frame rate", "Frames per second.", shown_clip(editor)->rate, 1, 1000, "%.6g", "fps")},
        [](const Editor& e, const std::vector<FormField>& fields) {
          const Clip* clip = shown_clip(e);
          if (!clip) throw Error("there is no clip any more", "resample", "open this again");
@@ -224,60 +230,64 @@ void ask_rate(Editor& editor) {
 
 std::vector<Operator> motion_clip_operators() {
   return {
-      {"motion.retarget", "Retarget", icon::kMirror, "Motion", "Shows how the clip moves the rig.", show_retargeting,
-       needs_both},
-      {"motion.map", "Map...", "", "Motion", "Which joint of the motion moves which bone.", open_map, needs_both},
-      {"motion.map_by_names", "By names", "", "Motion", "Matches joints and bones by what their names mean.",
+      {"motion.retarget", "Retarget", icon::kMirror, "Motion", "Show the settings for how the clip moves the rig.",
+       show_retargeting, needs_both},
+      {"motion.map", "Map...", "", "Motion", "Select which joint of the motion moves each bone.", open_map, needs_both},
+      {"motion.map_by_names", "Match by names", "", "Motion", "Match joints and bones by the meaning of their names.",
        map_by_names, needs_both},
       {"motion.load_map", "Load map...", icon::kOpen, "Motion",
-       "Takes the map of a file, as the command line's --map does.", load_map, needs_both},
+       "Load from a file which joint moves each bone, as --map does on the command line.", load_map, needs_both},
       {"motion.save_map", "Save map...", icon::kSave, "Motion",
-       "Writes the map into a file, with the offsets that are in use.", save_map, needs_both},
-      travel("motion.travel_locked", "Locked", "The body stays where it rests.", Travel::Locked),
-      travel("motion.travel_in_place", "In place", "The body goes up and down, and walks on the spot.",
+       "Save to a file which joint moves each bone, with the rotation offsets between them.", save_map, needs_both},
+      travel("motion.travel_locked", "Locked", "Keep the body at its rest position.", Travel::Locked),
+      travel("motion.travel_in_place", "In place", "Let the body move up and down but walk on the spot.",
              Travel::InPlace),
-      travel("motion.travel_free", "Free", "The body travels as the source does, as far as its own legs carry it.",
-             Travel::Free),
+      travel("motion.travel_free", "Free",
+             "Let the body travel as in the clip, scaled to the length of the rig's legs.", Travel::Free),
       reference("motion.reference_found", "Most upright",
-                "The source stands as the rig rests where it stands most upright.", Reference::Found),
-      reference("motion.reference_rest", "Its rest pose", "The source stands as the rig rests in the file's rest pose.",
+                "Match the rig's rest pose to the frame of the clip in which the figure stands most upright.",
+                Reference::Found),
+      reference("motion.reference_rest", "Clip's rest pose", "Match the rig's rest pose to the clip's rest pose.",
                 Reference::RestPose),
-      reference("motion.reference_first", "Its first frame", "The source stands as the rig rests in its first frame.",
+      reference("motion.reference_first", "Clip's first frame", "Match the rig's rest pose to the clip's first frame.",
                 Reference::FirstFrame),
-      rest("motion.rest_file", "Take as it lies",
-           "The clip's rest pose is what its joints show: bones take their directions.", &RestStances::source,
-           RestStance::AsItLies),
-      rest("motion.rest_t", "Take in T-pose",
-           "At rest the actor stands with arms to the sides and palms down, however the file lays the joints.",
+      rest("motion.rest_file", "Clip as stored", "Take the clip's rest pose from the directions of its joints.",
+           &RestStances::source, RestStance::AsItLies),
+      rest("motion.rest_t", "Clip in T-pose",
+           "Treat the clip's rest pose as arms to the sides and palms down, regardless of its joints' directions.",
            &RestStances::source, RestStance::TPose),
-      rest("motion.rest_a", "Take in A-pose",
-           "At rest the actor stands with arms half way down and thumbs forward, however the file lays the joints.",
+      rest("motion.rest_a", "Clip in A-pose",
+           "Treat the clip's rest pose as arms half way down and thumbs forward, regardless of its joints' directions.",
            &RestStances::source, RestStance::APose),
-      rest("motion.rest_anatomical", "Take supine",
-           "At rest the actor's arms hang and the palms face forward, as of a body on its back, however the file lays "
-           "the joints.",
+      rest("motion.rest_anatomical", "Clip supine",
+           "Treat the clip's rest pose as arms hanging and palms forward, like a body on its back, regardless of its "
+           "joints' "
+           "directions.",
            &RestStances::source, RestStance::Anatomical),
-      rest("motion.rig_rest_file", "Rig as it lies", "Where the rig's palms face at rest is what its fingers show.",
+      rest("motion.rig_rest_file", "Rig as stored", "Take the direction of the rig's palms at rest from its fingers.",
            &RestStances::rig, RestStance::AsItLies),
-      rest("motion.rig_rest_t", "Rig in T-pose", "The rig rests with its palms down; of use where it has no fingers.",
-           &RestStances::rig, RestStance::TPose),
+      rest("motion.rig_rest_t", "Rig in T-pose",
+           "Treat the rig's palms as facing down at rest; for rigs without fingers.", &RestStances::rig,
+           RestStance::TPose),
       rest("motion.rig_rest_a", "Rig in A-pose",
-           "The rig rests with its thumbs forward; of use where it has no fingers.", &RestStances::rig,
+           "Treat the rig's thumbs as pointing forward at rest; for rigs without fingers.", &RestStances::rig,
            RestStance::APose),
       rest("motion.rig_rest_anatomical", "Rig supine",
-           "The rig rests with its palms forward; of use where it has no fingers.", &RestStances::rig,
+           "Treat the rig's palms as facing forward at rest; for rigs without fingers.", &RestStances::rig,
            RestStance::Anatomical),
       setting(
-          "motion.mirror", "Mirror", "The left side does what the right side of the source does.",
+          "motion.mirror", "Mirror", "Exchange left and right: the rig's left side moves as the clip's right side.",
           [](RetargetSettings& s) { s.mirror = !s.mirror; }, [](const RetargetSettings& s) { return s.mirror; }),
-      {"motion.rename_clip", "Rename clip...", icon::kRename, "Motion", "Gives the shown clip another name.",
-       ask_clip_name, needs_clip},
-      {"motion.delete_clip", "Delete clip", icon::kTrash, "Motion", "Takes the shown clip out of the project.",
+      {"motion.rename_clip", "Rename clip...", icon::kRename, "Motion", "Rename the shown clip.", ask_clip_name,
+       needs_clip},
+      {"motion.delete_clip", "Delete clip", icon::kTrash, "Motion", "Delete the shown clip from the project.",
        delete_clip, needs_clip},
       {"motion.trim", "Trim to range", "", "Motion",
-       "Only the range stays of the clip; the whole motion can be brought back.", trim, needs_clip},
-      {"motion.untrim", "Whole motion", "", "Motion", "Brings back what was trimmed.", untrim, needs_motion},
-      {"motion.resample", "Resample clip...", "", "Motion", "Another number of frames in a second.", ask_rate,
+       "Remove frames, keys and markers outside the playing range. Whole motion restores the frames.", trim,
+       needs_clip},
+      {"motion.untrim", "Whole motion", "", "Motion", "Restore the frames of the motion that Trim to range removed.",
+       untrim, needs_motion},
+      {"motion.resample", "Resample clip...", "", "Motion", "Change the clip's number of frames per second.", ask_rate,
        needs_clip},
   };
 }

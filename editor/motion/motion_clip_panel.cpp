@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the shown clip moves the rig: which clip, how well it matches, how the body travels.
+// Panel of the Pose workspace that selects the shown clip and sets how it moves the rig: the match of joints and bones,
+// the travel of the body, and the rest poses of clip and rig.
 #include <cstdio>
 
 #include "editor/context/operator_button.h"
@@ -13,8 +14,8 @@ namespace limber::editor {
 
 namespace {
 
-// One of several operators, of which one holds.
-//   words  of the operators, where they need not say again what the row's name says; empty: their labels
+// Draws a field that selects one of several operators, of which exactly one is checked.
+//   words  texts of the choices, shorter than the operators' labels; empty: the labels
 void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std::initializer_list<const char*> ids,
                          std::initializer_list<const char*> words = {}) {
   std::vector<std::string> labels;
@@ -28,7 +29,7 @@ void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std
   if (choice_field(editor, rect, labels, chosen)) run(editor, ids.begin()[chosen]);
 }
 
-constexpr std::initializer_list<const char*> kRests = {"As it lies", "T-pose", "A-pose", "Supine"};
+constexpr std::initializer_list<const char*> kRests = {"As stored", "T-pose", "A-pose", "Supine"};
 
 void draw_clip_row(Editor& editor, Column& column) {
   std::vector<std::string> names;
@@ -54,16 +55,16 @@ void draw_match(Editor& editor, Column& column, const ClipOnRig& clip) {
   operator_button(editor, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");
 }
 
-// What the file lays otherwise than is said.
+// Draws a note that names the joints whose limbs were turned, because the clip file's rest pose differs from the rest
+// pose that the user selected.
 void draw_turned(Editor& editor, Column& column) {
   const Look& look = editor.look;
   const ClipOnRig* clip = clip_on_rig(editor);
   if (!clip || !clip->retarget() || clip->retarget()->turned_joints().empty()) return;
   const std::vector<int>& turned = clip->retarget()->turned_joints();
   const std::string first = clip->clip()->motion->joints[turned.front()].name;
-  const std::string words = "The file lays " + first +
-                            (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") +
-                            " otherwise: turned into it.";
+  const std::string words = "Turned from the file's rest pose into this one: " + first +
+                            (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") + ".";
   const Rect row = column.row(34);
   put_wrapped(editor, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y},
               row.width() - look.px(20), words, 2);
@@ -83,16 +84,16 @@ void draw_motion(Editor& editor, Column& column) {
                       "Import BVH...");
     } else {
       draw_clip_row(editor, column);
-      clip = shown_clip(editor);  // perhaps another one was chosen
+      clip = shown_clip(editor);  // read again: the user may have selected another clip in the row above
       const ClipOnRig* on_rig = clip_on_rig(editor);
       if (clip && clip->motion && on_rig) {
-        // What is chosen below replaces the clip and how it lies on the rig.
+        // Read now, because the fields below may replace the clip and free `on_rig`.
         bool mirrored = clip->retarget.mirror;
         const std::string problem = on_rig->problem();
         draw_match(editor, column, *on_rig);
         choice_of_operators(editor, column.property("Travel"), "Travel",
                             {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
-        choice_of_operators(editor, column.property("Stands as"), "Stands as",
+        choice_of_operators(editor, column.property("Reference"), "Reference",
                             {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
         choice_of_operators(editor, column.property("Clip at rest"), "Clip at rest",
                             {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"}, kRests);

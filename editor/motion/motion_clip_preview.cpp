@@ -12,12 +12,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMeasured = 60;         // frames that say how large the figure is drawn
-constexpr double kSide = 0.6;         // radians that it is seen from the side
-constexpr double kAbove = 0.2;        // and from above
-constexpr double kFinest = 1.0 / 60;  // s between two pictures
+constexpr int kMeasured = 60;         // approximate number of frames from which the size of the figure is measured
+constexpr double kSide = 0.6;         // angle by which the camera is turned from the front to the side, radians
+constexpr double kAbove = 0.2;        // angle by which the camera looks down, radians
+constexpr double kFinest = 1.0 / 60;  // shortest time between two drawn frames, s
 
-// To the right and up in the picture.
+// Projects a 3D point into the picture. The returned x points to the right and y up.
 glm::dvec2 seen(const glm::dvec3& p) {
   const double depth = -std::sin(kSide) * p.x + std::cos(kSide) * p.y;
   return {std::cos(kSide) * p.x + std::sin(kSide) * p.y, std::cos(kAbove) * p.z + std::sin(kAbove) * depth};
@@ -112,7 +112,7 @@ void MotionPicture::draw(Editor& editor, const Rect& rect, bool z_up, double rat
   put_text(editor, look.fonts.mono, look.theme.text2,
            Rect{{rect.low.x, picture.high.y}, {rect.high.x, picture.high.y + text}}, words);
   put_text(editor, look.fonts.small, look.theme.text3, Rect{{rect.low.x, picture.high.y + text}, rect.high},
-           "Plays under the pointer; drag to scrub.");
+           "Hover to play the motion, drag to scrub.");
 }
 
 }  // namespace limber::editor

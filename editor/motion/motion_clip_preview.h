@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A take as a stick figure, seen a little from the side: it plays while the pointer is on it, and a drag across it goes
-// through its frames. It stays in the middle wherever it travels; a line tells the ground.
+// A preview that draws a motion as a stick figure, seen from the front, a little from the side and from above. The
+// motion plays while the pointer is over the preview; dragging scrubs through the frames. The figure stays in the
+// middle even if the motion walks away. A line marks the ground.
 #pragma once
 
 #include <memory>
@@ -15,22 +16,25 @@ class MotionPicture {
  public:
   explicit MotionPicture(std::shared_ptr<const Motion> motion);
 
-  //   rate  frames in a second while it plays
+  // Draws the preview in `rect`.
+  //   z_up  whether the z axis of the motion's file points up; false: its y axis does
+  //   rate  frames per second at which the motion plays
   void draw(Editor& editor, const Rect& rect, bool z_up, double rate);
   int frame() const { return frame_; }
 
  private:
-  // Of the frame, in LPS, the first joint above the middle of the ground.
+  // Returns the positions of all joints, then of all end sites, at a frame: z points up, in the file's unit, shifted
+  // horizontally so that the first joint has x = y = 0.
   std::vector<glm::dvec3> places(int frame, bool z_up) const;
   void measure(bool z_up);
   void move_on(Editor& editor, const Rect& rect, double rate);
 
   std::shared_ptr<const Motion> motion_;
-  std::vector<std::pair<int, int>> sticks_;  // places that are joined
+  std::vector<std::pair<int, int>> sticks_;  // the figure's lines, each as two indices into places()
   int frame_ = 0;
-  double began_ = -1, began_at_ = 0;  // s and frame from which it plays; -1: it does not
-  bool stays_ = false;                // where it was dragged to, until the pointer leaves
-  int measured_ = -1;                 // for which axis
+  double began_ = -1, began_at_ = 0;  // time in s and frame at which playing began; began_ -1: not playing
+  bool stays_ = false;                // whether the frame that was scrubbed to stays shown until the pointer leaves
+  int measured_ = -1;                 // z_up for which low_, high_ and wide_ were measured; -1: not measured
   double low_ = 0, high_ = 1, wide_ = 1;
 };
 

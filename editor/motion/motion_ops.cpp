@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Through time: playing, stepping, scrubbing, the range, keys and markers.
+// Operators of the timeline: playing, stepping, scrubbing, the playing range, keys, markers and the onion skin.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kPingPongIcon[] = "\uf07e";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1, 2, 4};
-constexpr double kZoomStep = 1.25, kMostFrames = 1e7;  // seen at once
+constexpr double kZoomStep = 1.25, kMostFrames = 1e7;  // zoom factor per wheel step; largest number of frames shown
 
 std::string needs_clip(const Editor& editor) {
   return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
@@ -90,7 +90,7 @@ void delete_key_here(Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   Keys keys = shown_clip(editor)->keys;
   if (!delete_key(keys, *armature, chosen_bones(editor), editor.document().frame))
-    return editor.messages.info("Delete key", "There is no key of these bones at this frame");
+    return editor.messages.info("Delete key", "The selected bones have no key at this frame");
   edit_clip(editor, "Delete key", PoseThen::FromClip, [&](Clip& clip) { clip.keys = keys; });
 }
 
@@ -104,7 +104,7 @@ void add_marker(Editor& editor) {
 }
 
 std::string needs_chosen_keys(const Editor& editor) {
-  return editor.timeline->chosen.empty() ? "Choose keys in the timeline first" : "";
+  return editor.timeline->chosen.empty() ? "Select keys in the timeline first" : "";
 }
 
 void choose_keys(Editor& editor, bool all) {
@@ -116,7 +116,8 @@ void delete_chosen_keys(Editor& editor) {
   edit_clip(editor, "Delete keys", PoseThen::FromClip, [&](Clip& clip) { delete_keys(clip.keys, chosen); });
 }
 
-// From the first to the last chosen key; what is seen of time where none is chosen.
+// Sets the playing range from the first to the last selected key. When fewer than two keys are selected, sets it to the
+// frames that the timeline shows.
 void range_of_chosen(Editor& editor) {
   const Timeline& timeline = *editor.timeline;
   const bool keys = timeline.chosen.size() > 1;
@@ -137,7 +138,7 @@ void whole_range(Editor& editor) {
   });
 }
 
-// The marker at the play head, or the last one before it.
+// Returns the index of the last marker at or before the play head; nothing without such a marker.
 std::optional<std::size_t> marker_here(const Editor& editor) {
   const Clip* clip = shown_clip(editor);
   std::optional<std::size_t> found;
@@ -152,9 +153,9 @@ std::string needs_marker(const Editor& editor) {
 void ask_marker_name(Editor& editor) {
   const Marker marker = shown_clip(editor)->markers[*marker_here(editor)];
   editor.open_dialog(make_form({"Rename marker",
-                                "Another name for the marker at frame " + std::to_string(marker.frame) + ".",
+                                "Changes the name of the marker at frame " + std::to_string(marker.frame) + ".",
                                 "Rename",
-                                {text_of("Name", "What happens here.", marker.name)},
+                                {text_of("Name", "Name of the marker.", marker.name)},
                                 {},
                                 [marker](Editor& e, const std::vector<FormField>& fields) {
                                   edit_clip(e, "Rename marker", PoseThen::Stays, [&](Clip& clip) {
@@ -166,19 +167,21 @@ void ask_marker_name(Editor& editor) {
 
 void ask_onion_frames(Editor& editor) {
   const auto& onion = editor.timeline->onion;
-  editor.open_dialog(make_form({"Onion skin",
-                                "The skeleton at frames before and after the one that is shown.",
-                                "Show",
-                                {number_of("On either side", "So many ghosts.", onion.count, 1, 10, "%.0f"),
-                                 number_of("Frames apart", "From one to the next.", onion.step, 1, 10'000, "%.0f")},
-                                {},
-                                [](Editor& e, const std::vector<FormField>& fields) {
-                                  auto& changed = e.timeline->onion;
-                                  changed.count = static_cast<int>(std::round(fields[0].value));
-                                  changed.step = static_cast<int>(std::round(fields[1].value));
-                                  changed.on = true;
-                                  e.touch();
-                                }}));
+  editor.open_dialog(make_form(
+      {"Onion skin",
+       "Shows the outline of the body at frames before and after the shown frame, as ghosts.",
+       "Show",
+       {number_of("Ghosts per side", "Number of ghosts on each side of the shown frame: before it and after it.",
+                  onion.count, 1, 10, "%.0f"),
+        number_of("Frames apart", "Number of frames from one ghost to the next.", onion.step, 1, 10'000, "%.0f")},
+       {},
+       [](Editor& e, const std::vector<FormField>& fields) {
+         auto& changed = e.timeline->onion;
+         changed.count = static_cast<int>(std::round(fields[0].value));
+         changed.step = static_cast<int>(std::round(fields[1].value));
+         changed.on = true;
+         e.touch();
+       }}));
 }
 
 void delete_marker(Editor& editor) {
@@ -187,7 +190,7 @@ void delete_marker(Editor& editor) {
             [&](Clip& clip) { clip.markers.erase(clip.markers.begin() + static_cast<std::ptrdiff_t>(place)); });
 }
 
-// About the frame under the pointer, or the play head.
+// Zooms the timeline by the motion of the mouse wheel. The frame under the pointer keeps its position.
 void zoom(Editor& editor) {
   Timeline& timeline = *editor.timeline;
   const double low = timeline.window.low, count = timeline.window.count;
@@ -218,92 +221,95 @@ std::vector<Operator> motion_operators() {
     return [direction](const Editor& e) { return e.timeline->play.on && e.timeline->play.direction == direction; };
   };
   return {
-      {"motion.play", "Play", icon::kPlay, "Motion", "Plays the clip at its own rate, or stops.",
+      {"motion.play", "Play", icon::kPlay, "Motion", "Play the clip at its own rate, or stop.",
        [](Editor& e) { toggle_play(e, 1); }, needs_clip, playing(1)},
       {"motion.play_reverse", "Play backwards", icon::kBack, "Motion",
-       "Plays the clip from its end to its beginning, or stops.", [](Editor& e) { toggle_play(e, -1); }, needs_clip,
+       "Play the clip from its end to its beginning, or stop.", [](Editor& e) { toggle_play(e, -1); }, needs_clip,
        playing(-1)},
-      {"motion.frame_back", "Frame back", icon::kBack, "Motion", "Goes to the frame before.",
+      {"motion.frame_back", "Frame back", icon::kBack, "Motion", "Go to the previous frame.",
        [](Editor& e) { step(e, -1); }, needs_clip},
-      {"motion.frame_forward", "Frame forward", icon::kForward, "Motion", "Goes to the next frame.",
+      {"motion.frame_forward", "Frame forward", icon::kForward, "Motion", "Go to the next frame.",
        [](Editor& e) { step(e, 1); }, needs_clip},
-      {"motion.frame_step", "Turn through frames", "", "Motion", "The wheel goes from frame to frame.",
+      {"motion.frame_step", "Step through frames", "", "Motion", "Step from frame to frame with the mouse wheel.",
        [](Editor& e) { step(e, e.input.wheel < 0 ? 1 : -1); }, needs_clip},
-      {"motion.first", "First frame", icon::kFirst, "Motion", "Goes to the beginning of the range.",
+      {"motion.first", "First frame", icon::kFirst, "Motion", "Go to the first frame of the playing range.",
        [](Editor& e) { go(e, playing_range(e).low); }, needs_clip},
-      {"motion.last", "Last frame", icon::kLast, "Motion", "Goes to the end of the range.",
+      {"motion.last", "Last frame", icon::kLast, "Motion", "Go to the last frame of the playing range.",
        [](Editor& e) { go(e, playing_range(e).high); }, needs_clip},
-      {"motion.next_key", "Next key", "", "Motion", "Goes to the next frame that has a key.",
+      {"motion.next_key", "Next key", "", "Motion", "Go to the next frame that has a key.",
        [](Editor& e) { go_to_key(e, 1); }, needs_keys},
-      {"motion.previous_key", "Previous key", "", "Motion", "Goes to the frame before that has a key.",
+      {"motion.previous_key", "Previous key", "", "Motion", "Go to the previous frame that has a key.",
        [](Editor& e) { go_to_key(e, -1); }, needs_keys},
       {"motion.scrub", "Scrub", "", "Motion",
-       "Shows the frame under the pointer as long as it is held; on a key, chooses and moves that.", press_timeline,
+       "Show the frame under the pointer while the button is held. On a key, select and move the key.", press_timeline,
        needs_clip},
-      {"motion.pan", "Pan the timeline", "", "Motion", "Moves what is seen of time.", pan_timeline},
-      {"motion.zoom", "Zoom the timeline", "", "Motion", "Shows fewer or more frames, about the pointer.", zoom},
-      {"motion.view_all", "Show all frames", "", "Motion", "The whole clip fits into the timeline.",
+      {"motion.pan", "Pan the timeline", "", "Motion", "Move the shown part of the timeline.", pan_timeline},
+      {"motion.zoom", "Zoom the timeline", "", "Motion", "Show fewer or more frames around the pointer.", zoom},
+      {"motion.view_all", "Show all frames", "", "Motion", "Fit the whole clip into the timeline.",
        [](Editor& e) { fit_window(e); }, needs_clip},
-      {"motion.view_selected", "Show chosen keys", "", "Motion", "The chosen keys fit into the timeline.",
+      {"motion.view_selected", "Show selected keys", "", "Motion", "Fit the selected keys into the timeline.",
        fit_window_to_keys, needs_chosen_keys},
-      {"motion.set_start", "Start range here", "", "Motion", "What plays begins at this frame.",
+      {"motion.set_start", "Start range here", "", "Motion", "Start the playing range at this frame.",
        [](Editor& e) { set_range(e, true); }, needs_clip},
-      {"motion.set_end", "End range here", "", "Motion", "What plays ends at this frame.",
+      {"motion.set_end", "End range here", "", "Motion", "End the playing range at this frame.",
        [](Editor& e) { set_range(e, false); }, needs_clip},
-      at_end("motion.loop", "Loop", icon::kLoop, "Begins again where the range ends.", AtEnd::Loop),
-      at_end("motion.ping_pong", "Ping-pong", kPingPongIcon, "Turns round where the range ends.", AtEnd::PingPong),
-      {"motion.faster", "Faster", "", "Motion", "Plays at the next higher speed.",
+      at_end("motion.loop", "Loop", icon::kLoop, "Play from the start again at the end of the range.", AtEnd::Loop),
+      at_end("motion.ping_pong", "Ping-pong", kPingPongIcon, "Reverse the direction at each end of the range.",
+             AtEnd::PingPong),
+      {"motion.faster", "Faster", "", "Motion", "Play at the next higher speed.",
        [](Editor& e) { change_speed(e, 1); }},
-      {"motion.slower", "Slower", "", "Motion", "Plays at the next lower speed.",
+      {"motion.slower", "Slower", "", "Motion", "Play at the next lower speed.",
        [](Editor& e) { change_speed(e, -1); }},
-      {"motion.play_at_file_rate", "Speed of the file", "", "Motion", "Plays at the rate at which it was recorded.",
+      {"motion.play_at_file_rate", "Original speed", "", "Motion", "Play at the rate at which the motion was recorded.",
        [](Editor& e) { change_speed(e, 0); }},
-      {"motion.show_seconds", "Seconds", "", "Motion", "The ruler counts seconds in place of frames.",
+      {"motion.show_seconds", "Seconds", "", "Motion", "Show seconds instead of frames in the timeline's ruler.",
        [](Editor& e) { e.timeline->seconds = !e.timeline->seconds; }, nullptr,
        [](const Editor& e) { return e.timeline->seconds; }},
       {"motion.insert_key", "Insert key", icon::kKey, "Motion",
-       "Keeps the pose of the chosen bones, or of all, at this frame.", insert_key_here, needs_rig},
+       "Store the pose of the selected bones, or of all, as a key at this frame.", insert_key_here, needs_rig},
       {"motion.delete_key", "Delete key", "", "Motion",
-       "Takes away the key of the chosen bones, or of all, at this frame.", delete_key_here,
+       "Delete the key of the selected bones, or of all, at this frame.", delete_key_here,
        [](const Editor& e) { return !needs_rig(e).empty() ? needs_rig(e) : needs_keys(e); }},
-      {"motion.auto_key", "Auto-key", icon::kDot, "Motion", "Every change of the pose becomes a key at its frame.",
+      {"motion.auto_key", "Auto-key", icon::kDot, "Motion",
+       "Insert a key at the shown frame whenever the pose changes.",
        [](Editor& e) { e.timeline->auto_key = !e.timeline->auto_key; }, nullptr,
        [](const Editor& e) { return e.timeline->auto_key; }},
       {"motion.onion_skin", "Onion skin", icon::kOnionSkin, "Motion",
-       "Shows the outline of the body at frames before and after this one.",
+       "Show the outline of the body at frames before and after this one.",
        [](Editor& e) { e.timeline->onion.on = !e.timeline->onion.on; }, nullptr,
        [](const Editor& e) { return e.timeline->onion.on; }},
-      {"motion.onion_frames", "Onion frames...", "", "Motion", "How many ghosts there are, and how far apart.",
-       ask_onion_frames},
-      {"motion.marker", "Add marker", icon::kMarker, "Motion", "Puts a named mark at this frame.", add_marker,
+      {"motion.onion_frames", "Onion frames...", "", "Motion",
+       "Set the number of outlines that the onion skin shows, and the frames between them.", ask_onion_frames},
+      {"motion.marker", "Add marker", icon::kMarker, "Motion", "Add a named marker at this frame.", add_marker,
        needs_clip},
       {"motion.rename_marker", "Rename marker...", "", "Motion",
-       "Names the marker at this frame, or the last one before it.", ask_marker_name, needs_marker},
+       "Rename the marker at this frame, or the last one before it.", ask_marker_name, needs_marker},
       {"motion.delete_marker", "Delete marker", "", "Motion",
-       "Takes away the marker at this frame, or the last one before it.", delete_marker, needs_marker},
-      {"motion.box_keys", "Choose keys by a box", "", "Motion", "Chooses the keys inside the rectangle that is drawn.",
+       "Delete the marker at this frame, or the last one before it.", delete_marker, needs_marker},
+      {"motion.box_keys", "Box select keys", "", "Motion", "Select the keys inside a rectangle that you draw.",
        box_keys, needs_keys},
-      {"motion.choose_all_keys", "Choose all keys", "", "Motion", "Chooses every key of the clip.",
+      {"motion.choose_all_keys", "Select all keys", "", "Motion", "Select every key of the clip.",
        [](Editor& e) { choose_keys(e, true); }, needs_keys},
-      {"motion.choose_no_keys", "Choose no keys", "", "Motion", "No key is chosen any more.",
+      {"motion.choose_no_keys", "Deselect keys", "", "Motion", "Deselect all keys of the clip.",
        [](Editor& e) { choose_keys(e, false); }, needs_chosen_keys},
       {"motion.move_keys", "Move keys", icon::kMove, "Motion",
-       "The chosen keys go with the pointer, or by a typed number of frames.",
+       "Move the selected keys with the pointer, or by a typed number of frames.",
        [](Editor& e) { begin_changing_keys(e, KeyChange::Move); }, needs_chosen_keys},
       {"motion.scale_keys", "Scale keys", icon::kScale, "Motion",
-       "The chosen keys draw together or apart about the play head.",
+       "Move the selected keys towards the play head or away from it by a factor.",
        [](Editor& e) { begin_changing_keys(e, KeyChange::Scale); }, needs_chosen_keys},
       {"motion.duplicate_keys", "Duplicate keys", icon::kDuplicate, "Motion",
-       "Copies of the chosen keys go with the pointer.",
+       "Copy the selected keys and move the copies with the pointer.",
        [](Editor& e) { begin_changing_keys(e, KeyChange::Duplicate); }, needs_chosen_keys},
-      {"motion.delete_keys", "Delete keys", icon::kTrash, "Motion", "Takes away the chosen keys.", delete_chosen_keys,
+      {"motion.delete_keys", "Delete keys", icon::kTrash, "Motion", "Delete the selected keys.", delete_chosen_keys,
        needs_chosen_keys},
-      {"motion.key_menu", "Key menu", "", "Motion", "Lists what can be done with keys, at the pointer.",
+      {"motion.key_menu", "Key menu", "", "Motion", "Open a menu of the commands for keys at the pointer.",
        [](Editor& e) { e.open_popup = "Keys"; }, needs_rig},
-      {"motion.preview_range", "Range of keys", "", "Motion",
-       "What plays goes from the first to the last chosen key, or is what the timeline shows.", range_of_chosen,
+      {"motion.preview_range", "Range from keys", "", "Motion",
+       "Set the playing range from the first to the last selected key, or to the frames that the timeline shows.",
+       range_of_chosen, needs_clip},
+      {"motion.clear_range", "Whole range", "", "Motion", "Set the playing range to the whole clip.", whole_range,
        needs_clip},
-      {"motion.clear_range", "Whole range", "", "Motion", "All of the clip plays.", whole_range, needs_clip},
   };
 }
 

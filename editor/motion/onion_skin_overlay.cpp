@@ -16,8 +16,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;  // 4B8EF5, 5AD19A
-constexpr double kWidest = 0.12, kHalfWidth = 0.0425;       // of a bone's length, as bones are drawn
+// Colours of ghosts before and after the shown frame, in ABGR (in RGB: 4B8EF5, 5AD19A).
+constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;
+// A bone is drawn as a kite. Distance from the head to its widest point, and half the width there, as shares of the
+// bone's length.
+constexpr double kWidest = 0.12, kHalfWidth = 0.0425;
 
 void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& armature, const Pose& pose, Colour colour) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
@@ -34,12 +37,13 @@ void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& arma
   }
 }
 
-// ---- outlines
+// ---- Outlines of the body
 
-constexpr std::int64_t kMostVertices = 20'000;  // of the surface
-constexpr float kCell = 2;                      // pixels at scale 1
-constexpr std::chrono::milliseconds kTime{8};   // a picture spends on outlines that are not there yet, after the first
-constexpr std::size_t kMostKept = 1000;
+constexpr std::int64_t kMostVertices = 20'000;  // upper limit on the number of vertices of the surface
+constexpr float kCell = 2;                      // size of the grid cells of silhouette(), pixels at scale 1
+// Time limit per drawn frame for new outlines. At least one missing outline is computed in each drawn frame.
+constexpr std::chrono::milliseconds kTime{8};
+constexpr std::size_t kMostKept = 1000;  // largest number of cached outlines
 
 void take_surface(Editor& editor, OnionOutlines& outlines) {
   const Document& document = editor.document();
@@ -58,7 +62,8 @@ void take_surface(Editor& editor, OnionOutlines& outlines) {
   });
 }
 
-// Where some fixed points are seen: equal for equal views.
+// Returns numbers that identify a view: its rectangle, and the pixels and view directions of four fixed points. Equal
+// numbers mean equal views.
 std::vector<double> view_of(const ViewProjection& view) {
   std::vector<double> numbers{view.place.rect.low.x, view.place.rect.low.y, view.place.rect.high.x,
                               view.place.rect.high.y};
@@ -117,7 +122,7 @@ void draw_onion_skin(Editor& editor) {
   const FrameRange range = playing_range(editor);
   const auto began = std::chrono::steady_clock::now();
   bool made_one = false, waits = false;
-  // The furthest first: near ones lie on top.
+  // The ghosts furthest in time are drawn first, so that nearer ones lie on top.
   for (int step = onion.count; step >= 1; --step)
     for (const int side : {-1, 1}) {
       const int frame = shown_frame(editor) + side * step * onion.step;

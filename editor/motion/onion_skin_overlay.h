@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Ghosts at frames before and after the one that is shown: outlines of the posed body over the 3D view, past ones in
-// one colour, coming ones in another, each further one half as strong. Only frames of the range that plays. The body's
-// surface is taken once in the background, coarse; each frame's outline is kept while the view stands still. Until an
-// outline is there, and where no weights say how the body follows, the skeleton stands for it.
+// Onion skin: draws ghosts of the body, which are its outlines at frames before and after the shown frame, over the 3D
+// view. Earlier and later frames have different colours, and each further ghost is half as opaque. Only frames of the
+// playing range have ghosts. A coarse surface of the body is computed once in the background, and outlines are cached
+// while the view stands still. Until an outline is ready, and when the body has no weights, the skeleton is drawn
+// instead.
 #pragma once
 
 #include <map>
@@ -15,11 +16,11 @@
 namespace limber::editor {
 
 struct OnionOutlines {
-  std::shared_ptr<const LabelVolume> volume;  // of which the surface is, or is being made
+  std::shared_ptr<const LabelVolume> volume;  // the volume of which `surface` is computed
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const SkinnedSurface> surface;  // null until it is made
+  std::shared_ptr<const SkinnedSurface> surface;  // null until the surface is computed
 
-  // What the lines are seen from and of; another one makes them anew.
+  // Everything that the cached outlines depend on. A change of any of it discards them.
   struct Seen {
     std::vector<double> view;
     std::shared_ptr<const Clip> clip;
@@ -29,7 +30,7 @@ struct OnionOutlines {
 
     bool operator==(const Seen&) const = default;
   } seen;
-  std::map<int, std::vector<std::vector<glm::vec2>>> lines;  // by frame, pixels
+  std::map<int, std::vector<std::vector<glm::vec2>>> lines;  // cached outlines by frame: closed lines, pixels
 };
 
 void draw_onion_skin(Editor& editor);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which joint of the motion moves which bone: a row for each bone. Every change acts at once and can be undone.
+// Dialog of the retarget map. It has a row for each bone of the rig, in which the user selects the joint of the motion
+// that moves the bone. Every change acts at once and can be undone.
 #include <algorithm>
 #include <cstdio>
 
@@ -18,7 +19,7 @@ const char* words_of(MatchKind kind) {
   switch (kind) {
     case MatchKind::None: return "not moved";
     case MatchKind::ByHand: return "by hand";
-    case MatchKind::Chain: return "by its place";
+    case MatchKind::Chain: return "by position";
     case MatchKind::SamePart: return "same part";
     case MatchKind::SameName: return "same name";
   }
@@ -38,10 +39,10 @@ class MapDialog final : public Dialog {
   std::shared_ptr<const Armature> armature_;
   RetargetMap map_;
   std::vector<MatchKind> kinds_;
-  std::vector<std::string> choices_;  // nothing, then the joints
+  std::vector<std::string> choices_;  // "nothing", then the names of the joints
 };
 
-// Where the joint and how it was found begin.
+// Returns the x coordinates of the left edges of the columns "Moved by" and "Found by", pixels.
 std::pair<float, float> columns_of(const Look& look, const Rect& row) {
   return {row.low.x + std::round(row.width() * 0.38f), row.high.x - look.px(130)};
 }
@@ -61,7 +62,7 @@ void MapDialog::match(Editor& editor, int bone, int choice) {
   RetargetMap map = map_;
   if (choice == 0) map.sources.erase(name);
   else map.sources[name] = {choices_[choice], {}};
-  if (map.sources.empty()) return editor.messages.info("Map", "One bone at least must be moved");
+  if (map.sources.empty()) return editor.messages.info("Map", "At least one bone must be moved by a joint");
   edit_clip(editor, "Match " + name, PoseThen::FromClip, [&](Clip& clip) { clip.map = map; });
 }
 
@@ -97,11 +98,11 @@ void MapDialog::draw(Editor& editor) {
   const Look& look = editor.look;
   const ClipOnRig* clip = clip_on_rig(editor);
   if (!clip || !clip->clip()->motion) return editor.close_dialog();
-  const Rect rect = begin_dialog(editor, "Map: joints of " + clip->clip()->name, 600, 520);
+  const Rect rect = begin_dialog(editor, "Retarget map of " + clip->clip()->name, 600, 520);
   prepare(*clip);
   const float foot = look.px(28), head = look.px(20);
   {
-    // Beside the scroll bar, as the rows.
+    // The column titles end before the scroll bar, so that they line up with the rows.
     const auto [joint_left, kind_left] = columns_of(look, {rect.low, {rect.high.x - look.px(10), rect.high.y}});
     for (const auto& [left, words] :
          {std::pair{rect.low.x + look.px(10), "Bone"}, {joint_left, "Moved by"}, {kind_left, "Found by"}})

@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWindowRate = 60;  // pictures in a second that nobody misses
+constexpr double kWindowRate = 60;  // frames drawn per second above which playing never counts as slow
 
 std::shared_ptr<const Clip> clip_part(const Document& document) {
   return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];
@@ -21,10 +21,13 @@ std::shared_ptr<const Pose> pose_part(const Armature& armature, Pose pose) {
   return pose == rest_pose(armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
 }
 
-// Whether a clip has anything to say of the pose.
+// Returns whether the clip moves the rig, by a retargeted motion or by keys.
 bool moves(const ClipOnRig& clip) { return clip.retarget() || !clip.clip()->keys.empty(); }
 
-// The frame after so many frames' time from the beginning of `count` frames; nothing where they have been played.
+// Returns which frame of the playing range is shown after a playing time, from 0 to count - 1; nothing when playing has
+// reached the end and stops there.
+//   frames  playing time since the start of the range, in frames
+//   count   number of frames of the range
 std::optional<int> frame_after(double frames, int count, AtEnd at_end) {
   const double step = std::floor(frames);
   if (step < count) return static_cast<int>(std::max(0.0, step));
@@ -83,7 +86,7 @@ const ClipOnRig* clip_on_rig(Editor& editor) {
 void show_frame(Editor& editor, int frame) {
   editor.timeline->frame = frame;
   const ClipOnRig* clip = clip_on_rig(editor);
-  // The document's frame has the user's changes.
+  // At the document's frame the document's pose is shown instead of the clip's, because it has the user's changes.
   if (frame == editor.document().frame && !editor.timeline->play.on) drop_shown_pose(editor);
   else if (clip && moves(*clip)) show_pose(editor, clip->at(frame));
   editor.touch();
@@ -145,7 +148,7 @@ void advance_time(Editor& editor) {
   const auto& play = timeline.play;
   const bool forwards = play.direction > 0;
   const double begun = forwards ? play.from - range.low : range.high - play.from;
-  // A hair more, so that the moment at which a frame is due shows it.
+  // 1e-6 frames are added, so that rounding errors do not delay a frame that is due exactly now.
   const double passed = (editor.now - play.since) * frame_rate(editor) * play.speed + 1e-6;
   const auto step = frame_after(begun + passed, range.high - range.low + 1, play.at_end);
   if (!step) {
@@ -203,7 +206,7 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
     next.frame = static_cast<int>(std::clamp<double>(moment, left.low, left.high));
     if (next.frame != moment)
       editor.messages.info("The play head is at frame " + std::to_string(next.frame),
-                           "Where it was is no longer in the clip");
+                           "The frame at which it was is no longer in the clip");
   }
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Time in the editor. The document's frame and pose belong together: the pose is what the clip says at that frame,
-// until the user changes it. Going to another frame takes the pose from the clip again and is one edit, in which all
-// steps of one way through time are put together: undo goes back to where it began, with the pose that was there.
+// The timeline: the shown frame, playing, and edits of the shown clip. The document's pose is the clip's pose at the
+// document's frame, until the user changes the pose. Going to another frame is one edit that takes the pose from the
+// clip again. Consecutive frame changes are merged into one edit, so that undo restores the frame and the pose before
+// them.
 //
-// While the pointer drags the play head, and while the clip plays, the frame is only shown (views' preview_pose); it is
-// taken into the document when the play head rests. A playing clip shows the frame of the moment, however long the last
-// picture took: frames are dropped, time is not.
+// While the user drags the play head, and while the clip plays, the frame is previewed (preview_pose of Views) and not
+// yet stored; it is stored in the document when the play head stops. A playing clip always shows the frame of the
+// current time: when drawing is slow, frames are skipped and the clip keeps its speed.
 #pragma once
 
 #include <cstdint>
@@ -28,87 +29,92 @@ enum class AtEnd { Stop, Loop, PingPong };
 struct OnionOutlines;
 
 struct Timeline {
-  // The frame that is shown in place of the document's, while it is scrubbed or plays.
+  // The previewed frame that replaces the document's frame while the user scrubs or the clip plays.
   std::optional<int> frame;
 
   struct {
     bool on = false;
     int direction = 1;
-    double since = 0, from = 0;  // when, and at which frame, it began
+    double since = 0, from = 0;  // time in s, and frame, at which playing began
     AtEnd at_end = AtEnd::Loop;
     double speed = 1;
-    // Pictures of the last second, when they are fewer than the clip's frames and the window could show.
+    // Measures slow drawing: the time at which counting drawn frames began, s, the measured frames per second (0:
+    // drawing is fast enough), and the number of frames drawn since then.
     double counted_since = 0, pictures_per_second = 0;
     int pictures = 0;
   } play;
 
   bool auto_key = false;
-  struct {  // ghosts on either side, so many frames apart
+  struct {  // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
     bool on = false;
     int count = 3, step = 10;
-    std::shared_ptr<OnionOutlines> outlines;  // editor/motion/onion_skin_overlay.h; null before there are any
+    std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
   } onion;
-  bool seconds = false;       // the ruler's numbers
-  std::set<int> chosen;       // frames of keys
-  std::map<int, int> moving;  // where chosen keys are shown while they are dragged
-  std::optional<Rect> box;    // that chooses keys
-  struct {                    // the chosen bone's angle and its parent's, over what is seen of the clip
+  bool seconds = false;       // whether the ruler counts seconds instead of frames
+  std::set<int> chosen;       // frames of the selected keys
+  std::map<int, int> moving;  // while keys are dragged: from each selected key's stored frame to its shown frame
+  std::optional<Rect> box;    // the selection rectangle that the user draws around keys
+  struct {                    // the curve of the active bone's angle over the shown frames
     const Clip* clip = nullptr;
-    int bone = -1, first = 0, step = 1;  // frames
-    std::vector<glm::vec2> angles;       // degrees
+    int bone = -1, first = 0, step = 1;  // active bone; frame of the first sample; frames between samples
+    std::vector<glm::vec2> angles;  // one per sample: angle from rest of the bone (x) and of its parent (y), degrees
   } curve;
 
-  // What of time is seen: the frame at the left end of the ruler, and how many fit.
+  // The frames that the timeline shows: the frame at the ruler's left end (`low`) and the number of frames (`count`).
   struct {
-    std::string clip;  // for which it was fitted
+    std::string clip;  // name and frames of the clip to which the window was fitted
     double low = 0, count = 250;
-    std::optional<int> followed;  // the frame at which the play head was when it came into sight last
+    std::optional<int> followed;  // the frame of the play head for which the window was last checked or moved
   } window;
-  Rect ruler, marks, lane, keys, area;  // where these stood in the last picture; empty while the timeline is not shown
+  Rect ruler, marks, lane, keys, area;  // rectangles of the timeline's rows, pixels; empty: not shown
 
-  std::int64_t revision = -1;  // of the step that the last change of frame made
+  std::int64_t revision = -1;  // history revision made by the last frame change; -1: none
   std::unique_ptr<ClipOnRig> prepared;
-  std::unique_ptr<FrameLog> frame_log;  // null: nobody asks what frames cost
+  std::unique_ptr<FrameLog> frame_log;  // measured drawing times; null: not measured
 };
 
-// ---- what is shown
-const Clip* shown_clip(const Editor& editor);  // nullptr where there is none
+// ---- The shown clip and frame
+const Clip* shown_clip(const Editor& editor);  // nullptr: none
 int shown_frame(const Editor& editor);
 struct FrameRange {
   int low, high;
 };
 FrameRange playing_range(const Editor& editor);
-// Where the clip has something: its motion, what plays, keys, markers.
+// Returns the smallest range of frames that contains the clip's motion, playing range, keys and markers.
 FrameRange all_frames(const Clip& clip);
 double frame_rate(const Editor& editor);
-// The clip prepared for the rig; nullptr without either.
+// Returns the shown clip applied to the document's rig, so that it gives a pose for each frame; nullptr without a clip
+// or a rig.
 const ClipOnRig* clip_on_rig(Editor& editor);
 
-// ---- going to a frame
-void show_frame(Editor& editor, int frame);  // at once, for now
-void settle_frame(Editor& editor);           // what is shown becomes the document's
-void drop_frame(Editor& editor);             // back to the document's
+// ---- Going to another frame
+void show_frame(Editor& editor, int frame);  // previews the frame without an edit
+void settle_frame(Editor& editor);           // commits the previewed frame to the document
+void drop_frame(Editor& editor);             // discards the previewed frame and shows the document's frame
 void go_to_frame(Editor& editor, int frame);
 
-// ---- playing
+// ---- Playing
 void play(Editor& editor, int direction);
 void stop_playing(Editor& editor);
-// Once a frame, before the views are drawn, and after them: the moment at which the next frame is due.
+// Both are called once per drawn frame. advance_time() is called before the views are drawn and goes to the playing
+// clip's current frame. await_next_frame() asks the editor to wake up when the next frame is due.
 void advance_time(Editor& editor);
 void await_next_frame(Editor& editor);
 
-// ---- edits
-// The document's pose as its clip says at its frame; as it is where no clip moves the rig.
-//   prepared  in which the preparation is kept for the next time
+// ---- Edits
+
+// Returns the pose of the document's clip at the document's frame; the document's own pose when no clip moves the rig.
+//   prepared  receives the clip applied to the rig, so that the next call is faster; may be nullptr
 std::shared_ptr<const Pose> pose_at_frame(const Document& document, std::unique_ptr<ClipOnRig>* prepared = nullptr);
-// The clip becomes the shown one, at its first frame.
+// Adds the clip to the document, makes it the shown clip and goes to its first frame.
 void add_clip(Document& document, Clip clip);
-// One edit of the shown clip. Where there is no clip, one without a motion is made. The pose is taken from it anew, or,
-// where the edit says nothing of it, stays with what the user changed. Where frames of the motion go, or get another
-// rate, the play head stays at its moment, or goes to the nearest that is left.
+// Changes the shown clip and commits this as one edit. Without a clip, adds a clip that has no motion first. FromClip:
+// takes the document's pose from the changed clip; Stays: keeps the document's pose, with the user's changes. When the
+// edit removes frames of the motion or changes the frame rate, the play head stays at its time, or moves to the nearest
+// remaining frame.
 enum class PoseThen { FromClip, Stays };
 void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
-// The document with what `pose` changes set as keys at its frame.
+// Inserts keys at the document's frame for the bones in which `pose` differs from `before`.
 void key_changes(Document& document, const Pose& before, const Pose& pose);
 
 }  // namespace limber::editor

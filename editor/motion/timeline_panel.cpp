@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Below the views: the transport, and under it time itself: ruler, markers, the clip with the chosen bone's angle,
-// keys.
+// Draws the timeline below the views. At its top is a bar with the play buttons and the fields for frame and range;
+// under it are the ruler, the markers, the clip with the curve of the active bone's angle, and the keys.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,11 +20,11 @@ namespace {
 
 constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56, kThinRow = 16,
                 kEnds = 12;
-constexpr float kLeastTicks = 60;      // pixels from one number to the next
-constexpr Colour kAngle = 0xFF5CB6FF;  // FFB65C
+constexpr float kLeastTicks = 60;      // smallest distance between two numbers of the ruler, pixels at scale 1
+constexpr Colour kAngle = 0xFF5CB6FF;  // colour of the angle's curve, ABGR (RGB: FFB65C)
 
 std::string number_text(int value) {
-  // Groups of three, as in the facts of a clip.
+  // Inserts a space between groups of three digits.
   std::string digits = std::to_string(std::abs(value));
   for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
     digits.insert(static_cast<std::size_t>(place), " ");
@@ -37,7 +37,7 @@ std::string seconds_text(double frames, double rate) {
   return text;
 }
 
-// ---- transport
+// ---- The bar with the play buttons
 
 class Transport {
  public:
@@ -138,8 +138,8 @@ class Transport {
              icon::kOpened);
     if (pressed.hovered)
       tooltip(editor_, place, "Speed",
-              slow ? "Pictures in a second: some frames are left out so that time goes on."
-                   : "Against the clip's own rate.");
+              slow ? "Drawn frames per second: some frames are skipped to keep the clip's speed."
+                   : "Playing speed relative to the clip's own rate.");
     if (pressed.clicked) ImGui::OpenPopup("speeds");
     if (!ImGui::BeginPopup("speeds", ImGuiWindowFlags_NoMove)) return;
     editor_.place.region = Region::Popup;
@@ -150,7 +150,9 @@ class Transport {
     ImGui::EndPopup();
   }
 
-  // A whole number that is committed when its drag or typing ends.
+  // Draws a field for an integer.
+  //   moved  called with the number during a drag; may be empty
+  //   ended  called with the number when dragging or typing ends
   void number(const std::string& name, int value, const std::function<void(int)>& moved,
               const std::function<void(int)>& ended) {
     const float height = look_.px(22), y = std::round(bar_.centre().y - height / 2), width = look_.px(62);
@@ -173,7 +175,7 @@ class Transport {
     words("Frame");
     number("Frame", shown_frame(editor_), {}, [this](int frame) {
       stop_playing(editor_);
-      // Keys may stand anywhere; a motion has an end.
+      // A frame outside a motion is not allowed. A clip without a motion may have keys at any frame.
       const Clip* clip = shown_clip(editor_);
       const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
       go_to_frame(editor_, std::clamp(frame, all.low, all.high));
@@ -192,16 +194,16 @@ class Transport {
       set(std::min(frame, range.high), range.high);
       if (frame > range.high)
         editor_.messages.info("The range begins at frame " + std::to_string(range.high),
-                              "It cannot begin behind its end");
+                              "A range cannot begin after its end");
     });
     number("Range end", range.high, {}, [&](int frame) {
       set(range.low, std::max(range.low, frame));
       if (frame < range.low)
         editor_.messages.info("The range ends at frame " + std::to_string(range.low),
-                              "It cannot end before its beginning");
+                              "A range cannot end before its beginning");
     });
   }
-  // In sight, though it may go beyond the clip.
+  // Sets the playing range, which may reach beyond the clip's frames, and zooms out if part of it is not visible.
   void set(int low, int high) {
     edit_clip(editor_, "Set range", PoseThen::Stays, [&](Clip& clip) {
       clip.range_start = low;
@@ -250,9 +252,9 @@ class Transport {
   float x_, right_;
 };
 
-// ---- time
+// ---- Steps of the ruler
 
-// 1, 2 or 5 times a power of ten, at least `least`.
+// Returns the smallest of the numbers 1, 2 and 5 times a power of ten that is at least `least`.
 double round_step(double least) {
   const double power = std::pow(10, std::floor(std::log10(std::max(least, 1e-6))));
   for (double step : {1.0, 2.0, 5.0})
@@ -260,14 +262,15 @@ double round_step(double least) {
   return 10 * power;
 }
 
-// ---- the play head
+// ---- The play head
 
 std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
 
-// Its tab with what the ruler counts; at the ruler's end while the head itself is out of sight.
+// The drawn play head: a vertical line with a tab in the ruler. The tab shows the frame or the time in seconds,
+// whichever the ruler shows. While the line is outside the shown frames, the tab stays at that end of the ruler.
 struct Head {
   float x;
-  int beyond;  // -1 or 1: it is out of sight at the left or right
+  int beyond;  // -1: left of the shown frames; 1: right of them; 0: visible
   std::string text, other;
   Rect tab;
 };
@@ -290,7 +293,7 @@ Head head_of(const Editor& editor) {
   return head;
 }
 
-// ---- the ruler
+// ---- The ruler
 
 void draw_ruler(Editor& editor) {
   const Look& look = editor.look;
@@ -323,14 +326,15 @@ void draw_ruler(Editor& editor) {
     std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at);
     const glm::vec2 corner(x + look.px(4), ruler.low.y + look.px(2));
     const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
-    // Whole or not at all.
+    // A number that the tab would cover or that would be cut off is not drawn.
     if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kEnds))
       put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
   }
 }
 
-// Names have the room up to the next marker; the last one stands at its marker's left where there is more. Returns what
-// is covered.
+// Draws the markers with their names and returns the rectangles that they cover. A name is cut off before the next
+// marker. The name of the last shown marker is drawn on its left if it does not fit on the right and the left has more
+// room.
 std::vector<Rect> draw_markers(Editor& editor) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
@@ -340,7 +344,7 @@ std::vector<Rect> draw_markers(Editor& editor) {
   const Rect& row = timeline.marks;
   const float half = look.px(5), gap = look.px(9), y = std::round(row.centre().y) - look.px(4),
               end = row.high.x + look.px(kEnds - 2);
-  float begin = row.low.x;  // of what is free
+  float begin = row.low.x;  // x where the free part of the row begins, pixels
   for (std::size_t i = 0; i < clip->markers.size(); ++i) {
     const Marker& marker = clip->markers[i];
     const float x = x_of(timeline, marker.frame);
@@ -360,21 +364,21 @@ std::vector<Rect> draw_markers(Editor& editor) {
   return covered;
 }
 
-// ---- the chosen bone's angle
+// ---- The curve of the active bone's angle
 
-constexpr double kPerSample = 3;     // pixels at least
-constexpr std::size_t kAtOnce = 24;  // samples in one picture, so that none is late
+constexpr double kPerSample = 3;     // smallest distance between two samples of the curve, pixels at scale 1
+constexpr std::size_t kAtOnce = 24;  // samples of the curve computed per drawn frame at most, to keep drawing fast
 
 float degrees_from_rest(const Pose& pose, int bone) {
   const glm::dquat& q = pose.rotation[bone];
   return static_cast<float>(glm::degrees(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), std::abs(q.w))));
 }
 
-// A few samples more, until the curve is whole.
+// Adds up to kAtOnce samples to the curve, and asks for another drawn frame until the curve is complete.
 void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
   Timeline& timeline = *editor.timeline;
   auto& curve = timeline.curve;
-  // At whole frames: between them a motion holds.
+  // Samples lie at integer frames, because a motion has no poses between frames.
   const double per_pixel = timeline.window.count / std::max(1.0f, lane.width());
   const int step = static_cast<int>(std::clamp(std::ceil(kPerSample * editor.look.scale * per_pixel), 1.0, 1e7));
   const int first = static_cast<int>(std::clamp(std::floor(timeline.window.low / step) * step, -1e8, 1e8));
@@ -398,7 +402,8 @@ void draw_curve(Editor& editor, const Rect& bar) {
   const auto& angles = timeline.curve.angles;
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
-  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(32);  // below the name
+  const float low = bar.high.y - editor.look.px(5),
+              height = bar.height() - editor.look.px(32);  // the curve stays below the clip's name
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
   const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
@@ -461,7 +466,9 @@ void draw_keys(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-// What the ruler does not count stands beside it, where `covered` leaves room.
+// Draws the play head. If there is room in the row of markers, draws the time beside it in the unit that the ruler does
+// not show (frames or seconds).
+//   covered  rectangles that the markers cover, pixels
 void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
@@ -491,7 +498,7 @@ void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
   }
 }
 
-// What is seen of time goes along when the play head leaves it, except under a hand that drags.
+// Scrolls the timeline when the play head has moved outside the shown frames. Does not scroll during a drag.
 void follow_head(Editor& editor) {
   auto& window = editor.timeline->window;
   const int frame = shown_frame(editor);
@@ -515,7 +522,7 @@ void place_rows(Editor& editor, const Rect& rect) {
   };
   editor.timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
   timeline.ruler = row(look.px(kRuler));
-  // Low areas have thinner rows, and the lowest do without markers.
+  // With little height the rows are thinner. With very little height there is no row of markers.
   const float rest = rect.high.y - y;
   timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks))
                    : rest >= look.px(3 * kThinRow)  ? row(look.px(kThinRow))

@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFurthest = 1e7;  // frames; no clip is longer
+constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
 
 void show_under_pointer(Editor& editor) {
   const double frame =
@@ -19,7 +19,7 @@ void show_under_pointer(Editor& editor) {
   show_frame(editor, static_cast<int>(frame));
 }
 
-constexpr float kReach = 7;  // pixels at scale 1, from a key's middle
+constexpr float kReach = 7;  // largest distance from the pointer to the centre of a key, pixels at scale 1
 
 std::optional<int> key_under_pointer(const Editor& editor) {
   const Timeline& timeline = *editor.timeline;
@@ -119,7 +119,8 @@ class ChangingKeys final : public Modal {
   TypedNumber number_;
 };
 
-// Chosen keys with the button held.
+// Selects the key at `frame` and drags the selected keys while the button is held. With Shift, adds the key to the
+// selection, or removes it without a drag.
 void drag_keys(Editor& editor, int frame) {
   Timeline& timeline = *editor.timeline;
   const bool extend = editor.input.modifiers().shift;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pointer does in the timeline.
+// Converts between frames and pixels of the timeline, fits the shown frames, and begins what the pointer does in the
+// timeline: scrubbing, selecting and changing keys, and panning.
 #pragma once
 
 #include "editor/context/editor.h"
@@ -9,20 +10,21 @@ namespace limber::editor {
 
 double frame_at(const Timeline& timeline, float x);
 float x_of(const Timeline& timeline, double frame);
-constexpr double kFewestFrames = 8;  // seen at once
-// The whole clip and its range, with a little room.
+constexpr double kFewestFrames = 8;  // fewest frames that the timeline shows
+// Fits the whole motion and the playing range into the timeline, with a small margin on both sides.
 void fit_window(Editor& editor);
-void fit_window_to_keys(Editor& editor);  // the chosen ones; needs some
+void fit_window_to_keys(Editor& editor);  // needs selected keys
 
-// A press of the left button: shows the frame under the pointer until it is released; on a key it chooses that (Shift:
-// as well), and drags the chosen ones.
+// Handles a press of the left button in the timeline. On a key, selects the key (Shift: adds it to the selection or
+// removes it) and drags the selected keys. Elsewhere, deselects all keys and shows the frame under the pointer while
+// the button is held.
 void press_timeline(Editor& editor);
-// With Ctrl: the keys inside the rectangle that is drawn are chosen.
+// Begins to draw a rectangle that selects the keys inside; with Shift, it adds them to the selection.
 void box_keys(Editor& editor);
-// The chosen keys follow the pointer, or a typed number, until they are confirmed.
+// Begins a modal tool that moves, scales or duplicates the selected keys by the pointer or a typed number.
 enum class KeyChange { Move, Scale, Duplicate };
 void begin_changing_keys(Editor& editor, KeyChange change);
-// Of the middle button.
+// Pans the timeline while the middle button is held.
 void pan_timeline(Editor& editor);
 
 }  // namespace limber::editor

@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr char kMark = '\x01';  // before the names of these poses: no key types it
+constexpr char kMark = '\x01';  // prefix of built-in poses' names; no user can type this character
 
 void draw_pictures(const std::shared_ptr<const Armature>& armature, PoseLibrary& poses) {
   std::vector<int> bones(armature->bones.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The poses that any body can take (core/pose/body_poses.h) as entries of the pose library, for the open rig, with
-// pictures of its skeleton in them. They are no part of the document.
+// The built-in poses that fit any body (core/pose/body_poses.h) as entries of the pose library: computed for the open
+// rig, with pictures of the rig's skeleton. They are not stored in the document.
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 
 namespace limber::editor {
 
-// Found once for each rig, and again when it changes. Empty without a rig or where its bones are not known by their
-// names.
+// Returns the built-in poses for the open rig. They are computed again when the rig changes. Empty without a rig, or
+// when the names of the rig's bones are not recognised.
 const PoseLibrary& body_pose_cards(const Editor& editor);
-// The same with pictures, which are drawn the first time.
+// Returns the built-in poses for the open rig with their pictures. The pictures are drawn at the first call.
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor);
 
-// What TransformSettings::library_pose calls such a pose: no name that a user gives.
+// Returns the name by which TransformSettings::library_pose refers to a built-in pose. It differs from the name of any
+// pose of the user.
 std::string library_name(const NamedPose& body_pose);
 bool is_body_pose(const std::string& library_name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Joints dragged, limbs following.
+// Modal tools that drag a joint or a pole while the limb follows by inverse kinematics.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1;
-constexpr double kPinWeight = 10;  // against what is dragged
+constexpr double kPinWeight = 10;  // IK weight of a pinned joint's target; the dragged joint's target has weight 1
 
 class Dragging final : public TransformTool {
  public:
@@ -97,7 +97,7 @@ class Dragging final : public TransformTool {
     target_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
     ReachSettings settings;
     settings.keep_limits = editor.posing.keep_limits;
-    // From where the drag has come, so that the limb does not leap.
+    // The IK solver starts from the shown pose, so that the limb does not jump from one drawn frame to the next.
     Pose start = shown_pose(editor);
     std::vector<ReachGoal> goals = pins_;
     if (is_root_) {
@@ -115,7 +115,9 @@ class Dragging final : public TransformTool {
 
   std::vector<FormField> parameters() const override {
     std::vector<FormField> fields = fields_of_way(target_ - from_);
-    if (!is_root_) fields.push_back(number_of("Bones", "How many bones follow.", chain_, 1, depth_of(bone_), "%.0f"));
+    if (!is_root_)
+      fields.push_back(
+          number_of("Bones", "Number of bones that follow the dragged joint.", chain_, 1, depth_of(bone_), "%.0f"));
     return fields;
   }
   void set(const std::vector<FormField>& fields) override {
@@ -138,8 +140,9 @@ class Dragging final : public TransformTool {
   double short_of_ = 0;
 };
 
-// The limb turns towards its pole while its end stays; with X-mirror on the other side's does so too, where it has a
-// pole.
+// Modal tool that drags the pole of the active bone's limb. The limb turns so that its middle joint points towards the
+// pole, while the limb's end keeps its position. With X-mirror on, the pole of the other side's limb moves as a mirror
+// image, if that limb has a pole.
 class DraggingPole final : public TransformTool {
  public:
   DraggingPole(Editor& editor, const Grip& grip)
@@ -177,7 +180,8 @@ class DraggingPole final : public TransformTool {
         .pose;
   }
 
-  // As seen from the body, wherever it went.
+  // Returns the pole's position mirrored at the plane between the left and the right side of the body, mm. The plane
+  // moves with the root bone.
   glm::dvec3 mirrored() const {
     int root = bone_;
     while (armature_->bones[root].parent >= 0) root = armature_->bones[root].parent;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pose on show does to the tissue, measured while it rests: beside the editor the pose is resampled as a
-// result would be, label by label the same, and counted. A pose that changes cancels that; nothing is measured unseen.
+// Measures how the shown pose changes the volume of each tissue. While the pose does not change, a background task
+// resamples the label volume in this pose, by the same method as a final result, and counts the voxels of each tissue.
+// A change of the pose cancels the task. Nothing is measured while no panel shows the numbers.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace limber::editor {
 
 struct Editor;
 
-// A body in a pose, for the dense map. Equal pointers are equal contents.
+// A body, and the pose in which its tissue volumes are measured. Equal pointers mean equal contents.
 struct DenseWish {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
@@ -27,8 +28,8 @@ struct DenseWish {
   std::shared_ptr<const SkinWeights> weights;
   Pose pose;
   Blend blend = Blend::DualQuaternion;
-  std::shared_ptr<const Seams> seams = nullptr;       // as the document keeps them; null: those that are found
-  std::shared_ptr<const BoneMap> bone_map = nullptr;  // of the document
+  std::shared_ptr<const Seams> seams = nullptr;       // the document's edited seams; null: the automatic seams
+  std::shared_ptr<const BoneMap> bone_map = nullptr;  // the document's bone map; null: none
 
   bool operator==(const DenseWish&) const = default;
 };
@@ -38,9 +39,9 @@ struct PoseMetrics {
     std::string name;
     glm::vec3 colour{0};
     double mm3_before = 0, mm3_after = 0;
-    std::optional<double> change_percent() const;  // none where there was nothing before
+    std::optional<double> change_percent() const;  // nothing if mm3_before is 0
   };
-  std::vector<Row> tissues;  // bone as one; largest first
+  std::vector<Row> tissues;  // largest volume first; one row for all bone tissues together
   Row total;
   std::int64_t overlap_voxels = 0;
 };
@@ -48,24 +49,27 @@ PoseMetrics measure(const DenseWish& wish, Progress& progress = no_progress());
 
 class LiveMetrics {
  public:
-  // Once a frame: begins to measure a pose that has `settled`, and stops where it is no longer wished for.
+  // Called once per drawn frame. Starts to measure, and stops when the pose changes or no panel shows the numbers.
+  //   wish     the body and the pose to measure; nothing: none
+  //   settled  whether the pose has stopped changing; measuring starts only then
   void follow(Editor& editor, const std::optional<DenseWish>& wish, bool settled);
-  void want() { wanted_ = true; }  // someone is looking, in this frame
-  // Of the pose on show; null while it is not known.
+  void want() { wanted_ = true; }  // called by a panel in each drawn frame that shows the numbers
+  // Returns the metrics of the shown pose; null until measuring has ended.
   const PoseMetrics* known() const { return is_known_ ? &metrics_ : nullptr; }
-  // Of that, or of the pose of the same volume that was known last.
+  // Returns the metrics that were measured last, which may belong to an earlier pose; null when they belong to another
+  // volume.
   const PoseMetrics* last() const { return metrics_of_ && metrics_of_ == of_.volume ? &metrics_ : nullptr; }
-  const std::string& trouble() const { return trouble_; }  // why it cannot be; "" for nothing
+  const std::string& trouble() const { return trouble_; }  // why measuring failed; "": it has not failed
 
  private:
   void stop(Editor& editor);
 
-  DenseWish of_;  // what is known, being measured, or failed
+  DenseWish of_;  // the body and pose measured now or last, also if that failed
   PoseMetrics metrics_;
   std::shared_ptr<const LabelVolume> metrics_of_;
   bool is_known_ = false, wanted_ = false;
   std::string trouble_;
-  int job_ = 0;  // 0: none
+  int job_ = 0;  // id of the background task that measures; 0: none
 };
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pose does to the volume: change of every tissue, overlap, joint limits.
+// Panel "Volume, live": how the shown pose changes the volume of each tissue (cm^3 and percent), the overlap in voxels,
+// and whether joints exceed their limits.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,9 +18,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kMostTissues = 6;  // that are shown at first
+constexpr std::size_t kMostTissues = 6;  // tissues listed before the user expands the list
 constexpr char kAll[] = "Volume, live: all tissues";
-constexpr double kBeyond = 1e-6;  // radians
+constexpr double kBeyond = 1e-6;  // smallest excess over a joint limit that is reported, radians
 
 Rect padded(const Editor& editor, const Rect& row) {
   const float inset = editor.look.px(10);
@@ -39,7 +40,8 @@ void put_cells(Editor& editor, const Rect& row, const Cells& cells, const std::a
   put_text(editor, digits, colours[2], Rect{{change, row.low.y}, inner.high}, cells.change, Align::Right);
 }
 
-// `known`: of the pose on show; else of the last one, in grey.
+// Draws a row with a tissue's volume (cm^3) and its change (percent).
+//   known  whether the numbers belong to the shown pose; numbers of an earlier pose are grey
 void put_change(Editor& editor, const Rect& row, const PoseMetrics::Row& tissue, ImFont* font, bool known,
                 float indent) {
   const Look& look = editor.look;
@@ -52,7 +54,7 @@ void put_change(Editor& editor, const Rect& row, const PoseMetrics::Row& tissue,
             font, look.fonts.mono, indent);
 }
 
-// A word at the left, figures at the right.
+// Draws a row with text on the left and numbers on the right.
 void put_line(Editor& editor, Column& column, const std::string& words, const std::string& figures, Colour colour) {
   const Look& look = editor.look;
   const Rect row = padded(editor, column.row(24));
@@ -66,7 +68,7 @@ void put_metrics(Editor& editor, Column& column, const PoseMetrics& metrics, boo
   const Colour second = look.theme.text2;
   put_cells(editor, column.row(24), {"Tissue", "cm\u00b3", "change"}, {second, second, second}, look.fonts.small,
             look.fonts.small, 0);
-  // The worst first.
+  // Tissues that change most come first.
   std::vector<PoseMetrics::Row> tissues = metrics.tissues;
   std::stable_sort(tissues.begin(), tissues.end(), [](const auto& a, const auto& b) {
     return std::abs(a.change_percent().value_or(0)) > std::abs(b.change_percent().value_or(0));
@@ -125,13 +127,13 @@ void draw_live_volume(Editor& editor, Column& column) {
       const Rect row = padded(editor, column.row(28));
       put_text(editor, look.fonts.regular, look.theme.warn, row, trouble);
       if (ImGui::IsMouseHoveringRect(im(row.low), im(row.high)))
-        tooltip(editor, row, "The volume stays behind", trouble);
+        tooltip(editor, row, "The volume does not follow the pose", trouble);
     } else {
       live.metrics().want();
       if (metrics) put_metrics(editor, column, *metrics, known != nullptr);
       else
         put_text(editor, look.fonts.regular, look.theme.text2, padded(editor, column.row(28)),
-                 posed ? "Measured once the pose rests" : "At rest");
+                 posed ? "Measured once the pose is still" : "At rest");
       put_limits(editor, column);
     }
     column.space(6);

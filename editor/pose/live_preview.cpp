@@ -19,7 +19,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kRest = 0.3;  // s that a pose rests before a finer map is worth its time
+constexpr double kRest = 0.3;  // a finer preview map is computed when the pose has not changed for this time, s
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b) {
   return a.rotation == b.rotation && a.translation == b.translation;
@@ -29,7 +29,7 @@ bool same_motions(const std::vector<RigidTransform>& a, const std::vector<RigidT
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_motion);
 }
 
-// Whether poses of one are poses of the other.
+// Returns whether two rigs have bones with equal parents, heads and tails, so that a pose moves them in the same way.
 bool same_bones(const Armature& a, const Armature& b) {
   const auto same = [](const Bone& p, const Bone& q) {
     return p.parent == q.parent && p.head == q.head && p.tail == q.tail;
@@ -37,8 +37,9 @@ bool same_bones(const Armature& a, const Armature& b) {
   return std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
 }
 
-// Weights may hold their bones in another order than the rig. False when one is not in the rig.
-//   posed  of the rig's bones
+// Appends to `motions` the motion from rest of each bone of the weights, in the order of the weights, which may differ
+// from the rig's. Returns false when a bone of the weights is not in the rig.
+//   posed  motions of the rig's bones from rest
 bool motions_of_weights(const SkinWeights& weights, const Armature& armature, const std::vector<RigidTransform>& posed,
                         std::vector<RigidTransform>& motions) {
   for (const std::string& name : weights.bones()) {
@@ -50,7 +51,7 @@ bool motions_of_weights(const SkinWeights& weights, const Armature& armature, co
   return true;
 }
 
-// A body made ready, at some step.
+// A body that is prepared for computing its preview maps (PreviewMap) at one node spacing.
 struct ReadyBody {
   PosedBody body;
   std::unique_ptr<LivePreview> preview;
@@ -69,7 +70,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
           std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};
 }
 
-// Of the bones of the rig that the solve began with, as far as it has come.
+// Returns the motions from rest of the rig's bones in the part of the target pose that a running FEM solve has reached.
 std::vector<RigidTransform> motions_of_rig(const Solve& solve, const SolveFeed::Seen& seen) {
   const Armature& armature = *solve.from.armature;
   std::vector<RigidTransform> motions = posed_from_rest(armature, part_of_pose(*solve.from.pose, seen.reached));
@@ -130,12 +131,12 @@ void MapMaker::work() {
     try {
       const auto make = [&] {
         if (!(ready.body == made.wish.body)) {
-          ready = {};  // two at once would be too much memory
+          ready = {};  // frees the old body first, because two bodies need too much memory
           ready = make_ready(made.wish.body, divisor_);
         }
         made.map = ready.preview->update(made.wish.motions, made.wish.blend, made.wish.mesh);
       };
-      // After a stroke the next one may be under way, and its frames come first.
+      // After a brush stroke the user may already paint the next one, so the preview map is computed at low priority.
       const bool is_painted =
           ready.body.volume == made.wish.body.volume && ready.body.weights != made.wish.body.weights;
       if (is_painted || made.wish.mesh.rest) in_background(make);
@@ -168,7 +169,7 @@ void LivePose::show(const MapMaker::Made& made) {
   seen_ = made.wish;
 }
 
-// Tissue where the mesh of a solve carries it.
+// Shows the body as it is deformed by the tet mesh of a running finite element solve.
 void LivePose::follow(const Solve& solve, double now) {
   const SolveFeed::Seen seen = solve.feed->seen();
   const PosedBody body{solve.from.volume, solve.from.tissues, solve.from.weights, nullptr, nullptr, nullptr};
@@ -184,7 +185,9 @@ void LivePose::follow(const Solve& solve, double now) {
   }
 }
 
-// Which map is shown; returns what it stands for.
+// Selects the preview map that the views show. Returns the body and the pose in which tissue volumes are to be
+// measured; nothing at rest, in the Skin workspace, during a finite element solve, and when the volume cannot follow
+// the pose.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
   seen_ = {};
@@ -218,7 +221,8 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   }
   swift_.ask(wish_);
   if (pose == rest_pose(*document.armature)) {
-    // Seen once, so that the driver's programs are ready when the first bone is turned.
+    // The preview map of the rest pose is shown once, so that the graphics driver compiles the shaders before the user
+    // turns the first bone.
     if (!warmed_up_ && coarse_.wish == wish_ && coarse_.map) shown_ = coarse_.map, warmed_up_ = true;
     return {};
   }
@@ -229,7 +233,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   if (coarse_.map && made.volume == document.volume && is_of_rig) {
     show(coarse_);
   } else if (trouble_.empty()) {
-    // The first map is being made, and the bones wait for it.
+    // Bones are shown at rest until the first preview map is computed, so that they match the body.
     seen_.pose = rest_pose(*document.armature);
     seen_.rig_motions.clear();
   }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The volume that follows the pose. While the Pose workspace shows another pose than rest, the views read the volume
-// through the inverse map of that pose (core/deform/preview_map.h): rays, slices and whatever the pointer is over.
+// The live preview: the volume in the views follows the pose. While a pose other than rest is shown, rays, slices and
+// picking read the volume through the preview map of that pose, which returns the rest position of each posed position
+// (PreviewMap, core/deform/preview_map.h).
 //
-// Maps are made by threads of their own, always of the newest pose; one that a newer pose overtook before its turn is
-// left out. The editor never waits for a map. Bones are drawn in the pose of the map on show, so body and skeleton move
-// together, as fast as the machine can. A pose that has rested for a while gets a map of half the step. A body of which
-// only the weights are others, as after a stroke, is made ready on what frames leave of the machine.
+// Separate threads compute the maps, always for the newest pose; older poses that still wait are skipped. The editor
+// never waits for a map. Bones are drawn in the pose of the shown map, so that body and skeleton move together. When
+// the pose has not changed for a while, a finer map with half the node spacing is computed. When only the weights have
+// changed, as after a brush stroke, the map is computed at low priority, so that drawing the next stroke stays fast.
 #pragma once
 
 #include <condition_variable>
@@ -26,26 +27,26 @@ namespace limber::editor {
 struct Editor;
 struct Solve;
 
-// A body that maps are made of. Equal pointers are equal contents.
+// A body for which preview maps (PreviewMap) are computed. Equal pointers mean equal contents.
 struct PosedBody {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Armature> armature;  // that says which limbs touch without being one; null: none
-  std::shared_ptr<const Seams> seams;        // as the document keeps them; null: those that are found
-  std::shared_ptr<const BoneMap> bone_map;   // of the document
+  std::shared_ptr<const Armature> armature;  // rig from whose bone names the limbs are found; null: none
+  std::shared_ptr<const Seams> seams;        // the document's edited seams; null: the automatic seams
+  std::shared_ptr<const BoneMap> bone_map;   // the document's bone map; null: none
 
   bool operator==(const PosedBody&) const = default;
 };
 
-// A body in a pose.
+// A request for a preview map (PreviewMap): a body and the pose to show it in.
 struct PoseWish {
   PosedBody body;
-  std::vector<RigidTransform> motions;  // of the weights' bones
+  std::vector<RigidTransform> motions;  // motion of each bone of the weights from rest
   Blend blend = Blend::DualQuaternion;
-  MeshPose mesh = {};                            // what carries tissue in place of its bones; empty: nothing
-  std::vector<RigidTransform> rig_motions = {};  // of the rig's bones, which are drawn
-  Pose pose = {};                                // of the rig; empty while a mesh carries the tissue
+  MeshPose mesh = {};  // a deformed tet mesh that moves tissue instead of the bones; empty: none
+  std::vector<RigidTransform> rig_motions = {};  // motion from rest in which each bone of the rig is drawn
+  Pose pose = {};                                // the rig's pose; empty while a tet mesh moves the tissue
 
   bool operator==(const PoseWish&) const;
 };
@@ -55,16 +56,17 @@ class MapMaker {
   struct Made {
     PoseWish wish;
     std::shared_ptr<const PreviewMap> map;
-    std::string trouble;  // an Error's line in place of the map
+    std::string trouble;  // why no map could be computed; "": `map` is set
   };
 
-  //   divisor  of the body's own step
-  //   wake     called from another thread when there is something to take
+  // Starts a thread that computes preview maps.
+  //   divisor  the maps' node spacing is the body's default spacing divided by this
+  //   wake     called from that thread when take() has a new result
   MapMaker(int divisor, std::function<void()> wake);
   ~MapMaker();
 
-  void ask(const PoseWish& wish);  // in place of what waits; once is enough
-  std::optional<Made> take();      // what was made last, once
+  void ask(const PoseWish& wish);  // replaces a request that still waits; ignores a repeated request
+  std::optional<Made> take();      // returns the newest result once, then nothing until the next result
   bool busy() const;
 
  private:
@@ -84,17 +86,20 @@ class LivePose {
  public:
   explicit LivePose(const std::function<void()>& wake);
 
-  // Once a frame: asks for what is to be shown, and takes what was made.
+  // Called once per drawn frame: takes over finished preview maps, selects the map to show and requests new ones.
   void follow(Editor& editor);
-  // Of the pose that is shown, or the last one that is known; null at rest and where nothing can follow.
+  // Returns the preview map to show: the map of the shown pose, or of an earlier pose until that map is computed; null
+  // at rest and when the volume cannot follow the pose.
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
-  // Of the rig's bones, in the pose in which the map shows the body: an older one than the pose that is asked for while
-  // its map is being made, rest before there is any (no motions). Where no body follows, the pose that is asked for.
+  // Returns the motions from rest in which the rig's bones are drawn. They belong to the pose of the shown preview map,
+  // so that bones and body match; empty (rest) before the first map. If no volume follows the pose, they belong to the
+  // newest pose.
   const std::vector<RigidTransform>& rig_motions() const { return seen_.rig_motions; }
   const Pose& pose() const { return seen_.pose; }
-  // Why the volume stays behind: "No weights yet"; "" where it follows, and where there is nothing to pose.
+  // Returns why the volume does not follow the pose, such as "No weights yet"; "" when it follows or the rig is at
+  // rest.
   const std::string& trouble() const { return trouble_; }
-  bool posed() const { return posed_; }  // the pose on show is another than rest
+  bool posed() const { return posed_; }  // whether the volume is to follow a pose other than rest
   LiveMetrics& metrics() { return metrics_; }
   bool busy() const { return swift_.busy() || thorough_.busy(); }
 
@@ -104,11 +109,11 @@ class LivePose {
   void show(const MapMaker::Made& made);
 
   MapMaker swift_, thorough_;
-  MapMaker::Made coarse_, fine_;  // of either
+  MapMaker::Made coarse_, fine_;  // newest preview map of swift_ and of thorough_
   PoseWish wish_;
-  double since_ = 0;  // the editor's time when the wish came up
+  double since_ = 0;  // Editor::now when wish_ changed last, s
   std::shared_ptr<const PreviewMap> shown_;
-  PoseWish seen_;  // what the views show
+  PoseWish seen_;  // the body and pose that the views show
   std::string trouble_;
   bool posed_ = false, warmed_up_ = false;
   LiveMetrics metrics_;

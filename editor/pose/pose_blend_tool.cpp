@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose drawn towards another one, or away from it.
+// Modal tool that blends the selected bones from one pose towards another one, or away from it.
 #include <algorithm>
 #include <cmath>
 
@@ -12,10 +12,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPixels = 200;                  // of the pointer's way for the whole amount, at scale 1
-constexpr double kSnap = 0.1, kSnapFine = 0.01;  // with Ctrl, with Ctrl and Shift
+constexpr double kPixels = 200;                  // pointer motion that changes the blend amount by 1, pixels at scale 1
+constexpr double kSnap = 0.1, kSnapFine = 0.01;  // snapping steps of the blend amount: Ctrl, Ctrl + Shift
 
-// On the shortest way from one rotation to another, and beyond them.
+// Returns the rotation at `share` of the shortest turn from one rotation to another. A share outside [0, 1]
+// extrapolates.
 glm::dquat along(const glm::dquat& from, const glm::dquat& to, double share) {
   glm::dquat by = glm::conjugate(from) * to;
   if (by.w < 0) by = -by;
@@ -42,7 +43,11 @@ class Blending final : public TransformTool {
     return blend_.label + " " + (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
   }
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"0-9"}, "Per cent"}, {{"Ctrl"}, "Snap"}, {{"Shift"}, "Slowly"}, {{"Enter"}, "Keep"}, {{"Esc"}, "Back"}};
+    return {{{"0-9"}, "Type percent"},
+            {{"Ctrl"}, "Snap"},
+            {{"Shift"}, "Precise"},
+            {{"Enter"}, "Confirm"},
+            {{"Esc"}, "Cancel"}};
   }
   void cancel(Editor& editor) override { drop_shown_pose(editor); }
 
@@ -75,8 +80,8 @@ class Blending final : public TransformTool {
   }
 
   std::vector<FormField> parameters() const override {
-    return {number_of("Amount", "How far the chosen bones go.", 100 * amount_, blend_.back ? -100 * blend_.most : 0,
-                      100 * blend_.most, "%.1f", "%")};
+    return {number_of("Amount", "How far the selected bones are blended.", 100 * amount_,
+                      blend_.back ? -100 * blend_.most : 0, 100 * blend_.most, "%.1f", "%")};
   }
   void set(const std::vector<FormField>& fields) override { number_.set(fields[0].value); }
 

@@ -16,9 +16,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;  // mm: as far as a body can be put
+constexpr double kFar = 1e5;  // largest offset of the body from rest along each axis, mm
 
-// A number of the pose; the body follows while it changes, and the edit is one.
+// Draws a field for one number of the pose, such as an angle. The views show the changed pose while the user edits the
+// number, and one edit is committed at the end.
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown,
                  double farthest, const char* format, const char* unit, const std::function<void(Pose&, double)>& set) {
   auto& edited = editor.edited_number;
@@ -42,7 +43,7 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
   commit_pose(editor, label, changed(number));
 }
 
-// Three numbers want more than a property's place.
+// Draws number fields for x, y and z in one row, wider than the single field of other rows.
 void draw_three(Editor& editor, Column& column, const std::string& title, const std::string& label,
                 const glm::dvec3& shown, double farthest, const std::function<void(Pose&, int axis, double)>& set) {
   const Look& look = editor.look;
@@ -58,7 +59,8 @@ void draw_three(Editor& editor, Column& column, const std::string& title, const 
   }
 }
 
-// The other three parts make up what is left of 1; nothing where they are all zero.
+// Returns the rotation with one component of its quaternion set to `value`, and the other three scaled so that the
+// quaternion has unit length. Returns the rotation unchanged when the other three are zero.
 glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
   glm::dvec4 q(rotation.w, rotation.x, rotation.y, rotation.z);
   q[part] = 0;
@@ -69,7 +71,7 @@ glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
   return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
 }
 
-// w, x, y, z.
+// Draws four fields for the components w, x, y and z of the bone's quaternion.
 void draw_quaternion(Editor& editor, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
   const Look& look = editor.look;
   Rect rect = column.property("W X Y Z");
@@ -101,7 +103,8 @@ std::string text_of(const char* format, double radians) {
   return text;
 }
 
-// Angles of a hinge from the anatomical position.
+// Returns the joint's limits as text, such as "0 to 150" degrees. A hinge's angles are 0 in the anatomical position.
+//   at_rest  the hinge's angle in the rest pose, radians
 std::string words_of(const JointLimits& limits, double at_rest) {
   switch (limits.type) {
     case JointLimits::Type::Free: return "none";
@@ -130,7 +133,7 @@ void draw_posed_bone(Editor& editor, Column& column) {
     const Pose pose = shown_pose(editor);
     const std::string label = "Rotate " + bone.name;
     const glm::dvec3 at_rest = turn_at_rest(*rig, index);
-    const double zero = glm::dot(at_rest, bone.limits.axis);  // of a hinge
+    const double zero = glm::dot(at_rest, bone.limits.axis);  // hinge angle in the rest pose, radians
     if (bone.limits.type == JointLimits::Type::Hinge) {
       const glm::dvec3 axis = bone.limits.axis;
       draw_number(editor, column.property("Angle"), "Angle", label,
@@ -141,8 +144,9 @@ void draw_posed_bone(Editor& editor, Column& column) {
     } else {
       draw_three(editor, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
                  [&](Pose& next, int axis, double degrees) {
-                   // The others as they were before: beyond 90 degrees about y the three are no longer read as they
-                   // were given.
+                   // The other two angles are computed from the pose before the change, so that they stay the same
+                   // during a drag. Angles that are computed from the changed rotation would jump when the angle about
+                   // y passes 90 degrees.
                    glm::dvec3 angles = own_angles(bone, next.rotation[index]);
                    angles[axis] = degrees;
                    next.rotation[index] = turned_by_own_angles(bone, angles);
@@ -150,7 +154,7 @@ void draw_posed_bone(Editor& editor, Column& column) {
     }
     draw_quaternion(editor, column, label, index, pose.rotation[index]);
     if (bone.parent < 0)
-      draw_three(editor, column, "Place, mm", "Move body", pose.root_translation, kFar,
+      draw_three(editor, column, "Offset, mm", "Move body", pose.root_translation, kFar,
                  [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
     draw_ik(editor, column);
     const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);

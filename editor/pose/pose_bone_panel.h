@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the active bone stands in the Pose workspace, in numbers that can be dragged and typed: a hinge's angle, else the
-// turn about the bone's own axes, x first, then y, then z; a root's place; what its joint allows.
+// Panel of the active bone in the Pose workspace. The user can drag or type its numbers: the angle of a hinge, or for
+// other joints the turns about the bone's local axes (x first, then y, then z); the quaternion; and the offset of a
+// root bone. The panel also shows the joint's limits.
 #pragma once
 
 #include "editor/ui/section.h"

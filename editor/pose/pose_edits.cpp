@@ -41,7 +41,7 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
   const Pose turned = next;
   for (int bone = 0; bone < std::ssize(pairs); ++bone) {
     const int other = pairs[bone];
-    // Where both sides were turned, each keeps its own.
+    // When the bones of both sides were turned, each keeps its own rotation.
     if (other == bone || turned.rotation[bone] == before.rotation[bone] ||
         turned.rotation[other] != before.rotation[other])
       continue;
@@ -64,7 +64,8 @@ void commit_pose(Editor& editor, const std::string& label, Pose pose) {
 
 void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next) {
   drop_shown_pose(editor);
-  // What was posed stays in sight.
+  // In the Skin workspace, lets the views show the document's pose instead of a test pose, so that the user sees the
+  // change.
   if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
     if (editor.timeline->auto_key) key_changes(next, before, pose);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pose that is worked on: the document's, or what is shown in its place while a tool changes it.
+// Edits of the document's pose, to which X-mirror and joint limits are applied, and access to the pins and poles by
+// which inverse kinematics holds limbs.
 #pragma once
 
 #include <memory>
@@ -11,27 +12,32 @@
 
 namespace limber::editor {
 
-// The pose in which the last frame shows the bones, and the body where it follows them. Handles and marks stand by it.
+// Returns the pose in which the last drawn frame shows the bones. It may be older than the edited pose while the body's
+// preview is computed. Gizmos and marks are drawn at this pose.
 Pose seen_pose(const Editor& editor);
 
-// So many bones from this one up to where the rig branches: an arm does not take the trunk along.
+// Returns the number of bones of the limb that ends in this bone. Going up from the bone, the limb ends below the first
+// ancestor that has more than one child, so that an arm does not include the trunk.
 int limb_of(const Armature& armature, int bone);
 
-// With X-mirror on, the other sides of the bones that were turned do the same in the mirror.
+// With X-mirror on, returns `next` with every rotation that differs from `before` also applied, mirrored, to the bone
+// of the other side of the body. With X-mirror off, returns `next` unchanged.
 Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 
-// What a change of a pose may do at a joint's limits.
+// Returns the pose with the rotations of `bones` restricted to their joint limits; unchanged while Keep to joint limits
+// is off.
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 
-// One edit; none where nothing changed.
+// Commits the pose as one edit; does nothing when the document does not change.
 void commit_pose(Editor& editor, const std::string& label, Pose pose);
-//   next  the document with what else the edit changes
+//   next  the document to commit with the pose; it may contain other changes
 void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next);
 
-// The document's pins and poles, maybe none.
+// Returns the document's pins and poles; empty when the document has none.
 const Anchors& anchors_of(const Document& document);
 
-// A rotation relative to rest as turns about the bone's own axes, x first, then y, then z: degrees.
+// Convert between a bone's rotation relative to rest and angles in degrees about the bone's local axes: first x, then
+// y, then z.
 glm::dvec3 own_angles(const Bone& bone, const glm::dquat& rotation);
 glm::dquat turned_by_own_angles(const Bone& bone, const glm::dvec3& degrees);
 

@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-// The frames where the chosen bones, or all, have keys.
+// Returns the frames at which the selected bones have keys. When no bone is selected, returns the frames of all keys.
 std::set<int> key_frames(const Editor& editor) {
   std::set<int> frames;
   const Clip* clip = shown_clip(editor);
@@ -30,16 +30,16 @@ std::set<int> key_frames(const Editor& editor) {
 }
 
 std::string needs_other_key(const Editor& editor) {
-  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  if (editor.workspace != Workspace::Pose) return "Switch to the Pose workspace first";
   std::set<int> frames = key_frames(editor);
   frames.erase(shown_frame(editor));
-  return frames.empty() ? "The chosen bones have no key at another frame" : "";
+  return frames.empty() ? "The selected bones have no key at another frame" : "";
 }
 
 std::string needs_next_key(const Editor& editor) {
-  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  if (editor.workspace != Workspace::Pose) return "Switch to the Pose workspace first";
   const std::set<int> frames = key_frames(editor);
-  return frames.upper_bound(shown_frame(editor)) == frames.end() ? "The chosen bones have no later key" : "";
+  return frames.upper_bound(shown_frame(editor)) == frames.end() ? "The selected bones have no later key" : "";
 }
 
 void blend_to_neighbours(Editor& editor) {
@@ -57,7 +57,7 @@ void blend_to_neighbours(Editor& editor) {
   begin_tool(editor, begin_blending(editor, blend));
 }
 
-// Each bone's own next key.
+// Changes the next key of each selected bone so that it holds the bone's rotation in the shown pose.
 void propagate(Editor& editor) {
   settle_frame(editor);
   const int now = editor.document().frame;
@@ -77,11 +77,11 @@ void propagate(Editor& editor) {
 }
 
 std::string needs_change(const Editor& editor) {
-  if (editor.workspace != Workspace::Pose) return "Works in the Pose workspace";
+  if (editor.workspace != Workspace::Pose) return "Switch to the Pose workspace first";
   return editor.document().armature && editor.document().pose ? "" : "The rig is at rest";
 }
 
-// The volume stays where it is: so a rig is laid into a body by posing it.
+// Makes the pose the rest pose of the rig. The volume does not move, so a rig can be fitted to a body by posing it.
 void apply_as_rest(Editor& editor) {
   settle_frame(editor);
   drop_shown_pose(editor);
@@ -93,10 +93,10 @@ void apply_as_rest(Editor& editor) {
                                                         [](const auto& clip) { return !clip->keys.bones.empty(); });
   commit(editor, "Apply pose as rest", std::move(next));
   if (weights)
-    editor.messages.info("Apply pose as rest", "The weights are those of the rig before: compute them again");
+    editor.messages.info("Apply pose as rest", "The weights belong to the old rest pose: compute them again");
   if (poses)
     editor.messages.warn("Apply pose as rest",
-                         "Keys and poses of the library turn the bones from the new rest now: look at them again");
+                         "Keys and library poses now turn the bones from the new rest pose: check them");
 }
 
 }  // namespace
@@ -119,12 +119,12 @@ std::optional<Blend> between_keys(Editor& editor) {
 std::vector<Operator> pose_neighbour_operators() {
   return {
       {"pose.blend_neighbour", "Blend to neighbour", "", "Pose",
-       "The chosen bones go a part of the way to the next key, or to the one before: with the pointer, or by per cent.",
+       "Blend the selected bones towards the next or the previous key, with the pointer or by percent.",
        blend_to_neighbours, needs_other_key},
-      {"pose.propagate", "Propagate pose", "", "Pose",
-       "The next key of the chosen bones takes the pose that they have now.", propagate, needs_next_key},
+      {"pose.propagate", "Propagate pose", "", "Pose", "Copy the pose of the selected bones to their next key.",
+       propagate, needs_next_key},
       {"pose.apply_as_rest", "Apply pose as rest", icon::kRig, "Pose",
-       "The rig is at rest as it is posed now; the volume stays.", apply_as_rest, needs_change},
+       "Make the current pose the rest pose of the rig. The volume does not move.", apply_as_rest, needs_change},
   };
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses in time and at rest: towards the keys before and after, on to the next key, into the rig itself.
+// Operators that blend the pose towards the keys before and after the shown frame, copy the pose to the next key, and
+// make the pose the rig's rest pose.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,8 @@ namespace limber::editor {
 
 std::vector<Operator> pose_neighbour_operators();
 
-// From the key of the chosen bones before the frame to the one after it; nothing where they have not both.
+// Returns a blend whose amount goes from the selected bones' last key before the shown frame to their first key after
+// it; nothing when either key is missing.
 std::optional<Blend> between_keys(Editor& editor);
 
 }  // namespace limber::editor

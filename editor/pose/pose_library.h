@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The project's library of poses: a card for each with its picture. A click on one applies it to the chosen bones, or
-// to all; dragging it sideways goes a part of the way there.
+// The project's pose library: a card with a picture for each pose. A click on a card applies the pose to the selected
+// bones, or to all bones if none is selected. Dragging a card sideways blends partly towards the pose.
 #pragma once
 
 #include "core/pose/pose_library.h"
@@ -11,9 +11,10 @@ namespace limber::editor {
 
 class Column;
 
-const NamedPose* chosen_pose(const Editor& editor);  // nullptr where none is
+const NamedPose* chosen_pose(const Editor& editor);  // the selected pose of the library; nullptr: none
 
-// The document's pose with the chosen bones `share` of the way to the named one: [0, 1].
+// Returns the document's pose with the selected bones blended towards the named pose.
+//   share  how far, [0, 1]; 1: the named pose
 Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share);
 void apply_pose(Editor& editor, const NamedPose& named, double share);
 

@@ -24,12 +24,12 @@ std::string needs_chosen(const Editor& editor) {
   if (const std::string why = needs_rig(editor); !why.empty()) return why;
   return chosen_pose(editor)               ? ""
          : editor.document().poses.empty() ? "Add a pose to the library first"
-                                           : "Choose a pose of the library first";
+                                           : "Select a pose of the library first";
 }
-// What is renamed or deleted is the user's own.
+// Returns why the selected pose cannot be renamed or deleted; "" when it can. Built-in poses cannot.
 std::string needs_own(const Editor& editor) {
   if (const std::string why = needs_chosen(editor); !why.empty()) return why;
-  return is_body_pose(editor.transform_settings->library_pose) ? "This pose comes with the program" : "";
+  return is_body_pose(editor.transform_settings->library_pose) ? "This pose is built in and cannot be changed" : "";
 }
 
 std::size_t place_of(const PoseLibrary& library, const std::string& name) {
@@ -38,7 +38,8 @@ std::size_t place_of(const PoseLibrary& library, const std::string& name) {
       library.begin());
 }
 
-// The body as the 3D view shows it in this pose; bones where it has not followed. "" without a body.
+// Returns a PNG picture of the shown pose as seen in the 3D view: of the body, or also of the bones when the body does
+// not follow the pose. Returns "" without a volume.
 std::string picture_of_pose(Editor& editor) {
   Views& views = *editor.views;
   if (!editor.document().volume) return "";
@@ -80,7 +81,7 @@ void blend_to_chosen(Editor& editor) {
 void ask_pose_name(Editor& editor) {
   const std::string before = editor.transform_settings->library_pose;
   editor.open_dialog(make_form({"Rename pose",
-                                "Another name for the chosen pose of the library.",
+                                "Changes the name of the selected pose of the library.",
                                 "Rename",
                                 {text_of("Name", "The pose's name.", before)},
                                 [](const Editor&, const std::vector<FormField>& fields) -> std::string {
@@ -141,19 +142,20 @@ void apply_pose(Editor& editor, const NamedPose& named, double share) {
 std::vector<Operator> pose_library_operators() {
   return {
       {"pose.library_add", "Add to library", icon::kAdd, "Pose",
-       "Keeps the pose of the chosen bones, or of all, in the library.", add_pose, needs_rig},
-      {"pose.library_apply", "Apply pose of library", "", "Pose",
-       "The chosen bones, or all, take the chosen pose of the library.",
+       "Add the pose of the selected bones, or of all, to the pose library.", add_pose, needs_rig},
+      {"pose.library_apply", "Apply library pose", "", "Pose",
+       "Apply the selected pose of the library to the selected bones, or to all.",
        [](Editor& e) {
          const NamedPose named = *chosen_pose(e);
          apply_pose(e, named, 1);
        },
        needs_chosen},
-      {"pose.library_blend", "Blend to pose of library", "", "Pose",
-       "The chosen bones go a part of the way: with the pointer, or by per cent.", blend_to_chosen, needs_chosen},
-      {"pose.library_rename", "Rename pose...", icon::kRename, "Pose",
-       "Gives the chosen pose of the library another name.", ask_pose_name, needs_own},
-      {"pose.library_delete", "Delete pose", icon::kTrash, "Pose", "Takes the chosen pose out of the library.",
+      {"pose.library_blend", "Blend to library pose", "", "Pose",
+       "Blend the selected bones towards the selected pose of the library, with the pointer or by percent.",
+       blend_to_chosen, needs_chosen},
+      {"pose.library_rename", "Rename pose...", icon::kRename, "Pose", "Rename the selected pose of the library.",
+       ask_pose_name, needs_own},
+      {"pose.library_delete", "Delete pose", icon::kTrash, "Pose", "Delete the selected pose from the library.",
        delete_pose, needs_own},
   };
 }

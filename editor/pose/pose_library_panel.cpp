@@ -21,8 +21,9 @@ namespace limber::editor {
 namespace {
 
 constexpr int kAcross = 3;
-constexpr float kPicture = 63, kWords = 22;        // heights
-constexpr double kFirstPixels = 4, kPixels = 200;  // before a drag begins; for the whole way
+constexpr float kPicture = 63, kWords = 22;  // heights of a card's picture and name, pixels at scale 1
+// Pointer motion that begins a drag, and that blends fully to the card's pose, pixels at scale 1.
+constexpr double kFirstPixels = 4, kPixels = 200;
 
 void draw_picture(Editor& editor, const NamedPose& pose, const Rect& rect) {
   const Look& look = editor.look;
@@ -33,15 +34,15 @@ void draw_picture(Editor& editor, const NamedPose& pose, const Rect& rect) {
     texture = editor.pictures.texture(key, [&] { return render::parse_png(pose.picture, pose.name); });
   }
   if (!texture) return put_icon(look.fonts.regular, look.theme.view_text2, rect, icon::kPose);
-  // What the picture has beyond the card's shape is cut at its sides.
+  // The picture has a wider aspect ratio than the card, so its left and right sides are cut off.
   const float cut = (1 - rect.width() / rect.height() / 1.5f) / 2;
   ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
                                               im(rect.low), im(rect.high), {cut, 0}, {1 - cut, 1}, 0xFFFFFFFF,
                                               look.px(4));
 }
 
-// A press in place applies the pose when it ends; a press that goes sideways blends towards it, and Escape leaves it.
-//   name  of TransformSettings::library_pose
+// Handles a press on a card: a click applies the pose, a sideways drag blends towards the pose, and Escape cancels.
+//   name  the pose's name in TransformSettings::library_pose
 void take_press(Editor& editor, const NamedPose& pose, const std::string& name, const Pressed& pressed) {
   auto& drag = editor.transform_settings->library_drag;
   if (pressed.activated) {
@@ -63,12 +64,13 @@ void take_press(Editor& editor, const NamedPose& pose, const std::string& name, 
   }
   const bool moved = drag.moved;
   drag = {};
-  const NamedPose named = pose;  // the document changes
+  const NamedPose named = pose;  // copied, because apply_pose() replaces the document
   if (moved) apply_pose(editor, named, share);
   else if (pressed.clicked) apply_pose(editor, named, 1);
 }
 
-//   description  of a pose that comes with the program
+// Draws the card of a pose.
+//   description  description of a built-in pose; "": a pose of the user
 void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::string_view description = "") {
   const Look& look = editor.look;
   const Rect picture{rect.low, {rect.high.x, rect.low.y + look.px(kPicture)}};
@@ -91,7 +93,8 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
   }
   put_text(editor, look.fonts.small, chosen ? look.theme.text : look.theme.text2,
            Rect{{rect.low.x, picture.high.y}, rect.high}, pose.name, Align::Centre);
-  const std::string use = "Click: the chosen bones take it, or all. Drag sideways: a part of the way.";
+  const std::string use =
+      "Click to apply the pose to the selected bones, or to all. Drag sideways to blend towards it.";
   if (pressed.hovered && !pressed.held)
     tooltip(editor, rect, pose.name, description.empty() ? use : std::string(description) + " " + use);
   if (pressed.right_clicked) {
@@ -101,7 +104,8 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
   take_press(editor, pose, name, pressed);
 }
 
-// Cards in rows; `describe` gives the description of the card of that number.
+// Draws the cards of the poses in rows.
+//   describe  returns the description of the pose with an index
 template <class Describe>
 void draw_cards(Editor& editor, Column& column, const PoseLibrary& library, const Describe& describe) {
   const Look& look = editor.look;

@@ -35,9 +35,9 @@ void ask_flex(Editor& editor) {
   std::vector<std::string> names;
   for (const Bone& bone : editor.document().armature->bones) names.push_back(bone.name);
   int chosen = editor.selection.bone.value_or(-1);
-  // A bone that bends by itself, such as a forearm, where none is chosen.
+  // Without a selected bone, the dialog begins with a bone that can bend.
   if (chosen < 0 || chosen >= std::ssize(names)) {
-    // A hinge, else the first bone that has something to bend against.
+    // Selects the first bone with a hinge joint, such as a forearm, else the first bone that has a parent.
     const auto& bones = editor.document().armature->bones;
     const auto child = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.parent >= 0; });
     chosen = child == bones.end() ? 0 : static_cast<int>(child - bones.begin());
@@ -53,9 +53,10 @@ void ask_flex(Editor& editor) {
     flex_axis(*e.document().armature, fields[0].chosen);
     const JointLimits& limits = e.document().armature->bones[fields[0].chosen].limits;
     if (limits.type != JointLimits::Type::Hinge)
-      return std::string("Turned about the axis across its parent, on top of the pose it has.");
+      return std::string(
+          "Not a hinge: it turns about the axis at right angles to it and its parent. The angle is added to its pose.");
     char text[96];
-    std::snprintf(text, sizeof text, "A hinge, from %.0f\u00b0 to %.0f\u00b0. Turned on top of the pose it has.",
+    std::snprintf(text, sizeof text, "A hinge, from %.0f\u00b0 to %.0f\u00b0. The angle is added to its current pose.",
                   glm::degrees(limits.minimum), glm::degrees(limits.maximum));
     return std::string(text);
   };
@@ -70,10 +71,10 @@ void ask_flex(Editor& editor) {
   };
   editor.open_dialog(
       make_form({"Flex a joint",
-                 "Turns a bone about its hinge. Positive bends further.",
+                 "Turns a bone about its hinge. A positive angle bends it further.",
                  "Flex",
                  {choice_of("Bone", "The bone that is turned about its head.", names, chosen),
-                  number_of("Angle", "By how much, on top of the pose it has.", 60, -180, 180, "%+.1f", "\u00b0")},
+                  number_of("Angle", "Angle that is added to the current pose.", 60, -180, 180, "%+.1f", "\u00b0")},
                  outcome,
                  act}));
 }
@@ -102,7 +103,7 @@ void copy_pose(Editor& editor) {
   for (int bone : chosen_bones(editor)) editor.posing.copied[armature.bones[bone].name] = pose.rotation[bone];
 }
 
-// Bones of the same names take the copied rotations; flipped, those of the other side.
+// Applies the copied rotations to the bones of the same names, or with `flip`, mirrored to the bones of the other side.
 void paste_pose(Editor& editor, bool flip) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   Pose copied = rest_pose(*armature);
@@ -131,7 +132,7 @@ void flip_pose(Editor& editor) {
   commit_pose(editor, "Flip pose", limited(editor, std::move(pose), all));
 }
 
-// The pose, and the same with the chosen bones at rest.
+// The document's pose, and the same pose with the selected bones at rest.
 struct Ends {
   Pose pose, rest;
 };
@@ -196,7 +197,7 @@ void blend_to_copied(Editor& editor) {
                                              .to = copied}));
 }
 
-// One edit of pins and poles.
+// Commits the document with new pins and poles as one edit.
 void commit_anchors(Editor& editor, const std::string& label, Anchors anchors) {
   Document next = editor.document();
   next.anchors = std::make_shared<const Anchors>(std::move(anchors));
@@ -217,7 +218,8 @@ void toggle_pins(Editor& editor) {
   commit_anchors(editor, (all ? "Unpin " : "Pin ") + what, std::move(anchors));
 }
 
-// Where the limb bends to now, so that nothing moves: beyond the joint in its middle.
+// Returns the position of a new pole, world coordinates in mm. It lies beyond the limb's middle joint, on the side to
+// which that joint is bent now, so that adding the pole does not move the limb.
 glm::dvec3 pole_of(const Editor& editor, int bone) {
   const Armature& armature = *editor.document().armature;
   const auto posed = posed_from_rest(armature, pose_of(editor.document()));
@@ -228,12 +230,13 @@ glm::dvec3 pole_of(const Editor& editor, int bone) {
   const glm::dvec3 along = end - begin;
   const double squared = glm::dot(along, along);
   glm::dvec3 out = squared > 0 ? middle - begin - along * (glm::dot(middle - begin, along) / squared) : glm::dvec3(0);
-  // A straight limb may bend to any side: forward.
+  // The middle joint of a straight limb gives no direction, so the pole is put in front of the limb (anterior, -y).
   if (glm::length(out) < 1e-3) out = {0, -1, 0};
   return middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
 }
 
-// The bone, and with X-mirror on that of the other side, where it ends a limb too.
+// Returns the bone, which ends a limb. With X-mirror on, also returns its counterpart on the other side if that bone
+// ends a limb of two bones or more.
 std::vector<int> limbs_of(const Editor& editor, int bone) {
   std::vector<int> bones = with_other_sides(editor, {bone});
   std::erase_if(bones, [&](int other) { return other != bone && limb_of(*editor.document().armature, other) < 2; });
@@ -252,7 +255,7 @@ void toggle_pole(Editor& editor) {
   commit_anchors(editor, (had ? "Remove pole of " : "Add pole to ") + name, std::move(anchors));
 }
 
-// A pin at the limb's end and a pole for its middle.
+// Pins the end of the active bone's limb and adds a pole for its middle joint.
 void add_ik(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const int bone = *editor.selection.bone;
@@ -265,7 +268,8 @@ void add_ik(Editor& editor) {
     commit_anchors(editor, "Hold " + armature.bones[bone].name + " by IK", std::move(anchors));
 }
 
-// Of the chosen bones, of all where none is chosen.
+// Removes the pins and poles of the selected bones; with X-mirror on, also those of the other side. When no bone is
+// selected, removes all pins and poles.
 void clear_ik(Editor& editor) {
   Anchors anchors = anchors_of(editor.document());
   if (editor.selection.bones.empty()) anchors = {};
@@ -278,7 +282,7 @@ void clear_ik(Editor& editor) {
 
 std::string needs_anchor(const Editor& editor) {
   if (const std::string why = needs_rig(editor); !why.empty()) return why;
-  return anchors_of(editor.document()) == Anchors{} ? "No joint is pinned, no limb has a pole" : "";
+  return anchors_of(editor.document()) == Anchors{} ? "No joint is pinned and no limb has a pole" : "";
 }
 
 std::string needs_limb(const Editor& editor) {
@@ -298,73 +302,76 @@ Operator space_operator(const char* id, const char* label, const char* descripti
 
 std::vector<Operator> pose_operators() {
   std::vector<Operator> operators = {
-      {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turns the chosen bones with the pointer.",
+      {"pose.rotate", "Rotate", icon::kRotate, "Pose", "Turn the selected bones with the pointer.",
        [](Editor& e) { begin_tool(e, begin_turning(e)); }, needs_bone},
       {"pose.move", "Reach", icon::kMove, "Pose",
-       "The end of the chosen bone goes with the pointer and its limb follows; the root takes the body along.",
+       "Drag the end of the active bone; its limb follows. Dragging the root bone moves the body.",
        [](Editor& e) { begin_tool(e, begin_dragging(e)); }, needs_bone},
       {"pose.clear_rotation", "Clear rotation", "", "Pose",
-       "The chosen bones go back to rest; all bones where none is chosen.", clear_rotation, needs_pose},
-      {"pose.clear_translation", "Clear translation", "", "Pose", "The body goes back to its place.", clear_translation,
-       needs_pose},
+       "Return the selected bones to rest, or all bones if none is selected.", clear_rotation, needs_pose},
+      {"pose.clear_translation", "Clear translation", "", "Pose", "Return the body to its rest position.",
+       clear_translation, needs_pose},
       {"pose.copy", "Copy pose", icon::kCopy, "Pose",
-       "Keeps the rotations of the chosen bones, or of all, for pasting.", copy_pose, needs_rig},
-      {"pose.paste", "Paste pose", "", "Pose", "Bones of the same names take the copied rotations.",
+       "Copy the rotations of the selected bones, or of all bones if none is selected.", copy_pose, needs_rig},
+      {"pose.paste", "Paste pose", "", "Pose", "Paste the copied rotations to the bones of the same names.",
        [](Editor& e) { paste_pose(e, false); }, needs_copy},
       {"pose.paste_flipped", "Paste flipped pose", "", "Pose",
-       "The other side's bones take the copied rotations, as in a mirror.", [](Editor& e) { paste_pose(e, true); },
+       "Paste the copied rotations mirrored to the bones of the other side.", [](Editor& e) { paste_pose(e, true); },
        needs_copy},
       {"pose.flip", "Flip pose", icon::kMirror, "Pose",
-       "The left side does what the right side did, and the right what the left did.", flip_pose, needs_pose},
+       "Exchange the poses of the left and the right side of the body, mirrored.", flip_pose, needs_pose},
       {"pose.push", "Push pose", "", "Pose",
-       "The chosen bones go further away from rest: with the pointer, or by per cent.", push, needs_pose},
+       "Exaggerate the pose of the selected bones away from rest, with the pointer or by percent.", push, needs_pose},
       {"pose.relax", "Relax pose", "", "Pose",
-       "The chosen bones come nearer to rest: with the pointer, or by per cent.", relax, needs_pose},
+       "Blend the selected bones back towards rest, with the pointer or by percent.", relax, needs_pose},
       {"pose.breakdown", "Breakdown", icon::kBreakdown, "Pose",
-       "A pose between the keys before and after, or without them between rest and the one there is: with the pointer, "
-       "or by per cent.",
+       "Blend the selected bones between the previous and the next key, or between rest and the pose if there are no "
+       "keys.",
        break_down, needs_rig},
-      {"pose.blend_rest", "Blend to rest", "", "Pose", "The chosen bones go a part of the way to rest.", blend_to_rest,
+      {"pose.blend_rest", "Blend to rest", "", "Pose", "Blend the selected bones partly back to rest.", blend_to_rest,
        needs_pose},
       {"pose.blend_copied", "Blend to copied pose", "", "Pose",
-       "The chosen bones go a part of the way to the copied pose.", blend_to_copied, needs_copy},
+       "Blend the selected bones partly towards the copied pose.", blend_to_copied, needs_copy},
       {"pose.pin", "Pin joint", "", "Pose",
-       "The ends of the chosen bones stay where they are while other joints are dragged; again frees them.",
+       "Keep the ends of the selected bones in place while other joints are dragged. Run again to unpin them.",
        toggle_pins, needs_bone,
        [](const Editor& e) {
          return needs_bone(e).empty() &&
                 anchors_of(e.document()).pins.contains(e.document().armature->bones[*e.selection.bone].name);
        }},
-      {"pose.pole", "Pole", "", "Pose", "The limb bends towards a point that can be dragged; again takes it away.",
-       toggle_pole, needs_limb,
+      {"pose.pole", "Pole", "", "Pose",
+       "Add a pole: a point that you can drag and towards which the limb bends. Run again to remove it.", toggle_pole,
+       needs_limb,
        [](const Editor& e) {
          return needs_bone(e).empty() &&
                 anchors_of(e.document()).poles.contains(e.document().armature->bones[*e.selection.bone].name);
        }},
       {"pose.add_ik", "Hold by IK", icon::kReach, "Pose",
-       "The limb's end is pinned and its middle bends towards a pole, whatever else is dragged.", add_ik, needs_limb},
-      {"pose.clear_ik", "Clear IK", "", "Pose", "Takes pins and poles of the chosen bones away, or of all.", clear_ik,
-       needs_anchor},
-      {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose",
-       "A dragged joint takes its whole limb along, not its bone alone.",
+       "Pin the end of the active bone's limb and add a pole towards which the limb's middle joint bends.", add_ik,
+       needs_limb},
+      {"pose.clear_ik", "Clear IK", "", "Pose",
+       "Remove the pins and poles of the selected bones, or of all bones if none is selected.", clear_ik, needs_anchor},
+      {"pose.auto_ik", "Auto-IK", icon::kReach, "Pose", "Let a dragged joint move its whole limb, not only its bone.",
        [](Editor& e) { e.transform_settings->auto_ik = !e.transform_settings->auto_ik; }, nullptr,
        [](const Editor& e) { return e.transform_settings->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit",
-       "What is done to a bone is done to the one on the other side, in the mirror.",
+       "Apply every change of a bone to its counterpart on the other side too, mirrored.",
        [](Editor& e) { e.transform_settings->x_mirror = !e.transform_settings->x_mirror; }, nullptr,
        [](const Editor& e) { return e.transform_settings->x_mirror; }},
-      space_operator("space.global", "Global axes", "Gizmos and locks go by the axes of the world.", Space::Global),
-      space_operator("space.local", "Local axes", "Gizmos and locks go by the bone's own axes.", Space::Local),
-      space_operator("space.parent", "Parent axes", "Gizmos and locks go by the axes of the bone above.",
+      space_operator("space.global", "Global axes", "Align gizmos and axis locks with the axes of the world.",
+                     Space::Global),
+      space_operator("space.local", "Local axes", "Align gizmos and axis locks with the bone's local axes.",
+                     Space::Local),
+      space_operator("space.parent", "Parent axes", "Align gizmos and axis locks with the axes of the parent bone.",
                      Space::Parent),
-      space_operator("space.view", "View axes", "Gizmos and locks go by the picture: right, up, towards you.",
+      space_operator("space.view", "View axes", "Align gizmos and axis locks with the view: right, up, towards you.",
                      Space::View),
-      {"pose.limits", "Keep to joint limits", "", "Pose", "Joints stop where their limits end.",
+      {"pose.limits", "Keep to joint limits", "", "Pose", "Stop joints at their limits.",
        [](Editor& e) { e.posing.keep_limits = !e.posing.keep_limits; }, nullptr,
        [](const Editor& e) { return e.posing.keep_limits; }},
-      {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turns a bone about its hinge by an angle.", ask_flex,
+      {"pose.flex", "Flex a joint...", icon::kRotate, "Pose", "Turn a bone about its hinge by a typed angle.", ask_flex,
        needs_rig},
-      {"pose.clear", "Clear pose", icon::kUndo, "Pose", "Every bone goes back to rest.", clear_pose, needs_pose},
+      {"pose.clear", "Clear pose", icon::kUndo, "Pose", "Return every bone to rest.", clear_pose, needs_pose},
   };
   for (auto list : {pose_neighbour_operators, pose_library_operators})
     for (Operator& op : list()) operators.push_back(std::move(op));

@@ -1,36 +1,38 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Turning bones and dragging joints, as in Blender. The pointer turns about the line of sight; X, Y or Z locks an axis
-// of the chosen space, the same key again another's, once more frees it; R turns like a trackball. Digits are degrees
-// or mm. Ctrl snaps, Shift goes slowly. A click or Enter keeps the pose, Escape or the right button brings the old one
-// back.
+// Modal tools that turn bones, drag joints and blend poses, as in Blender. Moving the pointer turns bones about the
+// line of sight. Pressing X, Y or Z locks an axis of the selected space; pressing it again locks that axis of another
+// space; a third press unlocks. R turns bones like a trackball. Typed numbers are degrees, mm or percent. Ctrl snaps,
+// Shift slows down. A click or Enter keeps the new pose; Escape or the right button restores the old one.
 #pragma once
 
 #include "editor/viewport/transform_tool.h"
 
 namespace limber::editor {
 
-// The axes of the rings about a bone's head: those of the space, or turned so that the nearest runs along the hinge of
-// a joint that keeps its limits. So a hinge turns by the angle that the pointer goes round its ring.
+// Returns the axes about which the gizmo's rings at a bone's head turn, as columns. These are the axes of the space.
+// For a hinge that keeps its limits, they are rotated so that the nearest of them lies on the hinge's axis: dragging
+// this ring by an angle then turns the hinge by the same angle.
 glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
                          const ViewProjection& view);
-// From a button that is held on a gizmo's ring, the angle goes by the ring as it is seen.
+// Begins to turn the selected bones. If the user drags a ring of the gizmo, the angle is measured along the ring as the
+// view shows it.
 std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip = {});
-// The tail of the active bone goes with the pointer and its limb follows; a root's head takes the whole body along.
-// Pinned tails stay where they are.
+// Begins to drag the tail of the active bone while the bones of its limb follow. Dragging the root bone moves the whole
+// body. Pinned tails keep their positions.
 std::unique_ptr<TransformTool> begin_dragging(Editor& editor, const Grip& grip = {});
 
-// The chosen bones go the share base + slope * amount of the way from one pose to another. The pointer changes the
-// amount, a number is its percentage.
+// A blend of the selected bones between two poses: `from` at share 0, `to` at share 1. The share is base + slope *
+// amount. The pointer changes the amount; a typed number is the amount in percent.
 struct Blend {
-  std::string label;  // of the edit
-  std::string words;  // beside the amount
+  std::string label;  // name of the edit in the undo history
+  std::string words;  // text shown beside the amount
   Pose from, to;
   double base = 0, slope = 1;
-  double begin = 0, most = 1;     // the amount at first, and as far as the pointer takes it
-  std::optional<Pose> back = {};  // what amounts below zero lead to, instead of `to`
+  double begin = 0, most = 1;     // initial amount; largest amount that the pointer can set
+  std::optional<Pose> back = {};  // the pose to which negative amounts blend, instead of `to`
 };
 std::unique_ptr<TransformTool> begin_blending(Editor& editor, const Blend& blend);
-// The active bone's pole goes with the pointer, and its limb turns towards it.
+// Begins to drag the pole of the active bone's limb. The limb's middle joint turns towards the pole.
 std::unique_ptr<TransformTool> begin_dragging_pole(Editor& editor, const Grip& grip = {});
 
 }  // namespace limber::editor

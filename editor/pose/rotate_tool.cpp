@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones turned about their heads.
+// Modal tool that turns the selected bones about their heads.
 #include <cmath>
 #include <numbers>
 
@@ -18,25 +18,26 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// The posed axis of a hinge that keeps its limits; nothing of another joint.
+// Returns the axis of the bone's hinge in the pose, world coordinates; nothing when the joint is no hinge or while Keep
+// to joint limits is off.
 std::optional<glm::dvec3> hinge_of(const Editor& editor, const Armature& armature, const Pose& pose, int bone) {
   const Bone& b = armature.bones[bone];
   if (!editor.posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;
   return b.parent < 0 ? b.limits.axis : posed_from_rest(armature, pose)[b.parent].rotation * b.limits.axis;
 }
 
-// The axis of the three that runs most nearly along a direction.
+// Returns the index (0 to 2) of the axis that is most nearly parallel to a direction, in either sense.
 int nearest_axis(const glm::dmat3& axes, const glm::dvec3& direction) {
   int nearest = 0;
   for (int axis = 1; axis < 3; ++axis)
     if (std::abs(glm::dot(axes[axis], direction)) > std::abs(glm::dot(axes[nearest], direction))) nearest = axis;
   return nearest;
 }
-constexpr double kSnapDegrees = 5, kSnapFine = 1;  // with Ctrl, with Ctrl and Shift
-constexpr double kTrackballPerPixel = 0.01;        // radians, at scale 1
-constexpr double kNearLimit = 5;                   // degrees, from where an end of a joint's range is warned of
-constexpr double kHeld = 0.1;                      // degrees that a limit takes from a turn before it is said
-constexpr double kLimitArc = 96;                   // pixels at scale 1
+constexpr double kSnapDegrees = 5, kSnapFine = 1;  // snapping steps in degrees: Ctrl, Ctrl + Shift
+constexpr double kTrackballPerPixel = 0.01;        // trackball: turn per pixel of pointer motion at scale 1, radians
+constexpr double kNearLimit = 5;                   // an angle closer to its limit is drawn as a warning, degrees
+constexpr double kHeld = 0.1;     // a bone further than this from the asked rotation is stopped by a limit, degrees
+constexpr double kLimitArc = 96;  // radius of the arc that shows the limits, pixels at scale 1
 
 class Turning final : public TransformTool {
  public:
@@ -155,7 +156,11 @@ class Turning final : public TransformTool {
     return next;
   }
 
-  // What a hinge leaves of a turn about another axis is no news, unless it leaves nothing.
+  // Returns whether a joint limit stops the bone before it reaches the rotation that the user asks for. A hinge that is
+  // turned about another axis than its own always stays short of it; it counts as stopped only when it does not turn at
+  // all or has reached an end of its range.
+  //   asked  the pose that the user asks for, without limits
+  //   kept   the pose with limits applied
   bool is_held(int index, const Pose& asked, const Pose& kept) const {
     const auto apart = [&](const glm::dquat& a, const glm::dquat& b) {
       return glm::degrees(2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))))) > kHeld;
@@ -167,24 +172,25 @@ class Turning final : public TransformTool {
     return std::min(std::abs(angle - limits.minimum), std::abs(angle - limits.maximum)) < 1e-6;
   }
 
-  // Which limit keeps a bone from turning as it is asked to.
+  // Returns the text that says which joint limit stops the bone `held_`.
   std::string held_text() const {
     const Bone& bone = armature_->bones[*held_];
     const auto reading = *held_ == active_ ? this->reading(before_) : std::nullopt;
     if (*held_ == active_ && !reading && bone.limits.type == JointLimits::Type::Hinge)
-      return bone.name + " turns about its hinge only";
-    return "Held by the limit of " + bone.name +
+      return bone.name + " only turns about its hinge";
+    return "At the joint limit of " + bone.name +
            (reading && reading->kind != JointReading::Kind::Fixed ? " (" + range_text(*reading) + ")" : "");
   }
 
   std::vector<FormField> parameters() const override {
     if (trackball_ && !number_.typed())
-      return {
-          number_of("About up", "About the picture's vertical.", glm::degrees(rolled_.x), -360, 360, "%.2f", "\u00b0"),
-          number_of("About right", "About the picture's horizontal.", glm::degrees(rolled_.y), -360, 360, "%.2f",
-                    "\u00b0")};
+      return {number_of("About up", "Angle about the view's vertical axis.", glm::degrees(rolled_.x), -360, 360, "%.2f",
+                        "\u00b0"),
+              number_of("About right", "Angle about the view's horizontal axis.", glm::degrees(rolled_.y), -360, 360,
+                        "%.2f", "\u00b0")};
     std::vector<FormField> fields = fields_of_axis();
-    fields.insert(fields.begin(), number_of("Angle", "How far the bones turn.", shown_, -360, 360, "%.2f", "\u00b0"));
+    fields.insert(fields.begin(), number_of("Angle", "Angle by which the bones turn about the axis.", shown_, -360, 360,
+                                            "%.2f", "\u00b0"));
     return fields;
   }
   void set(const std::vector<FormField>& fields) override {
@@ -207,12 +213,14 @@ class Turning final : public TransformTool {
     commit_pose(editor, "Rotate " + what, std::move(next));
   }
 
-  // Of the active joint, before the turn and as it is shown.
+  // Returns the active joint's angle in a pose, with its limits, measured about the axis of this turn; nothing when the
+  // joint has no limits about this axis.
   std::optional<JointReading> reading(const Pose& pose) const {
     return read_joint(armature_->bones[active_], pose.rotation[active_], glm::conjugate(above_) * axis(), at_rest_);
   }
 
-  // What the turn asks for, in the joint's own angle.
+  // Returns the angle that the active joint would have after the turn without its limits, radians.
+  //   start  the joint's angle and limits before the turn
   double asked(const JointReading& start) const { return start.angle + start.sense * glm::radians(shown_); }
 
   Colour limit_colour(const Editor& editor) const {
@@ -226,7 +234,7 @@ class Turning final : public TransformTool {
   std::string limit_text(const Editor& editor) const {
     const auto now = reading(shown_pose(editor));
     if (!now)
-      return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Across the hinge";
+      return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Not the hinge's axis";
     return text_of(*now);
   }
 
@@ -244,15 +252,15 @@ class Turning final : public TransformTool {
   std::vector<int> bones_;
   int active_ = 0;
   bool trackball_;
-  bool by_ring_, on_hinge_ = false;  // held by a ring; by the one that turns about the hinge
+  bool by_ring_, on_hinge_ = false;  // whether a ring is dragged; whether this ring lies on the hinge
   glm::dmat3 ring_axes_{1};
   float scale_;
   AngleDrag drag_;
-  const glm::dvec3 at_rest_;       // of the active joint, from the anatomical position
-  std::optional<int> held_;        // the bone that a limit holds; the active one before others
-  glm::dquat above_{1, 0, 0, 0};   // the active bone's parent
-  glm::dvec2 rolled_{0};           // radians
-  double shown_ = 0, turned_ = 0;  // degrees
+  const glm::dvec3 at_rest_;       // turn of the active joint from the anatomical position to rest, radians
+  std::optional<int> held_;        // the bone that a joint limit stops; the active bone if several
+  glm::dquat above_{1, 0, 0, 0};   // rotation of the active bone's parent from rest
+  glm::dvec2 rolled_{0};           // trackball: turns about the view's up and right axes, radians
+  double shown_ = 0, turned_ = 0;  // degrees: turn about the axis; trackball's total turn
 };
 
 }  // namespace

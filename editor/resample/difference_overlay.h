@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where sides A and B differ, marked in 3D and in slices: on each side the voxels whose tissue is another one on the
-// other side, or none at all, have a colour of that side, and the rest is dull. Through the same field that weights and
-// measures of finite elements are shown by; found beside the editor, once for a pair of volumes.
+// Marks in the 3D view and in slices where the compared volumes A and B differ. A voxel of A at whose position B has
+// another tissue or none gets a colour of A, and the other way round; all other voxels are dimmed. The renderer gets
+// the colours as a field of one colour per voxel. A task computes them once for a pair of volumes.
 #pragma once
 
 #include <array>
@@ -15,41 +15,44 @@
 
 namespace limber::editor {
 
-// One of two volumes as held against the other, and what is shown of it.
+// One of the two compared volumes: its differing voxels and their colours.
 struct ComparedSide {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueVoxels> tissue;
   DifferingSide differing;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
 };
 struct ComparedVolumes {
   ComparedSide a, b;
-  std::shared_ptr<const TissueTable> tissues;  // whose colours are dulled
+  std::shared_ptr<const TissueTable> tissues;  // voxels that do not differ have these colours, dimmed
 
   const ComparedSide& side(bool of_a) const { return of_a ? a : b; }
 };
 
 struct DifferenceView {
   bool shown = false;
-  std::shared_ptr<const ComparedVolumes> made;  // the last
+  std::shared_ptr<const ComparedVolumes> made;  // the comparison computed last
   std::optional<int> task;
 };
 
-// Colours of a side's marks, sRGB: where the other side has nothing, and where it has another tissue.
+// Colours of the marked voxels of volume A or B, sRGB. air: the other volume has no tissue at the voxel; tissue: it has
+// another tissue.
 struct MarkColours {
   glm::vec3 air, tissue;
 };
 MarkColours marks_of(bool side_a);
 
-// Shown in the Resample workspace, while there are two volumes to compare.
+// Returns whether the difference is shown. It is shown in the Resample workspace while there are two volumes to
+// compare.
 bool shows_difference(const Editor& editor);
-// In place of what else voxels are coloured by.
+// Turns the overlay on or off. Turning it on turns off the other overlays that colour voxels.
 void show_difference_overlay(Editor& editor, bool on);
-// Into the scenes of this frame.
+// Puts the colours of the differing voxels into the scenes of this frame.
 void show_difference(Editor& editor);
-// What is found of the volumes that are compared; null: not yet.
+// Returns the comparison of the current volumes A and B; null: not computed yet.
 const ComparedVolumes* compared_volumes(const Editor& editor);
-// Of a voxel of what the pointer is on: "at rest: Fat"; "" where the difference is not shown.
+// Returns the tissue that the other volume has at the voxel under the pointer, "in B: Fat"; "" if the difference is not
+// shown.
 std::string other_side_text_at(const Editor& editor, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

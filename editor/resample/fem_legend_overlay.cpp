@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Over a view that shows a result of finite elements: what its colours mean, and from where to where this one's go.
+// Draws over a view the legend of the finite element colours: the measure's colour scale, and the range of its values
+// in this result.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +14,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 322, kNarrow = 236, kHeight = 58, kMargin = 8, kNeeded = 360;
-constexpr int kSteps = 64;  // of the ramp
+constexpr int kSteps = 64;  // colour steps of the ramp
 
 Colour colour(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 

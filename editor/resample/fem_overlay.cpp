@@ -21,9 +21,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // both sides of a comparison, by two measures
+constexpr std::size_t kRemembered = 4;  // most meshes in the cache: both sides of a comparison, with two measures each
 
-// Pressed is blue, swollen red, both the darker the more.
+// Colours of the volume ratio: blue is compressed, red is swollen. Darker colours mean a stronger change.
 constexpr std::array<glm::vec3, 5> kChange = {render::srgb(0x15294F), render::srgb(0x2C5CA6), render::srgb(0xC9CDD4),
                                               render::srgb(0xC0572F), render::srgb(0x591B0E)};
 
@@ -40,7 +40,8 @@ std::optional<ShownMesh> mesh_of(const std::shared_ptr<const Result>& result) {
   return ShownMesh{result->volume, {solved, &solved->mesh}, {solved, &solved->V}, false};
 }
 
-// What the views show, or the left side of a comparison.
+// Returns the mesh that the views show; if `other_side`, the mesh of side A of the comparison. None: there is no mesh,
+// or the workspace shows none.
 std::optional<ShownMesh> shown_mesh(const Editor& editor, bool other_side) {
   if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose) return std::nullopt;
   if (other_side) return mesh_of(result_named(editor.document(), editor.comparison.a));
@@ -51,7 +52,8 @@ std::optional<ShownMesh> shown_mesh(const Editor& editor, bool other_side) {
   return mesh_of(shown_result(editor));
 }
 
-// `before` may be of the same mesh in another place or by another measure: what is alike is kept.
+// Computes the colours of a mesh by a measure. If `before` is the same mesh with other node positions or another
+// measure, reuses what does not depend on these.
 std::shared_ptr<const MeasuredMesh> measured(const ShownMesh& of, const std::optional<FemMeasure>& measure,
                                              const std::shared_ptr<const MeasuredMesh>& before) {
   auto made = std::make_shared<MeasuredMesh>();
@@ -85,7 +87,8 @@ std::shared_ptr<const MeasuredMesh> measured(const ShownMesh& of, const std::opt
   return made;
 }
 
-// The newest that fits: of the mesh where it is, or a little behind while it settles.
+// Returns the newest cached mesh with these colours: one with the current node positions, or else one with earlier
+// positions, because a running solve still moves the nodes.
 std::shared_ptr<const MeasuredMesh> known(const FemOverlay& overlay, const ShownMesh& of) {
   const auto fits = [&](const auto& made, bool behind) {
     return made->of.volume == of.volume && made->of.rest == of.rest && (behind || made->of.posed == of.posed) &&
@@ -159,7 +162,7 @@ double place_on(const FemScale& scale, double value) {
 }
 
 glm::vec3 colour_at(FemMeasure measure, double place) {
-  // The nearer the brighter: where skin presses skin stands out.
+  // Smaller gaps are brighter, so that skin that presses on skin stands out.
   return measure == FemMeasure::VolumeRatio
              ? between(kChange, place)
              : between(render::kWeightRamp, measure == FemMeasure::Gap ? 1 - place : place);
@@ -185,19 +188,19 @@ std::string text_of(FemMeasure measure, float value) {
 
 std::string range_text(const MeasuredMesh& shown) {
   const std::string least = text_of(*shown.measure, shown.least), most = text_of(*shown.measure, shown.most);
-  if (shown.least > shown.most) return "";  // no flesh
+  if (shown.least > shown.most) return "";  // no soft tissue was measured
   if (*shown.measure == FemMeasure::Gap) return std::isinf(shown.least) ? "no contact" : "from " + least;
   return *shown.measure == FemMeasure::EnergyDensity ? "up to " + most : least + " \u2013 " + most;
 }
 
 std::string why_no_fem_overlay(const Editor& editor) {
   if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose)
-    return "Works in the Resample workspace";
+    return "Switch to the Resample or Pose workspace first";
   if (shown_mesh(editor, false) || (comparing(editor) && shown_mesh(editor, true))) return "";
   const auto& results = editor.document().results;
   if (std::none_of(results.begin(), results.end(), [](const auto& result) { return result->solved != nullptr; }))
     return "Resample by FEM first";
-  return "Show a result by FEM";
+  return "Show a FEM result first";
 }
 
 void show_fem(Editor& editor) {

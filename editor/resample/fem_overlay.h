@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finite elements looked at: a measure of the solved mesh (core/report/fem_measures.h) as the colours of its voxels,
-// through the same field that weights are shown by, and its tets as lines where the views cut. Of a result that keeps
-// its mesh, and of a solve that is watched while it settles. What is shown is made beside the editor, once for a mesh
-// and a measure.
+// Shows finite elements: colours voxels by a measure of the solved mesh (core/report/fem_measures.h), and draws the
+// mesh's tets as lines where slices and clip planes cut them. Works for a result that was stored with its mesh, and for
+// a running solve that the user watches. A task computes the colours once for a mesh and a measure.
 #pragma once
 
 #include <memory>
@@ -18,57 +17,59 @@ namespace limber::editor {
 
 struct Editor;
 
-// Scales are the same for all results, so that they can be compared; what lies beyond has the colour of the end.
+// The colour scale of a measure. It is the same for all results, so that results can be compared. Values beyond an end
+// of the scale have the colour of that end.
 struct FemScale {
   std::string name, unit;
   double low, high;
-  bool ratio;  // even steps are equal ratios
+  bool ratio;  // true: the scale is logarithmic
   std::vector<double> ticks;
 };
 const FemScale& scale_of(FemMeasure measure);
-double place_on(const FemScale& scale, double value);   // [0, 1] from its low end to its high one
+double place_on(const FemScale& scale, double value);   // position of the value on the scale: 0 at low, 1 at high
 glm::vec3 colour_at(FemMeasure measure, double place);  // sRGB
-glm::vec3 colour_of(FemMeasure measure, float value);   // of joints and where nothing is near: grey
-std::string text_of(FemMeasure measure, float value);   // "0.93", "joint"
+glm::vec3 colour_of(FemMeasure measure, float value);   // sRGB; grey for joint tets and, as gap, where no skin is near
+std::string text_of(FemMeasure measure, float value);   // the value as text: "0.93", "joint"
 
-// A mesh as a volume shows it.
+// A mesh and the volume whose voxels have the colours of its tets.
 struct ShownMesh {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const FemMesh> rest;
-  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V
-  bool settling = false;  // the volume's voxels are where the mesh is at rest, and seen through a map
+  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V node positions, world, mm
+  bool settling = false;  // true: a running solve; `volume` is the rest volume, drawn as deformed
 
   bool operator==(const ShownMesh&) const = default;
 };
 
-// What is made of it.
+// A mesh with the colours of its voxels by one measure.
 struct MeasuredMesh {
   ShownMesh of;
   std::optional<FemMeasure> measure;
   std::shared_ptr<const Eigen::MatrixX3i> faces;
   std::shared_ptr<const TissueVoxels> tissue;
-  std::shared_ptr<const std::vector<std::int32_t>> tets;  // #tissue
-  std::vector<float> values;                              // #T; none without a measure
-  float least = 0, most = 0;                              // of flesh
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue
+  std::shared_ptr<const std::vector<std::int32_t>> tets;  // #tissue voxels: index of the tet at the voxel; -1: none
+  std::vector<float> values;                              // #T: the measure of each tet; empty: no measure
+  float least = 0, most = 0;                              // range of `values` in soft tissue
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
 };
 
-std::string range_text(const MeasuredMesh& shown);  // "0.17 \u2013 3.30", "up to 12"
+std::string range_text(const MeasuredMesh& shown);  // range of the values as text: "0.17 \u2013 3.30", "up to 12"
 
 struct FemOverlay {
-  std::optional<FemMeasure> measure;  // nothing: the tissues
+  std::optional<FemMeasure> measure;  // none: voxels have the colours of their tissues
   bool tets = false;
-  std::vector<std::shared_ptr<const MeasuredMesh>> made;  // the last ones, newest last
+  std::vector<std::shared_ptr<const MeasuredMesh>> made;  // cache of meshes with their colours, newest last
   std::optional<int> task;
 };
 
-// Why there is no mesh to look at; "" when there is.
+// Returns why there is no mesh to show; "" when there is one.
 std::string why_no_fem_overlay(const Editor& editor);
-// Into the scenes of this frame. After the result or the settling tissue was put there.
+// Puts the colours and tets into the scenes of this frame. Call it after the result or the watched solve was put into
+// them.
 void show_fem(Editor& editor);
-// Of what the views show; null: nothing is measured there.
+// Returns the mesh whose colours the views show; null: none.
 const MeasuredMesh* shown_measure(const Editor& editor);
-// Of a voxel of what the views show: "det F 0.93"; "" without a measure.
+// Returns the measure's value at a voxel of the shown volume, "det F 0.93"; "" if no measure is shown.
 std::string measure_text_at(const Editor& editor, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

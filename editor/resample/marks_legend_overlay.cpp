@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Over a view that marks voxels, how many of either side have which mark: where two volumes differ (nothing, or another
-// tissue, on the other side; in all, and of the tissue under the pointer), or where the body claims a voxel twice.
+// Draws over a view the legend of marked voxels with their counts. For a difference, it counts for each of the volumes
+// A and B the voxels where the other volume has no tissue or another one, in total and for the tissue under the
+// pointer. For an overlap, it counts the posed voxels that two points of the body map to.
 #include <algorithm>
 #include <array>
 
@@ -19,14 +20,14 @@ constexpr float kWidth = 340, kRow = 22, kPad = 10, kMargin = 8, kNumber = 92;
 
 struct Row {
   std::string letter, name;
-  std::optional<std::array<std::int64_t, 2>> counts;  // none: being found
-  std::optional<std::array<glm::vec3, 2>> marks;      // sRGB
+  std::optional<std::array<std::int64_t, 2>> counts;  // counts of the two columns; none: not computed yet
+  std::optional<std::array<glm::vec3, 2>> marks;      // colour swatches of the two columns, sRGB; none: no swatches
 };
 struct Legend {
   std::string title;
   std::array<const char*, 2> columns;
   std::vector<Row> rows;
-  std::string note;  // below them; may be empty
+  std::string note;  // text below the rows; may be empty
 };
 
 void draw_row(Editor& editor, const Rect& row, const Row& words) {
@@ -76,7 +77,7 @@ bool draw_legend(Editor& editor, const Rect& view, const Legend& legend) {
   return true;
 }
 
-// Four lines always.
+// Draws the legend of the difference. It always has four lines, so that it keeps its size while the pointer moves.
 bool draw_difference(Editor& editor, const Rect& view) {
   const ComparedVolumes* made = compared_volumes(editor);
   const Comparison& comparison = editor.comparison;
@@ -89,7 +90,7 @@ bool draw_difference(Editor& editor, const Rect& view) {
   }
   const Hover& hover = editor.views->hover;
   const Tissue* tissue = made && hover.inside ? made->tissues->find(hover.label) : nullptr;
-  if (!tissue) legend.note = "Point at a tissue for its own voxels";
+  if (!tissue) legend.note = "Point at a tissue to count its voxels";
   if (tissue) {
     std::array<std::int64_t, 2> both{};
     for (const bool a : {true, false})
@@ -104,14 +105,14 @@ bool draw_difference(Editor& editor, const Rect& view) {
 }
 
 bool draw_overlap(Editor& editor, const Rect& view) {
-  Legend legend{"Claimed twice", {"by tissue", "by two bones"}, {}, ""};
+  Legend legend{"Voxels that overlap", {"by tissue", "by two bones"}, {}, ""};
   const auto add = [&](const char* letter, const std::shared_ptr<const Result>& result, const std::string& name) {
     if (result && result->overlap)
       legend.rows.push_back({letter, name,
                              std::array{std::ssize(result->overlap->tissue) + std::int64_t{0},
                                         std::ssize(result->overlap->bones) + std::int64_t{0}},
                              std::array{mark_of_overlap(false), mark_of_overlap(true)}});
-    else legend.rows.push_back({letter, result ? name + ": not kept" : name + ": none", std::nullopt, std::nullopt});
+    else legend.rows.push_back({letter, result ? name + ": not stored" : name + ": none", std::nullopt, std::nullopt});
   };
   const auto shown = shown_result(editor);
   if (comparing(editor))

@@ -15,7 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // both sides of a comparison, and those before it
+constexpr std::size_t kRemembered = 4;  // most results in the cache: both sides of this comparison and of the last one
 
 std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::shared_ptr<const TissueTable>& tissues) {
   auto made = std::make_shared<MarkedOverlap>(MarkedOverlap{
@@ -70,11 +70,11 @@ void put_into(Editor& editor, render::Scene& scene, const std::shared_ptr<const 
 glm::vec3 mark_of_overlap(bool of_bones) { return render::srgb(of_bones ? 0xF3CF45 : 0xFF3EA5); }
 
 std::string why_no_overlap(const Editor& editor) {
-  if (editor.document().results.empty()) return "Nothing was resampled yet";
+  if (editor.document().results.empty()) return "Resample a pose first";
   const auto kept = [&](const std::shared_ptr<const Result>& result) { return result && result->overlap; };
   if (kept(chosen_result(editor)) || (comparing(editor) && kept(result_named(editor.document(), editor.comparison.a))))
     return "";
-  return "The result was made before its overlap was kept: resample it again";
+  return "This result has no stored overlap: resample its pose again";
 }
 
 bool shows_overlap(const Editor& editor) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where a result's map claimed a posed voxel twice (core/resample): marked in 3D and in slices over dulled tissue,
-// through the same field that differences and measures of finite elements are shown by.
+// Marks the posed voxels to which two different points of the body at rest map (core/resample). They are coloured in
+// the 3D view and in slices, and all other tissue is dimmed. The renderer gets the colours as one colour per voxel.
 #pragma once
 
 #include <memory>
@@ -12,30 +12,30 @@
 
 namespace limber::editor {
 
-// A result with its marks.
+// A result's overlap, with the colours that mark it.
 struct MarkedOverlap {
   std::shared_ptr<const Overlap> overlap;
   std::shared_ptr<const LabelVolume> volume;
-  std::shared_ptr<const TissueTable> tissues;  // whose colours are dulled
+  std::shared_ptr<const TissueTable> tissues;  // voxels without overlap have these colours, dimmed
   std::shared_ptr<const TissueVoxels> tissue;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
 };
 
 struct OverlapView {
   bool shown = false;
-  std::vector<std::shared_ptr<const MarkedOverlap>> made;  // the last ones, newest last
+  std::vector<std::shared_ptr<const MarkedOverlap>> made;  // cache of results with their colours, newest last
   std::optional<int> task;
 };
 
-// sRGB: of two places of tissue, and of two bones.
+// Returns the colour, sRGB, of voxels where two bones overlap (of_bones), or of voxels where other tissue overlaps.
 glm::vec3 mark_of_overlap(bool of_bones);
 
-// Why there is none to look at; "" when there is.
+// Returns why there is no overlap to show; "" when there is one.
 std::string why_no_overlap(const Editor& editor);
 bool shows_overlap(const Editor& editor);
-// In place of what else voxels are coloured by.
+// Turns the overlay on or off. Turning it on turns off the other overlays that colour voxels.
 void show_overlap_overlay(Editor& editor, bool on);
-// Into the scenes of this frame.
+// Puts the colours of the overlapping voxels into the scenes of this frame.
 void show_overlap(Editor& editor);
 
 }  // namespace limber::editor

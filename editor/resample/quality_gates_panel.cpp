@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Of the result that is shown: whether it passes what a posed volume must, and where it comes from.
+// Draws the quality gates of the shown result with pass or fail, and its provenance: method, settings, inputs and
+// times.
 #include <algorithm>
 #include <cstdio>
 
@@ -13,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-// To where the figure is of: the tissue or the bone is chosen.
+// Selects the tissue or bone whose value decided the quality gate.
 void go_to_worst(Editor& editor, const QualityGate& gate) {
   const Document& document = editor.document();
   if (document.tissues)
@@ -48,11 +49,11 @@ void draw_gate(Editor& editor, Column& column, const QualityGate& gate) {
         gate.name + (failed     ? ": failed"
                      : measured ? ": passed"
                                 : ": not checked"),
-        gate.sentence + "\n" + gate.meaning + (gate.worst.empty() ? "" : "\n" + gate.worst + ". A click chooses it."));
+        gate.sentence + "\n" + gate.meaning + (gate.worst.empty() ? "" : "\n" + gate.worst + ". Click to select it."));
   if (pressed.clicked && !gate.worst.empty()) go_to_worst(editor, gate);
 }
 
-// ", 3 failed"
+// Returns text about failed gates for the section's heading: ", 3 failed", or "" if none failed.
 std::string failures(Editor& editor, const std::shared_ptr<const Result>& result) {
   const auto& gates = facts_of(editor, result)->gates;
   const auto failed = std::count_if(gates.begin(), gates.end(),
@@ -71,7 +72,7 @@ void draw_line(Editor& editor, Column& column, const std::string& name, const st
            Rect{{middle, row.low.y}, {right, row.high.y}}, value, Align::Right);
   if (whole.empty() || whole == value) return;
   const Pressed pressed = press_area(editor, name, row);
-  if (pressed.hovered) tooltip(editor, row, name, whole + "\nA click copies it.");
+  if (pressed.hovered) tooltip(editor, row, name, whole + "\nClick to copy it.");
   if (pressed.clicked) editor.host.set_clipboard(whole);
 }
 
@@ -91,9 +92,9 @@ void draw_gates(Editor& editor, Column& column) {
     if (!result) {
       const Rect row = column.row(26);
       put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
-               "No result to judge");
+               "No result yet");
     } else {
-      // What failed comes first.
+      // Failed gates come first.
       for (const GateState state : {GateState::Failed, GateState::Passed, GateState::NotMeasured})
         for (const QualityGate& gate : facts_of(editor, result)->gates)
           if (gate.state == state) draw_gate(editor, column, gate);

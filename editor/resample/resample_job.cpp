@@ -23,17 +23,17 @@ namespace limber::editor {
 namespace {
 
 struct Request {
-  Document from;  // with a pose
+  Document from;  // the document to resample; has a pose
   std::string method;
-  double spacing = 0;  // mm; 0: as the volume
+  double spacing = 0;  // voxel spacing of the posed volume, mm; 0: that of the rest volume
   bool bones_apart = false, mass_exact = false, contact = false;
-  std::string quality;  // of finite elements
+  std::string quality;  // FEM only: "draft", "normal" or "fine"
   std::string scratch;
   WorkerSettings worker;
-  std::shared_ptr<SolveFeed> feed;  // of finite elements; else null
+  std::shared_ptr<SolveFeed> feed;  // passes the steps of a FEM solve to the views; null: no FEM
 };
 
-constexpr char kSteps[] = "solve";  // of the files that the solver leaves
+constexpr char kSteps[] = "solve";  // base name of the files that the solver writes at each step
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
   const Document& from = request.from;
@@ -67,7 +67,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   write_file_atomically(folder / "job.json", job.dump(1) + "\n");
 }
 
-// With the document's labels: files tell tissues apart by their own values.
+// Reads the posed volume and converts the values in the file to the document's labels.
 std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTable& tissues, Progress& progress) {
   VolumeFile file = read_volume(path, progress);
   const FileValueIndex ours(tissues);
@@ -75,7 +75,7 @@ std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTabl
   for (const Tissue& tissue : file.tissues.tissues) {
     const Tissue* known = ours.find(tissue.file_value);
     if (!known)
-      throw Error("the posed volume has a label that the volume lacks", std::to_string(tissue.file_value),
+      throw Error("the posed volume has a label that the volume at rest lacks", std::to_string(tissue.file_value),
                   "please report it");
     label_of[tissue.label] = known->label;
   }
@@ -94,7 +94,7 @@ std::shared_ptr<const Overlap> read_overlap(const Path& path, Progress& progress
   return overlap;
 }
 
-// Hands on what the worker has left of its solve, as it goes.
+// Reads the files that the worker process writes during the solve, and passes each step to the SolveFeed.
 class StepReader {
  public:
   StepReader(Path name, std::shared_ptr<SolveFeed> feed) : name_(std::move(name)), feed_(std::move(feed)) {}
@@ -115,7 +115,7 @@ class StepReader {
   std::shared_ptr<const FemMesh> rest_;
 };
 
-// Null where nothing bends.
+// Returns the solved mesh; null if the pose bends no joint, in which case no mesh is solved.
 std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
   auto mesh = read_fem_mesh(name);
   auto step = read_fem_step(name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pose of the moment as a new label volume. It runs in a process of its own (core/project/worker.h), so that a
-// crash, a lack of memory, a hang or a time limit is a message, and the document stays as it was; its end is one edit,
-// a result.
+// Resamples the current pose into a new label volume. The work runs in a separate process (core/project/worker.h), so
+// that a crash, a lack of memory, a hang or a time limit only gives a message and leaves the document unchanged. When
+// the process ends, the job commits one edit that adds a result to the document.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace limber::editor {
 
-// Needs volume, tissues, armature and weights.
+// Starts the job. Needs a volume, tissues, an armature and weights.
 void start_resampling(Editor& editor);
-// "" when there is all that it needs.
+// Returns what is missing for resampling; "" when nothing is.
 std::string why_no_resampling(const Editor& editor);
 
-// Ids of the operators that choose a deformation method, in the order of its table.
+// Returns the ids of the operators that select a deformation method, in the order of deformation_methods().
 std::vector<std::string> method_operators(Methods which);
 
 }  // namespace limber::editor

@@ -30,7 +30,7 @@ Operator method_operator(const DeformationMethod& method) {
 }
 
 std::string needs_result(const Editor& editor) {
-  return editor.document().results.empty() ? "Nothing was resampled yet" : "";
+  return editor.document().results.empty() ? "Resample a pose first" : "";
 }
 
 std::string needs_solve(const Editor& editor) {
@@ -63,13 +63,14 @@ Operator colours_operator(const char* id, const char* label, const char* descrip
 
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
 
-// Where nothing was chosen to compare: the volume at rest with the last result.
+// If the comparison has no two valid sides, sets side B to the last result. If this is not enough, sets side A to the
+// volume at rest.
 void choose_sides(Editor& editor) {
   if (!why_no_comparison(editor).empty()) editor.comparison.b = editor.document().results.back()->name;
   if (!why_no_comparison(editor).empty()) editor.comparison.a.clear();
 }
 
-// The side alone, over the whole view.
+// Shows only side A or only side B of the comparison, over the whole view.
 void show_side(Editor& editor, bool a) {
   stop_watching(editor);
   choose_sides(editor);
@@ -77,7 +78,7 @@ void show_side(Editor& editor, bool a) {
   editor.comparison.shows_a = a;
 }
 
-// Both sides, or side B alone again.
+// Shows both sides of the comparison as `views` says; for Views::One, shows only side B.
 void show_sides(Editor& editor, Comparison::Views views) {
   stop_watching(editor);
   choose_sides(editor);
@@ -111,7 +112,7 @@ void toggle_overlap(Editor& editor) {
   show_overlap_overlay(editor, on);
 }
 
-// The other side, for as long as the key is held; of two views each shows what the other one did.
+// Shows the other side of the comparison while the key is held. If the views show both sides, swaps them.
 class Flicker final : public Modal {
  public:
   explicit Flicker(Editor& editor) : key_(Key::F) {
@@ -131,7 +132,9 @@ class Flicker final : public Modal {
     editor.comparison = before_;
     editor.comparison.share = share;
   }
-  std::vector<KeyHint> hints(const Editor&) const override { return {{{std::string(name_of(key_))}, "Let go: back"}}; }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    return {{{std::string(name_of(key_))}, "Release to show the first side again"}};
+  }
 
  private:
   Comparison before_;
@@ -142,7 +145,7 @@ bool results_seen(const Editor& editor) {
   return editor.arrangement().results && !editor.arrangement().console && !editor.arrangement().timeline;
 }
 
-// What else stands there gives way.
+// Shows or hides the table of results. Showing it hides the console and the timeline, because they use the same area.
 void show_results(Editor& editor, bool shown) {
   editor.arrangement().results = shown;
   if (shown) editor.arrangement().console = editor.arrangement().timeline = false;
@@ -179,71 +182,73 @@ std::vector<std::string> method_operators(Methods which) {
 std::vector<Operator> resample_operators() {
   std::vector<Operator> operators = {
       {"resample.run", "Resample this pose", icon::kResample, "Result",
-       "Writes the posed body as a new label volume, beside the work.", [](Editor& e) { start_resampling(e); },
+       "Resample the posed body into a new label volume, in the background.", [](Editor& e) { start_resampling(e); },
        why_no_resampling},
-      {"result.watch", "Watch it settle", icon::kRunning, "Result",
-       "The views show the tissue on its way to the pose, while finite elements are solved.", toggle_watching,
+      {"result.watch", "Watch the solve", icon::kRunning, "Result",
+       "Show in the views how tissue moves into the pose while finite elements are solved.", toggle_watching,
        needs_solve, [](const Editor& e) { return e.fem->watched != 0; }},
       {"result.toggle", "Posed volume", icon::kPose, "Result",
-       "The views show the chosen result, or the volume at rest again.", toggle_posed, needs_result,
+       "Switch the views between the selected result and the volume at rest.", toggle_posed, needs_result,
        [](const Editor& e) { return shown_result(e) != nullptr; }},
-      {"result.show_last", "Show", icon::kVisible, "Result", "The views show the last result.",
+      {"result.show_last", "Show", icon::kVisible, "Result", "Show the last result in the views.",
        [](Editor& e) { show_result(e, e.document().results.back()->name); }, needs_result},
       {"result.rename", "Rename result...", icon::kRename, "Result",
-       "Gives the chosen result another name, in the table below the views.",
+       "Give the selected result another name, in the table below the views.",
        [](Editor& e) {
          e.renaming_result = {chosen_result(e)->name, chosen_result(e)->name};
          await_field(e);
          show_results(e, true);
        },
        needs_result},
-      {"result.delete", "Delete result", icon::kTrash, "Result", "Takes the chosen result out of the project.",
+      {"result.delete", "Delete result", icon::kTrash, "Result", "Delete the selected result from the project.",
        delete_result, needs_result},
       {"result.delete_stale", "Delete stale results", icon::kTrash, "Result",
-       "Takes out the results whose inputs have changed.", delete_stale, needs_stale},
+       "Delete all results that are out of date because the volume, weights or other inputs have changed.",
+       delete_stale, needs_stale},
       {"result.copy_report", "Copy report", icon::kCopy, "Result",
-       "Puts the chosen result's report on the clipboard, as JSON.",
+       "Copy the selected result's report to the clipboard, as JSON.",
        [](Editor& e) { e.host.set_clipboard(chosen_result(e)->report); }, needs_result},
-      {"compare.show_a", "Show A", icon::kVisible, "Result", "The views show side A of the comparison.",
+      {"compare.show_a", "Show A", icon::kVisible, "Result", "Show side A of the comparison in the views.",
        [](Editor& e) { show_side(e, true); }, needs_result,
        [](const Editor& e) { return !comparing(e) && e.comparison.shows_a; }},
-      {"compare.show_b", "Show B", icon::kVisible, "Result", "The views show side B of the comparison.",
+      {"compare.show_b", "Show B", icon::kVisible, "Result", "Show side B of the comparison in the views.",
        [](Editor& e) { show_side(e, false); }, needs_result,
        [](const Editor& e) { return !comparing(e) && !e.comparison.shows_a; }},
       {"compare.wipe", "Wipe", icon::kWipe, "Result",
-       "Shows A left and B right of a line that can be dragged, in every view.", toggle_wipe, needs_result, wiping},
+       "In every view, show A on the left and B on the right of a line that you can drag.", toggle_wipe, needs_result,
+       wiping},
       {"compare.side_by_side", "Side by side", icon::kSplitViews, "Result",
-       "Shows A and B beside one another, each view twice, seen by one camera; the line between them can be dragged.",
+       "Show every view twice, with A and B side by side from the same camera. Drag the line between them to resize.",
        toggle_side_by_side, needs_result, side_by_side},
       {"compare.difference", "Difference", icon::kDifference, "Result",
-       "Marks the voxels whose tissue differs between A and B, and counts them.", toggle_difference, needs_result,
+       "Mark and count the voxels whose tissue differs between A and B.", toggle_difference, needs_result,
        shows_difference},
       {"result.overlap", "Overlap", icon::kOverlap, "Result",
-       "Marks the voxels that two places of the body claimed, and counts them.", toggle_overlap, why_no_overlap,
+       "Mark and count the posed voxels into which two parts of the body move at once.", toggle_overlap, why_no_overlap,
        shows_overlap},
-      {"compare.flicker", "Flicker", "", "Result", "Shows the other side while the key is held.",
+      {"compare.flicker", "Flicker", "", "Result", "Show the other side of the comparison while the key is held.",
        [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
-      {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Makes A B, and B A.",
+      {"compare.swap", "Swap A and B", icon::kMirror, "Result", "Swap sides A and B of the comparison.",
        [](Editor& e) { std::swap(e.comparison.a, e.comparison.b); }, needs_result},
-      colours_operator("fem.show_tissues", "Tissue colours",
-                       "Shows the tissues of a result by finite elements as elsewhere.", std::nullopt),
+      colours_operator("fem.show_tissues", "Tissue colours", "Show a FEM result in its tissue colours.", std::nullopt),
       colours_operator("fem.show_volume_ratio", "Volume ratio",
-                       "Colours by det F: how far each tetrahedron is pressed, blue, or swollen, red.",
+                       "Colour by volume ratio (det F): compressed tetrahedra are blue, swollen ones red.",
                        FemMeasure::VolumeRatio),
-      colours_operator("fem.show_energy", "Strain energy",
-                       "Colours by the energy that deformation has stored, in kPa: where tissue resists.",
-                       FemMeasure::EnergyDensity),
+      colours_operator(
+          "fem.show_energy", "Strain energy",
+          "Colour by the strain energy density, in kPa: it shows where tissue is deformed against its stiffness.",
+          FemMeasure::EnergyDensity),
       colours_operator("fem.show_gap", "Contact gap",
-                       "Colours by the air between skin and the skin that a fold has brought near, in mm.",
+                       "Colour by the distance between skin surfaces that face each other in a fold, in mm.",
                        FemMeasure::Gap),
       {"fem.tets", "Tetrahedra", icon::kTissues, "Finite elements",
-       "Draws the mesh that was solved as lines, where slices, the clip box and the clip plane cut it.",
+       "Draw the solved mesh as lines where slices, the clip box and the clip plane cut it.",
        [](Editor& e) { e.fem_overlay->tets = !e.fem_overlay->tets; }, why_no_fem_overlay,
        [](const Editor& e) { return e.fem_overlay->tets; }},
       {"fem.display_pie", "Colours by", icon::kVisible, "Finite elements",
-       "Lists what a result by finite elements can be coloured by, at the pointer.",
+       "Open a menu at the pointer to select by what FEM results are coloured.",
        [](Editor& e) { e.open_popup = "Finite elements"; }, why_no_fem_overlay},
-      {"view.results", "Results", icon::kTable, "View", "Opens or closes the table of results below the views.",
+      {"view.results", "Results", icon::kTable, "View", "Open or close the table of results below the views.",
        toggle_results, nullptr, results_seen},
   };
   std::vector<Operator> methods;

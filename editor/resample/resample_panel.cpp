@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How this pose is resampled: method, spacing, and the button.
+// Draws the Resample section of the sidebar: method, FEM settings, output spacing, and the button that starts the job.
 #include <array>
 
 #include "editor/context/operator_button.h"
@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-// Of finite elements: how fine, and whether skin touches skin.
+// Draws the FEM settings: mesh quality, and contact of skin with skin.
 void draw_fem(Editor& editor, Column& column) {
   auto& settings = editor.resampling;
   const Rect quality = column.property("Quality");
@@ -22,14 +22,14 @@ void draw_fem(Editor& editor, Column& column) {
   if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm"}, chosen))
     settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
   if (ImGui::IsItemHovered())
-    tooltip(
-        editor, quality, "Quality",
-        "Edge of the tetrahedra that tissue is made of; the fine ones stand around bent joints. Finer takes longer.");
+    tooltip(editor, quality, "Quality",
+            "Edge length of the tetrahedra. The mesh is finest around bent joints. A finer mesh takes longer.");
   const Rect contact = column.property("Contact");
   checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
   if (ImGui::IsItemHovered())
-    tooltip(editor, contact, "Skin touches skin", "Folds press against each other instead of passing through.");
-  operator_box(editor, "result.watch", column.property("While solved"), "Watch it settle");
+    tooltip(editor, contact, "Skin touches skin",
+            "In folds, skin surfaces press against each other instead of passing through each other.");
+  operator_box(editor, "result.watch", column.property("While solved"), "Watch the solve");
 }
 
 }  // namespace
@@ -54,19 +54,20 @@ void draw_resample(Editor& editor, Column& column) {
     number_field(editor, "Output", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "", false,
                  committed);
     if (ImGui::IsItemHovered())
-      tooltip(editor, spacing, "Output", "Edge of the posed volume's voxels. 0: as the volume at rest.");
+      tooltip(editor, spacing, "Output", "Voxel size of the posed volume. 0 = same as the volume at rest.");
     const Rect apart = column.property("Joints");
     checkbox(editor, "Keep bones apart", apart, "Keep bones apart", settings.bones_apart);
     if (ImGui::IsItemHovered())
-      tooltip(editor, apart, "Keep bones apart",
-              "Shifts each bent joint by the least that frees its bones, up to 5 percent of the shorter bone. Off: by "
-              "a voxel at most, so that the result lies as the view shows it. Bones keep their directions.");
+      tooltip(
+          editor, apart, "Keep bones apart",
+          "Shift each bent joint just enough that its bones do not overlap, by up to 5 percent of the shorter bone's "
+          "length. Off: by one voxel at most, so that the result matches the view. Bones keep their directions.");
     const Rect exact = column.property("Volumes");
     checkbox(editor, "Mass-exact", exact, "Mass-exact", settings.mass_exact);
     if (ImGui::IsItemHovered())
       tooltip(editor, exact, "Mass-exact",
-              "Afterwards soft tissues get their volumes at rest back: borders between them move by the fewest and "
-              "least sure voxels. Bones stay as they are.");
+              "Restore the rest volume of each soft tissue after resampling. Changes as few voxels as possible at the "
+              "borders of tissues, the least certain ones first. Does not change bones.");
     column.space(6);
     const Rect row = column.row(30);
     const Rect place{{row.low.x + look.px(10), row.low.y}, {row.high.x - look.px(10), row.low.y + look.px(28)}};

@@ -21,7 +21,7 @@ namespace limber::editor {
 
 namespace {
 
-// A report speaks to the command line: what it says to add is a switch here, or better a lasting cure.
+// Replaces the command line's options in a report's warning by the editor's corresponding commands.
 std::string in_words_of_the_editor(std::string warning) {
   for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{
                                        "--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},
@@ -52,7 +52,7 @@ std::string in_words(const Json& value) {
   return all.empty() ? "none" : all;
 }
 
-// "fit_joints" -> "Fit joints"
+// Returns a label for a JSON key: "fit_joints" -> "Fit joints".
 std::string label_of_key(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
   if (!key.empty()) key[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(key[0])));
@@ -83,7 +83,8 @@ std::int64_t count(const Json& json, const char* key) {
   return static_cast<std::int64_t>(number(json, key).value_or(0));
 }
 
-// What a resampling reads of tissues; finite elements also ask how stiff they are.
+// Returns whether two tissue tables are equal in what resampling reads. stiffness: compare the stiffness too, which
+// only FEM reads.
 bool same_tissues(const std::shared_ptr<const TissueTable>& a, const std::shared_ptr<const TissueTable>& b,
                   bool stiffness) {
   if (a == b || !a || !b) return true;
@@ -100,7 +101,7 @@ bool same(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b) 
   return a == b || (a && b && *a == *b);
 }
 
-// A box in voxels of one grid, in those of another with the same axes.
+// Converts a box from voxel coordinates of one grid to those of another grid with the same axes.
 std::array<glm::dvec3, 2> in_grid(const std::array<glm::dvec3, 2>& box, const Grid& from, const Grid& to) {
   const AffineTransform world = world_from_voxel(from), voxel = voxel_from_world(to);
   return {voxel * (world * box[0]), voxel * (world * box[1])};
@@ -147,7 +148,7 @@ std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_pt
       std::find_if(known.begin(), known.end(), [&](const KnownResult& one) { return one.result.lock() == result; });
   if (found != known.end()) return found->facts;
   ResultFacts facts = facts_of_report(result->report);
-  // Reports may be without their joints; what the result was made from is at hand.
+  // A report may have no joint angles, so judge joint limits from the armature and pose that the result was made from.
   if (result->from_armature && result->from_pose)
     for (QualityGate& gate : facts.gates)
       if (gate.id == "limits") gate = judge_joint_limits(*result->from_armature, *result->from_pose);
@@ -256,7 +257,7 @@ void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, 
 
 namespace {
 
-// `result` null: at rest, or in the pose of the moment.
+// Puts a result into the scene. Null: puts the volume at rest, or posed in the current pose.
 void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
   scene.posed_from_rest.clear();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is known about the results of a document: their figures, read from their reports, and whether they are stale.
+// Reads the figures of the document's results from their reports, finds out whether a result is stale, and shows or
+// renames results.
 #pragma once
 
 #include <memory>
@@ -22,43 +23,42 @@ struct ResultTissue {
   std::int64_t overlap_voxels = 0;
 };
 struct ResultFacts {
-  double seconds = 0;  // of the method: not of weights that had to be computed first, of files or the report
-  std::optional<double> change_percent;  // of all tissue
+  double seconds = 0;                    // run time of the method, without weights, files and report
+  std::optional<double> change_percent;  // volume change of all tissue
   std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
-  std::optional<std::int64_t> inverted;  // cells of a mesh, by finite elements
+  std::optional<std::int64_t> inverted;  // FEM only: inverted tets of the mesh
   std::vector<ResultTissue> tissues;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;
-  // Where it comes from, as words: sections with their lines.
+  // The provenance as lines of text. A line has a name and a value.
   struct Line {
-    std::string name, value, whole;  // `whole`: the value in full, where it is shortened
+    std::string name, value, whole;  // `whole`: the full value if `value` is shortened
   };
   std::vector<Line> settings, inputs, stages;
   std::string version;
   std::optional<double> peak_memory_mb;
 };
-ResultFacts facts_of_report(const std::string& json);  // what is missing there stays empty
+ResultFacts facts_of_report(const std::string& json);  // figures missing in the report stay empty
 
 std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
-// For people: gates, tissues, provenance, 100 columns wide.
+// Returns the report as readable text, 100 columns wide: gates, tissues, provenance.
 std::string text_of_report(const std::string& name, const ResultFacts& facts);
 
-// "lbs" -> "LBS"
+// Returns the display name of a method: "lbs" -> "LBS".
 std::string method_name(const std::string& method);
-// What the result was made from is no longer what the document holds: "weights changed"; "" while it is. Its pose may
-// be another one: a result stands for the pose it was made of.
+// Returns which input of the result has changed in the document since, "weights changed"; "" if none has. The pose is
+// not compared, because a result belongs to the pose that it was made from.
 std::string stale_reason(const Document& document, const Result& result);
 bool is_of_this_pose(const Document& document, const Result& result);
-// "Forearm 90°", "Forearm and 2 more", "Rest"
+// Returns a name for a pose: "Forearm 90 deg", "Forearm 90 deg and 2 more" (with a degree sign), "Rest".
 std::string name_of_pose(const Armature& armature, const Pose& pose);
-// `name`, or with a number behind it when a result has that already.
+// Returns `name`, with a number appended if a result already has that name.
 std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
 
-void show_result(Editor& editor, const std::string& name);  // "": the volume at rest
-// Another name, made unique among the results. An edit.
+void show_result(Editor& editor, const std::string& name);  // "" shows the volume at rest
+// Renames a result as one edit; makes the name unique among the results.
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);
-// Puts the shown result, or the pose of the moment, into the scene of this frame, and side a of a comparison into the
-// other one.
+// Puts the shown result or the current pose into this frame's scene, and side A of a comparison into the second scene.
 void show_posed(Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Below the views: every result in a row, and beside them what they did to each tissue.
+// Draws the table of results below the views, one result per row. Beside it, draws the volume change of each tissue.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,10 +22,10 @@ namespace {
 
 constexpr char kList[] = "results";
 constexpr float kHead = 30, kTableHead = 26;
-constexpr float kColumns[] = {60, 84, 70, 64};  // of time, volume, overlap and inverted cells
+constexpr float kColumns[] = {60, 84, 70, 64};  // px: widths of the columns time, volume, overlap and inverted tets
 constexpr float kState = 190, kNarrowState = 116, kNarrow = 640, kRoomy = 780;
 
-// Name, method, numbers, state. Inverted cells are left out where there is no room.
+// Draws the texts of a row: name, method, numbers, state. A narrow row omits the number of inverted tets.
 void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>& words,
                const std::array<Colour, 7>& colours, ImFont* first, ImFont* digits) {
   const Look& look = editor.look;
@@ -39,7 +39,8 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>
     put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
     right -= width;
   }
-  const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);  // "FEM with contact", or its beginning
+  // Width of the method's name, px: enough for "FEM with contact", or in a narrow row for the start of it.
+  const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);
   put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
   put_text(editor, first, colours[0],
            Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
@@ -61,7 +62,7 @@ std::string state_of(const std::string& side, bool shown) {
   return side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : "");
 }
 
-// A click makes it side B, Shift and a click side A.
+// Makes the result side B of the comparison, or side A if Shift is held.
 void choose_side(Editor& editor, const std::string& name) {
   stop_watching(editor);
   Comparison& comparison = editor.comparison;
@@ -73,7 +74,7 @@ void choose_side(Editor& editor, const std::string& name) {
   }
 }
 
-// The name as a text field: Enter or a click elsewhere takes it, Escape leaves it.
+// Draws the name as a text field. Enter or a click elsewhere accepts the new name, Escape cancels.
 void draw_renaming(Editor& editor, const Rect& row, const std::shared_ptr<const Result>& result) {
   const Look& look = editor.look;
   auto& renaming = editor.renaming_result;
@@ -101,7 +102,7 @@ void draw_rest_row(Editor& editor, Column& column, int index) {
             look.fonts.mono);
   if (pressed.hovered)
     tooltip(editor, row, "At rest",
-            "The volume that was opened. A click shows it; Shift and a click makes it side A of the comparison.");
+            "The volume at rest. Click to show it; Shift+click to make it side A of the comparison.");
   if (!pressed.clicked) return;
   focus_list(editor, kList, index);
   choose_side(editor, "");
@@ -126,10 +127,10 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   char seconds[24];
   std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
   const Colour plain = theme.text, second = theme.text2;
-  const std::string state = reason.empty()
-                                ? state_of(side, shown)
-                                : (side.empty() ? "" : side + ", ") +
-                                      "stale: " + reason.substr(0, reason.find(" changed"));  // whole in the tooltip
+  // The cell has only the start of the reason; the tooltip has all of it.
+  const std::string state =
+      reason.empty() ? state_of(side, shown)
+                     : (side.empty() ? "" : side + ", ") + "stale: " + reason.substr(0, reason.find(" changed"));
   put_cells(editor, row,
             {result->name, method_name(result->method), seconds, percent(facts->change_percent),
              grouped(facts->overlap_voxels), facts->inverted ? grouped(*facts->inverted) : "-", state},
@@ -142,8 +143,9 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
             shown || !side.empty() ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
   if (pressed.hovered)
     tooltip(editor, row, result->name,
-            std::string(shown ? "Shown. A click shows the volume at rest." : "A click shows it in the views.") +
-                " Shift and a click makes it side A of the comparison; a double click renames it." +
+            std::string(shown ? "Shown now. Click to show the volume at rest."
+                              : "Click to show this result in the views.") +
+                " Shift+click to make it side A of the comparison; double-click to rename it." +
                 (reason.empty() ? "" : "\nStale: " + reason));
   if (pressed.double_clicked) {
     editor.comparison.b = result->name;
@@ -164,7 +166,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
 
 void draw_results(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
-  const auto results = editor.document().results;  // kept, since a new name commits
+  const auto results = editor.document().results;  // a copy, because renaming commits an edit that replaces it
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
   fill(head, look.theme.head);
   fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
@@ -190,7 +192,8 @@ void draw_results(Editor& editor, const Rect& rect) {
   for (const char* id : {"compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(editor, id);
     const float width =
-        width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});  // it does not move when it is
+        // The width in the pressed style, so that the buttons do not move when one of them is pressed.
+        width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});
     operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label,
                     op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     right -= width + look.px(1);

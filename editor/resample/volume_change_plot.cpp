@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Beside the table of results: by how much each tissue's volume changed, as bars from a line at zero, of both sides of
-// the comparison or of the result that is shown.
+// Draws a bar chart beside the table of results: each tissue's volume change in percent, for both sides of the
+// comparison or for the shown result.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,8 @@ namespace limber::editor {
 namespace {
 
 constexpr float kHead = 26, kAxis = 20, kPad = 12, kName = 112, kFigure = 58;
-constexpr double kLeastSpan = 2;  // percent, so that small changes look small
+constexpr double kLeastSpan =
+    2;  // smallest range of the axis, percent; a smaller one would make small changes look large
 
 struct Series {
   std::string letter, method;
@@ -43,7 +44,7 @@ const ResultTissue* find(const ResultFacts& facts, const std::string& name) {
   return found == facts.tissues.end() ? nullptr : &*found;
 }
 
-// What the bars are measured by: from low to high, with a line at each step.
+// The chart's axis, percent: it runs from `low` to `high` and has a line at each multiple of `step`.
 struct Axis {
   double low = 0, high = 0, step = 1;
   double place(double percent) const { return (std::clamp(percent, low, high) - low) / (high - low); }
@@ -73,7 +74,7 @@ void draw_lines(const Look& look, const Axis& axis, float left, float width, con
   }
 }
 
-// "+0.12", without the unit that the head names.
+// Returns a change in percent as text, "+0.12". The text has no unit, because the chart's title names it.
 std::string figure(const std::optional<double>& percent) {
   if (!percent) return "-";
   if (std::abs(*percent) < 99.95) return figure_of_change(*percent);

@@ -24,7 +24,7 @@ constexpr double kMostlyInside = 0.5;
 
 std::string percent(double share) { return std::to_string(static_cast<int>(std::lround(100 * share))) + " %"; }
 
-// The document with another rig; what was made for the old one goes.
+// Returns the document with another rig and without the weights and the pose of the old rig.
 Document with_rig(const Document& now, std::shared_ptr<const Armature> rig) {
   Document next = now;
   next.armature = std::move(rig);
@@ -40,8 +40,7 @@ std::string what_goes(const Editor& editor) {
        {std::pair(now.armature != nullptr, "rig"), std::pair(now.weights != nullptr, "weights"),
         std::pair(now.pose != nullptr, "pose")})
     if (is_there) parts += (parts.empty() ? "" : ", ") + std::string(name);
-  return parts.empty() ? "Runs as a job; one edit, which can be undone."
-                       : "Takes the place of: " + parts + ". It can be undone.";
+  return parts.empty() ? "Runs in the background. It can be undone." : "Replaces: " + parts + ". It can be undone.";
 }
 
 std::vector<std::string> template_labels() {
@@ -90,8 +89,8 @@ void offer_fit(Editor& editor, const std::string& file, double inside) {
   };
   ask(editor, {.title = "This rig does not lie in the body",
                .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
-                             " may be of another body, or in other units.",
-                         "Fitting finds its joints in the volume, as far as its bones' names tell what they are."},
+                             " may belong to another body or use other units.",
+                         "Fitting finds the joints of its bones in the volume, if it recognises the bones' names."},
                .icon = icon::kWarning,
                .answers = {{"Leave it", {}},
                            {"Only place and scale", place},
@@ -106,7 +105,7 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return fitted.joints[a].confidence > fitted.joints[b].confidence;
   });
-  // The console shows the last line lowest: there the least sure joints stand together.
+  // The least certain joints come last, because the console scrolls to its last line.
   for (std::size_t b : order) {
     char line[200];
     std::snprintf(line, sizeof line, "%s: found by %s, confidence %.0f %%, may be %.0f mm off, %.0f %% in tissue",
@@ -114,30 +113,32 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
                   100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
     editor.messages.log.push_back({Severity::Info, line});
   }
-  for (const std::string& warning : fitted.warnings) editor.messages.warn("Look at the fit", warning);
+  for (const std::string& warning : fitted.warnings) editor.messages.warn("Check the fit", warning);
   const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) +
-                             " joints with confidence, " + percent(fitted.check.whole) + " of bone length in tissue";
+                             " joints found with confidence, " + percent(fitted.check.whole) +
+                             " of bone length in tissue";
   if (sure > 0 && fitted.check.whole >= kMostlyInside) editor.messages.ok("Skeleton fitted", result, "view.console");
   else
-    editor.messages.warn(sure > 0 ? "Skeleton fitted, but it leaves the body" : "Skeleton placed, but no joint is sure",
-                         result);
+    editor.messages.warn(
+        sure > 0 ? "Skeleton fitted, but it leaves the body" : "Skeleton placed, but every joint is uncertain", result);
 }
 
 void ask_auto_fit(Editor& editor) {
   std::vector<std::string> choices{"Automatic"};
   for (const std::string& label : template_labels()) choices.push_back(label);
-  if (editor.document().armature) choices.push_back("The rig that is here");
+  if (editor.document().armature) choices.push_back("The current rig");
   const auto outcome = [](const Editor& e, const std::vector<FormField>&) { return what_goes(e); };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
     const std::size_t chosen = static_cast<std::size_t>(fields[0].chosen);
     start_auto_fit(e, chosen == 0 ? "" : chosen <= rig_templates().size() ? rig_templates()[chosen - 1].name : "rig");
   };
-  editor.open_dialog(make_form({"Auto-fit skeleton",
-                                "Joints are found from the bones, or from the body's shape where none are labelled.",
-                                "Fit",
-                                {choice_of("Skeleton", "What lies in the volume.", choices)},
-                                outcome,
-                                act}));
+  editor.open_dialog(
+      make_form({"Auto-fit skeleton",
+                 "Finds the joints from the bone tissue, or from the body's shape where no bone is labelled.",
+                 "Fit",
+                 {choice_of("Skeleton", "The skeleton to fit to the body in the volume.", choices)},
+                 outcome,
+                 act}));
 }
 
 void ask_template(Editor& editor) {
@@ -148,12 +149,13 @@ void ask_template(Editor& editor) {
     const RigTemplate& chosen = rig_templates()[fields[0].chosen];
     auto rig = std::make_shared<const Armature>(scaled_to_tissue(*e.document().volume, rig_template(chosen.name)));
     e.history.commit("Template " + chosen.label, with_rig(e.document(), rig));
-    e.messages.ok("Template " + chosen.label, "Scaled to the tissue; auto-fit finds its joints");
+    e.messages.ok("Template " + chosen.label,
+                  "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
   };
   editor.open_dialog(make_form({"Templates",
-                                "Lays a skeleton into the tissue's extents, to be moved by hand.",
+                                "Places a skeleton in the tissue's bounding box. You can then move its joints by hand.",
                                 "Place",
-                                {choice_of("Skeleton", "What lies in the volume.", template_labels())},
+                                {choice_of("Skeleton", "The skeleton to place in the volume.", template_labels())},
                                 outcome,
                                 act}));
 }

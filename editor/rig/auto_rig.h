@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rigs that the editor lays into the volume: found by itself, as a job and one edit, or a template scaled to the
-// tissue.
+// Places a rig in the volume in one of two ways: an automatic fit that runs as a job and commits one edit, or a
+// template that is scaled to the tissue.
 #pragma once
 
 #include <string>
@@ -10,21 +10,25 @@
 
 namespace limber::editor {
 
-// What stand for laying a skeleton by itself and for a joint's axis.
+// Icons of the two operators that fit a skeleton and fit the axis of a joint.
 inline constexpr char kAutoFitIcon[] = "\uf0d0";
 inline constexpr char kFitAxisIcon[] = "\uf140";
 
-// Both ask first. Both need a volume.
+// Each opens a dialog: the first starts the automatic fit, the second places a template when the user confirms. Both
+// need an open volume.
 void ask_auto_fit(Editor& editor);
 void ask_template(Editor& editor);
 
-// Lays a template ("arm"), the one that suits best (""), or the rig that is there already ("rig").
+// Starts the job that fits a skeleton. `which` is a template's name such as "arm", "" for the template that suits the
+// volume best, or "rig" for the document's own rig.
 void start_auto_fit(Editor& editor, const std::string& which);
 
-// After a rig came in of whose bones only that share of the length is in tissue: asks whether it shall be fitted.
+// Asks the user whether an imported rig should be fitted to the volume.
+//   file    name of the imported file
+//   inside  share of the bones' length that lies in tissue, [0, 1]
 void offer_fit(Editor& editor, const std::string& file, double inside);
 
-// Tells how a fit came out; the console lists every joint with how it was found, the least sure last.
+// Shows a message with the result of a fit. The console lists how each joint was found, the least certain joint last.
 void show_fit(Editor& editor, const AutoFit& fitted);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Skeletons that are laid into the volume.
+// Operators that place a skeleton in the volume and fit the skeleton's joints.
 #include "editor/context/operator_polls.h"
 #include "editor/context/transform_settings.h"
 #include "editor/rig/auto_rig.h"
@@ -11,10 +11,10 @@ namespace limber::editor {
 namespace {
 
 std::string needs_joint_in_tissue(const Editor& editor) {
-  if (editor.workspace != Workspace::Rig) return "Works in the Rig workspace";
+  if (editor.workspace != Workspace::Rig) return "Switch to the Rig workspace first";
   if (const std::string why = needs_bone(editor); !why.empty()) return why;
   const Bone& bone = editor.document().armature->bones[*editor.selection.bone];
-  if (bone.parent < 0) return "A root has no joint: choose a bone below one";
+  if (bone.parent < 0) return "A root bone has no joint: select a bone that has a parent";
   return needs_volume(editor);
 }
 
@@ -38,22 +38,23 @@ Operator shows_proposed(const char* id, const char* label, const char* descripti
 std::vector<Operator> rig_fit_operators() {
   return {
       {"rig.auto_fit", "Auto-fit skeleton...", kAutoFitIcon, "Rig",
-       "Lays a skeleton into the volume by itself: joints are found from the bones or from the body's shape.",
+       "Fit a skeleton to the volume automatically. Its joints are found from the bones or the body's shape.",
        ask_auto_fit, needs_volume},
-      {"rig.templates", "Templates...", icon::kRig, "Rig", "Places a ready skeleton, scaled to the tissue.",
+      {"rig.templates", "Templates...", icon::kRig, "Rig", "Add a ready-made skeleton, scaled to the tissue.",
        ask_template, needs_volume},
       {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig",
-       "Finds where the axis of the chosen bone's hinge must lie so that its bones do not enter each other when it "
-       "bends, and shows which do.",
+       "Find the axis about which the selected bone's hinge bends without bones entering each other, "
+       "and show where they still do.",
        start_joint_fit, needs_joint_in_tissue},
       shows_proposed("rig.joint_fit_before", "Collisions before the fit",
-                     "Shows which bone enters which when the joint turns about its axis as it is.", false),
+                     "Show which bones enter each other when the joint turns about its current axis.", false),
       shows_proposed("rig.joint_fit_after", "Collisions after the fit",
-                     "Shows the fitted axis, and what of bone still enters other bone about it.", true),
-      {"rig.take_joint_fit", "Move the joint's axis", icon::kTick, "Rig",
-       "Moves the axis to where it was found; one edit.", take_proposed_joint, needs_proposed_joint},
-      {"rig.leave_joint_fit", "Leave the joint's axis", icon::kClose, "Rig", "The axis stays as it is.",
-       leave_proposed_joint, needs_proposed_joint},
+                     "Show the fitted axis and where bones still enter each other when the joint turns about it.",
+                     true),
+      {"rig.take_joint_fit", "Move the joint's axis", icon::kTick, "Rig", "Move the joint's axis to the fitted axis.",
+       take_proposed_joint, needs_proposed_joint},
+      {"rig.leave_joint_fit", "Leave the joint's axis", icon::kClose, "Rig",
+       "Discard the fitted axis and keep the current one.", leave_proposed_joint, needs_proposed_joint},
   };
 }
 

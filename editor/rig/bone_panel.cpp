@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The active bone: name, parent, where its ends lie, length and roll; what the joint at its head allows.
+// Panel of the active bone in the Rig workspace: name, parent, head, tail, length, roll, and the limits of the joint at
+// its head. Lengths are in mm, shown angles in degrees.
 #include <algorithm>
 #include <cmath>
 
@@ -15,13 +16,13 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;       // mm: as far as an end can be put
-constexpr double kShortest = 0.1;  // mm: of a bone
+constexpr double kFar = 1e5;       // largest coordinate of a bone's head or tail, mm
+constexpr double kShortest = 0.1;  // smallest length of a bone, mm
 
 bool too_short(const Bone& bone) { return glm::distance(bone.head, bone.tail) < kShortest; }
 
-// A number of the bone; the rig follows while it changes and is committed once, at the end. A bone of no length is
-// refused.
+// Draws a field for one number of the bone, such as its length. The views show the changed rig while the user edits the
+// number, and one edit is committed at the end. Rejects a change that makes the bone shorter than kShortest.
 template <class Change>
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown,
                  double low, double high, const char* format, const char* unit, int bone, const Change& change) {
@@ -61,7 +62,7 @@ void draw_name(Editor& editor, const Rect& rect, int index) {
   if (pressed.clicked) begin_renaming(editor, renamed, name);
 }
 
-// Any bone that does not hang on this one, or none.
+// Draws the field that selects the bone's parent: none, or any bone that is not a descendant of this bone.
 void draw_parent(Editor& editor, const Rect& rect, int index) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   std::vector<int> parents = {-1};
@@ -79,10 +80,12 @@ void draw_parent(Editor& editor, const Rect& rect, int index) {
     attempt(editor, "Make parent", [&](Editor& e) { hang_on(e, {index}, parents[chosen]); });
 }
 
-// A bone is connected where its head lies on the parent's tail: set free, its head is drawn back a little, so that
-// either end moves alone.
+// Draws the checkbox that connects the bone to its parent. A bone is connected while its head lies on the parent's
+// tail. Disconnecting moves the head a little along the bone, so that the head and the parent's tail can then be moved
+// independently.
 void draw_connected(Editor& editor, const Rect& rect, int index) {
-  constexpr double kBack = 0.05, kMostBack = 5;  // of the length; mm
+  // The head moves by this share of the bone's length, but not by more than kMostBack, mm.
+  constexpr double kBack = 0.05, kMostBack = 5;
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const Bone& bone = rig->bones[index];
   if (bone.parent < 0) return;
@@ -105,7 +108,7 @@ void draw_connected(Editor& editor, const Rect& rect, int index) {
 void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& end) {
   const Look& look = editor.look;
   const std::string which = end.tail ? "Tail" : "Head";
-  // Three numbers want more than a property's place.
+  // Three coordinates need more width than a property's field has.
   Rect rect = column.property(which + ", mm");
   rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
   const glm::dvec3 place = end.tail ? bone.tail : bone.head;
@@ -125,8 +128,9 @@ void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& e
   }
 }
 
-// The turn that is positive about a hinge, as choices: the bone's own axes, either way round.
-const std::vector<std::string> kAxes = {"Own X", "Own Y", "Own Z", "Own \u2212X", "Own \u2212Y", "Own \u2212Z"};
+// Choices for the axis about which a hinge turns in the positive direction: the bone's local axes and their opposites.
+const std::vector<std::string> kAxes = {"Local X",       "Local Y",       "Local Z",
+                                        "Local \u2212X", "Local \u2212Y", "Local \u2212Z"};
 constexpr int kOtherAxis = 6;
 
 glm::dvec3 own_axis(const Bone& bone, int choice) { return rest_axes(bone)[choice % 3] * (choice < 3 ? 1.0 : -1.0); }
@@ -143,7 +147,8 @@ Armature with_limits(const Armature& rig, int bone, const JointLimits& limits) {
   return next;
 }
 
-// Two angles side by side, shown by `at_rest` larger than they are kept. Rest is always within.
+// Draws the fields for the lower and the upper limit of an angle. The limits are stored relative to the rest pose and
+// shown with `at_rest` added. The fields keep the rest pose within the limits.
 void draw_range(Editor& editor, Column& column, const Bone& bone, int index, const std::string& label,
                 double JointLimits::*low, double JointLimits::*high, double at_rest) {
   const double zero = glm::degrees(at_rest);
@@ -187,7 +192,7 @@ void draw_joint(Editor& editor, Column& column, const Bone& bone, int index) {
     if (bone.limits.type == JointLimits::Type::Hinge) {
       int axis = axis_choice(bone);
       std::vector<std::string> axes = kAxes;
-      if (axis == kOtherAxis) axes.push_back("Other");  // what it is; nothing to choose
+      if (axis == kOtherAxis) axes.push_back("Other");  // the axis is none of the bone's local axes
       if (choose("Axis", axes, axis)) {
         JointLimits limits = bone.limits;
         limits.axis = own_axis(bone, axis);

@@ -13,7 +13,8 @@ namespace limber::editor {
 
 namespace {
 
-// The same body by the same map: seams change nothing of it.
+// Returns whether two sources have the same volume, tissues, rig and bone map. Their seams are not compared, because
+// seams do not change the bone table.
 bool same_source(const SeamSource& a, const SeamSource& b) {
   return a.volume == b.volume && a.tissues == b.tissues && a.armature == b.armature && a.bone_map == b.bone_map;
 }
@@ -56,7 +57,7 @@ std::string why_no_bone_table(const Editor& editor) {
   const auto& tissues = document.tissues->tissues;
   return std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) { return is_bone(tissue.kind); })
              ? ""
-             : "No tissue is bone";
+             : "No tissue has the kind bone";
 }
 
 const BoneTable::Known* bone_table(Editor& editor) {
@@ -74,12 +75,13 @@ const BoneTable::Known* bone_table(Editor& editor) {
             e.touch();
           };
         },
-        [source](Editor& e, const std::string& error) {  // not tried again for the same body
+        [source](Editor& e, const std::string& error) {
+          // An empty table keeps the failed task from starting again for the same body.
           e.bone_table->known =
               BoneTable::Known{.source = source, .rows = {}, .left_out = {}, .tissue = nullptr, .field = nullptr};
           e.messages.show_error(error, "Bone map");
         });
-  // Rows of another body or another rig name what may not be there.
+  // The table of an earlier body or rig is not returned: its rows may name labels or bones that no longer exist.
   const bool fits = table.known && table.known->source.volume == source.volume &&
                     table.known->source.tissues == source.tissues && table.known->source.armature == source.armature;
   return fits ? &*table.known : nullptr;
@@ -97,7 +99,7 @@ void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::o
   note_weights_source(editor);
   Document next = document;
   next.bone_map = map.empty() ? nullptr : std::make_shared<const BoneMap>(std::move(map));
-  editor.history.commit(name ? what + " follows " + *name : what + " as found", std::move(next));
+  editor.history.commit(name ? what + " follows " + *name : what + " follows the found bone", std::move(next));
 }
 
 void clear_bone_map(Editor& editor) {
@@ -113,7 +115,8 @@ void show_bone_table(Editor& editor) {
   render::Scene& scene = editor.views->scene;
   if (!known || !known->field || scene.volume != known->source.volume || scene.pose) return;
   scene.outlined.reset();
-  if (scene.display == render::Display::Solid) scene.display = render::Display::XRay;  // flesh would hide the bones
+  if (scene.display == render::Display::Solid)
+    scene.display = render::Display::XRay;  // soft tissue would hide the bones
   scene.weights = render::ShownWeights{.weights = nullptr,
                                        .tissue = known->tissue,
                                        .display = render::WeightDisplay::Field,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which rig bone each label of bone tissue follows, and how that was found: listed in the Rig workspace, changed label
-// by label, and seen as colours on the bones. What the user says is the document's bone map, which weights and previews
-// go by.
+// The bone table: for each label of bone tissue, the rig bone that it follows and how that bone was found. The Rig
+// workspace lists the labels and can colour them by rig bone. Bones that the user sets are stored in the document's
+// bone map, which the computation of weights and the live preview of the posed body use.
 #pragma once
 
 #include <memory>
@@ -16,30 +16,35 @@
 namespace limber::editor {
 
 struct BoneTable {
-  bool coloured = false;  // bones in the views of the Rig workspace, by the rig bones that they follow
+  bool coloured = false;  // whether the Rig workspace colours bone tissue by the rig bone that it follows
 
-  // What was found last, and of what body.
+  // The table that was computed last, with the volume, tissues and rig for which it was computed.
   struct Known {
     SeamSource source;
     std::vector<MappedLabel> rows;
-    std::vector<std::string> left_out;  // keys of the document's map that name what is not there
+    std::vector<std::string> left_out;  // keys of bone map entries that name a missing tissue or bone
     std::shared_ptr<const TissueVoxels> tissue;
-    std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels, sRGB
+    std::shared_ptr<const std::vector<glm::u8vec3>> field;  // colour of each tissue voxel, sRGB
   };
   std::optional<Known> known;
-  std::optional<int> task;  // that finds it anew
+  std::optional<int> task;  // id of the background task that computes `known`
 };
 
-// Null where there is no volume with bone tissue, or no rig. The one of an earlier body, or of an earlier map, while
-// the new one is being found, which this begins; null as well where there is no earlier one.
+// Returns the bone table; null without a rig or without a volume that has bone tissue. When the volume, the tissues,
+// the rig or the bone map have changed, starts a task that computes the table again. Until that task ends, returns the
+// earlier table if only the bone map has changed, else null.
 const BoneTable::Known* bone_table(Editor& editor);
-std::string why_no_bone_table(const Editor& editor);  // "" where there is one, or will be
+// Returns why no bone table can be computed, such as "Import a rig first"; "" when it can.
+std::string why_no_bone_table(const Editor& editor);
 
-// What tissue follows from now on: a bone of the rig, or what is found for it. One edit.
+// Commits one edit after which a label of bone tissue, or its voxels on one side of the body, follows a bone of the
+// rig.
+//   side  side of the body; nothing: the whole label
+//   bone  index into the rig's bones; nothing: the bone is found automatically
 void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::optional<int> bone);
 void clear_bone_map(Editor& editor);
 
-// Into the scene of this frame.
+// Colours bone tissue in the scene of this frame by the table's rig bones when the user has switched this on.
 void show_bone_table(Editor& editor);
 
 }  // namespace limber::editor

@@ -8,15 +8,17 @@ namespace limber::editor {
 std::vector<Operator> bone_table_operators() {
   return {
       {"rig.colour_bones", "Colour by rig bone", icon::kTissues, "Rig",
-       "Colours bone tissue by the rig bone that it follows, in the Rig workspace.",
+       "Colour bone tissue in the views by the rig bone that it follows.",
        [](Editor& e) { e.bone_table->coloured = !e.bone_table->coloured; },
        [](const Editor& e) {
-         return e.workspace != Workspace::Rig ? std::string("Works in the Rig workspace") : why_no_bone_table(e);
+         return e.workspace != Workspace::Rig ? std::string("Switch to the Rig workspace first") : why_no_bone_table(e);
        },
        [](const Editor& e) { return e.bone_table->coloured; }},
       {"rig.clear_bone_map", "Clear bone map", icon::kTrash, "Rig",
-       "Labels of bone follow again what is found for them.", clear_bone_map,
-       [](const Editor& e) { return e.document().bone_map ? std::string() : std::string("Nothing was said by hand"); }},
+       "Let all bone tissue follow the rig bones that were found automatically.", clear_bone_map,
+       [](const Editor& e) {
+         return e.document().bone_map ? std::string() : std::string("No bone tissue was assigned by hand");
+       }},
   };
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every label of bone tissue with the rig bone that it follows and how that was found. A box of choices gives it
-// another bone.
+// Panel of the bone table: each label of bone tissue, the rig bone that it follows and how that bone was found. A
+// choice field in each row sets another bone.
 #include <algorithm>
 
 #include "editor/context/operator_button.h"
@@ -23,7 +23,7 @@ std::string name_of(const MappedLabel& row, const Tissue* tissue) {
   return name + (!row.side ? "" : *row.side == BodySide::Left ? ", left" : ", right");
 }
 
-// The side first, which a long name would push out of sight.
+// Returns the row's text. "Left" or "Right" comes first, because after a long name it would be cut off.
 std::string shown_in_row(const MappedLabel& row, const Tissue* tissue) {
   const std::string name = name_of({.label = row.label}, tissue);
   return !row.side ? name : *row.side == BodySide::Left ? "Left: " + name : "Right: " + name;
@@ -42,7 +42,7 @@ std::string followed(const MappedLabel& row, const Armature& armature) {
 void choose_bone(Editor& editor, const MappedLabel& row, const Rect& rect) {
   const Armature& armature = *editor.document().armature;
   const bool by_hand = row.found_by == FoundBy::Map;
-  std::vector<std::string> choices{by_hand ? "As found" : followed(row, armature)};
+  std::vector<std::string> choices{by_hand ? "Automatic" : followed(row, armature)};
   for (const Bone& bone : armature.bones) choices.push_back(bone.name);
   int chosen = by_hand && !row.bones.empty() ? row.bones[0] + 1 : 0;
   if (choice_field(editor, rect, choices, chosen))
@@ -76,7 +76,7 @@ void draw_row(Editor& editor, Column& column, int index, const MappedLabel& row)
     tooltip(editor, top, name,
             voxels + " voxels follow " + followed(row, armature) + ", found by " +
                 std::string(to_string(row.found_by)) +
-                (row.is_sure ? "." : "; the rig has no bone for what the name means."));
+                (row.is_sure ? "." : "; the rig has no bone that matches the name."));
   if (pressed.clicked) {
     select_tissue(editor, row.label, false);
     if (!row.bones.empty()) editor.selection.bone = row.bones[0], editor.selection.bones = {row.bones[0]};
@@ -98,7 +98,7 @@ void draw_rows(Editor& editor, Column& column, const std::vector<MappedLabel>& r
   for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[static_cast<std::size_t>(i)]);
 }
 
-// Fact, figure, one button.
+// Draws a warning with the number of bone map entries whose tissue or bone does not exist. The tooltip lists them.
 void draw_left_out(Editor& editor, Column& column, const std::vector<std::string>& left_out) {
   if (left_out.empty()) return;
   const Look& look = editor.look;
@@ -145,10 +145,11 @@ void draw_bone_table(Editor& editor, Column& column) {
   if (column.begin_section("Bone map", is_of_body ? summary(*last) : "", false)) {
     const BoneTable::Known* known = bone_table(editor);
     if (!known) {
-      put_text(editor, editor.look.fonts.regular, editor.look.theme.text3, column.row(24), "Looking at the bones",
+      put_text(editor, editor.look.fonts.regular, editor.look.theme.text3, column.row(24), "Finding the bones",
                Align::Centre);
     } else {
-      std::vector<MappedLabel> rows = known->rows;  // kept, since a row may change them; what is not sure first
+      // Rows are copied, because drawing a row may change the table. Rows whose bone is uncertain come first.
+      std::vector<MappedLabel> rows = known->rows;
       std::stable_partition(rows.begin(), rows.end(), [](const MappedLabel& row) { return !row.is_sure; });
       draw_left_out(editor, column, known->left_out);
       if (static_cast<float>(rows.size()) <= kMostRows) {

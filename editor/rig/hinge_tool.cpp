@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The axis of a hinge goes with the pointer.
+// Modal tool in which the axis of the active bone's hinge joint follows the pointer.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kReach = 124;  // pixels at scale 1, from the joint to what is dragged
+constexpr double kReach = 124;  // distance from the joint to the dragged end of the axis, pixels at scale 1
 
 class HingeTool final : public TransformTool {
  public:
@@ -30,12 +30,12 @@ class HingeTool final : public TransformTool {
     return "Hinge of " + rig_.bones[bone_].name + ", turned by " + text_of_number("%.1f", degrees()) + "\u00b0";
   }
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"X", "Y", "Z"}, "Along an axis, again: local"},
+    return {{{"X", "Y", "Z"}, "World axis; again: local axis"},
             {{"0-9"}, "Turn by degrees"},
-            {{"Ctrl"}, "Snap to own axes"},
-            {{"Shift"}, "Slowly"},
-            {{"Enter"}, "Keep"},
-            {{"Esc"}, "Back"}};
+            {{"Ctrl"}, "Snap to local axes"},
+            {{"Shift"}, "Precise"},
+            {{"Enter"}, "Confirm"},
+            {{"Esc"}, "Cancel"}};
   }
   void cancel(Editor& editor) override { drop_shown_rig(editor); }
 
@@ -56,8 +56,10 @@ class HingeTool final : public TransformTool {
   glm::dmat3 axes(Space space) const override { return axes_of(space, rig_, rest_pose(rig_), bone_, view_); }
   double degrees() const { return glm::degrees(std::acos(std::clamp(glm::dot(axis_, before_), -1.0, 1.0))); }
 
-  // Along the lock, on the side where it was; else towards the pointer, with Ctrl the nearest of the bone's own axes. A
-  // number turns it by so many degrees, about the lock or as the picture is seen.
+  // Returns the hinge's new axis, a unit vector. A typed number turns the old axis by that many degrees about the
+  // locked axis, or about the line of sight when no axis is locked. Without a number, the new axis is the locked axis
+  // or its opposite, whichever is nearer to the old axis. With neither, it points to the pointer; Ctrl snaps it to the
+  // nearest of the bone's local axes.
   glm::dvec3 pointed_at(Editor& editor) {
     if (number_.typed())
       return glm::angleAxis(glm::radians(number_.value()), lock_.axis >= 0 ? lock_axis() : view_.towards_eye) * before_;

@@ -41,7 +41,7 @@ std::string motion_text(const ProposedJoint& proposed) {
   char text[96];
   std::snprintf(text, sizeof text,
                 is_hinge(proposed) ? "The axis moves by %.1f mm and turns by %.1f\u00b0"
-                                   : "Becomes a hinge, %.1f mm and %.1f\u00b0 from here",
+                                   : "Becomes a hinge, moved %.1f mm, turned %.1f\u00b0",
                 proposed.fit.moved_mm, proposed.fit.turned_degrees);
   return text;
 }
@@ -52,7 +52,7 @@ void propose(Editor& editor, ProposedJoint proposed) {
                                 "The rig or the volume was changed meanwhile: start the fit again");
   if (proposed.fit.overlap_before == 0)
     return editor.messages.ok("Joint axis of " + proposed.bone,
-                              "No bone enters another within its range: the axis can stay");
+                              "Bones do not enter each other within its range: the axis can stay");
   editor.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
   editor.touch();
 }
@@ -64,7 +64,7 @@ void start_joint_fit(Editor& editor) {
   const Document from = editor.document();
   const int bone = *editor.selection.bone;
   const JointLimits& limits = from.armature->bones[bone].limits;
-  // Of a joint that is none, the hinge that it bends by, over the usual range.
+  // A joint of another type is fitted as a hinge about its flexion axis, over the default range of FitJoint.
   FitJoint settings;
   if (limits.type == JointLimits::Type::Hinge)
     settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
@@ -102,9 +102,9 @@ void show_proposed_joint(Editor& editor) {
   const ProposedJoint* proposed = proposed_joint(editor);
   render::Scene& scene = editor.views->scene;
   if (!proposed || scene.volume != proposed->volume) return;
-  scene.display = render::Display::XRay;  // bones meet under the flesh
+  scene.display = render::Display::XRay;  // soft tissue would hide the bones
   scene.bones_in_front = true;
-  scene.bone_shape = render::BoneShape::Stick;  // or it would hide what collides
+  scene.bone_shape = render::BoneShape::Stick;  // a thicker shape would hide the collisions
   scene.outlined.reset();
   if (scene.armature && proposed->shows_after) scene.armature = proposed->fitted;
   scene.weights = render::ShownWeights{.weights = nullptr,
@@ -151,7 +151,7 @@ void draw_proposed_joint(Editor& editor, const Rect& view) {
   fill({{left, y + look.px(6)}, {left + look.px(14), y + look.px(20)}}, rgb(kColliding.r, kColliding.g, kColliding.b),
        look.px(3));
   put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left + look.px(22), y}, {right, y + look.px(kRow)}},
-           "Bone in bone, worst angle");
+           "Bone overlap, worst angle");
   line(look.fonts.mono, fit.overlap_after > 0 ? look.theme.warn : look.theme.ok,
        grouped(fit.overlap_before) + " \u2192 " + grouped(fit.overlap_after), Align::Right);
   y += look.px(kRow);

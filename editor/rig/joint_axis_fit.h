@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A joint's axis as it would be moved (core/autorig/joint_axis_fit.h), before the user takes it or leaves it: the views
-// show through the flesh which bone enters which when the joint turns, about the old axis or about the new one, and a
-// card has the figures.
+// A proposed joint axis (core/autorig/joint_axis_fit.h) that the user accepts or rejects. The views draw soft tissue
+// transparent and mark the bone voxels that collide when the joint turns about the old or the proposed axis. A card
+// over the view shows the overlap in voxels and how far the axis moves.
 #pragma once
 
 #include <array>
@@ -14,25 +14,25 @@
 namespace limber::editor {
 
 struct ProposedJoint {
-  std::shared_ptr<const LabelVolume> volume;  // of the document that it is for; another one ends it
+  std::shared_ptr<const LabelVolume> volume;  // for which the axis was fitted; another volume ends the proposal
   std::shared_ptr<const Armature> from, fitted;
   std::string bone;
   FittedJoint fit;
   std::shared_ptr<const TissueVoxels> tissue;
   std::array<std::shared_ptr<const std::vector<glm::u8vec3>>, 2>
-      colours;  // #tissue, of the tissues and what collides: before, after
+      colours;  // sRGB colour of each tissue voxel, with collisions marked: before and after the fit
   bool shows_after = false;
 };
 
-// Fits the axis of the active bone's hinge, as a job that ends in a proposal.
+// Starts a job that fits the axis of the active bone's hinge and ends in a proposal.
 void start_joint_fit(Editor& editor);
-// Null: nothing is proposed, or not here.
+// Returns the proposal; null when there is none, when volume or rig have changed since, or outside the Rig workspace.
 const ProposedJoint* proposed_joint(const Editor& editor);
-// Into the scene of this frame.
+// Shows the proposed axis and the collisions in the scene of this frame.
 void show_proposed_joint(Editor& editor);
-void take_proposed_joint(Editor& editor);  // one edit
+void take_proposed_joint(Editor& editor);  // commits the proposed axis as one edit
 void leave_proposed_joint(Editor& editor);
-// The card, over a view.
+// Draws the card with the proposal's numbers and buttons over a view.
 void draw_proposed_joint(Editor& editor, const Rect& view);
 
 }  // namespace limber::editor

@@ -9,10 +9,11 @@ namespace limber::editor {
 
 namespace {
 
-// Pixels at scale 1.
+// Pixels at scale 1: length of the drawn hinge axis, distance of the roll handle from the bone, and distance from a
+// handle within which a click hits it.
 constexpr double kAxis = 124, kKnob = 30, kHit = 9;
 
-// The bone that has handles; null for none.
+// Returns the active bone if its joint handles are shown in this view, else null.
 const Bone* handled_bone(const Editor& editor, const Armature* rig, const ViewProjection& view) {
   const auto bone = editor.selection.bone;
   const bool wanted = editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate &&

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Handles of the active bone's joint in the Rig workspace's 3D view, with the rotate tool: the end of a hinge's axis,
-// which is drawn to where the hinge shall point, and a knob at the bone's own x axis that rolls the bone.
+// Two handles at the active bone in the 3D view of the Rig workspace, shown while the rotate tool is active. One turns
+// the axis of the bone's hinge joint. The other lies on the bone's local x axis and rolls the bone.
 #pragma once
 
 #include "editor/context/view_projection.h"
 
 namespace limber::editor {
 
-// True when the pointer was over one: its tool has begun.
+// Begins to drag the handle under the pointer. Returns false when there is no handle under the pointer.
 bool press_joint_handle(Editor& editor, const ViewProjection& view);
 void draw_joint_handles(Editor& editor, const ViewProjection& view);
 
-// Where they stand; nothing where there is none. Points of the world.
+// Return the position of the hinge handle and of the roll handle, world coordinates in mm; nothing when the handle is
+// not shown in this view.
 std::optional<glm::dvec3> hinge_handle(const Editor& editor, const ViewProjection& view);
 std::optional<glm::dvec3> roll_handle(const Editor& editor, const ViewProjection& view);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the rig leaves the tissue: a list of its bones, marks over the views, and the way there. Follows the rig while
-// it is dragged; checked again only when the rig or the volume is another.
+// Finds the bones of the rig that lie partly outside the tissue, lists them, marks them over the views and centres the
+// views on them. The check runs again when the rig or the volume changes, also while the user drags a bone.
 #pragma once
 
 #include <memory>
@@ -14,12 +14,12 @@ namespace limber::editor {
 struct Editor;
 struct ViewProjection;
 
-// A bone that is not wholly in tissue.
+// A bone that lies partly or wholly outside the tissue.
 struct LeavingBone {
   int bone = 0;
-  double share = 1;                 // of its length in tissue
-  bool head = false, tail = false;  // which of its joints are outside
-  glm::dvec3 place{0};              // a joint outside, else the middle of the longest stretch in air
+  double share = 1;                 // share of the bone's length in tissue, [0, 1]
+  bool head = false, tail = false;  // whether this end of the bone is outside the tissue
+  glm::dvec3 place{0};              // an end outside the tissue, else the middle of the longest stretch outside, mm
 };
 
 struct KnownRigCheck {
@@ -29,15 +29,16 @@ struct KnownRigCheck {
   std::vector<LeavingBone> bones;  // in the rig's order
 };
 
-// Of the rig that is shown; null without a rig or a volume, and outside the Rig workspace.
+// Returns the result of the check for the shown rig; null without a rig or a volume, or outside the Rig workspace.
 const KnownRigCheck* rig_check(const Editor& editor);
 
-// Chooses the bone, its joint where that is outside, and brings the place to the middle of every view.
+// Selects the bone, or its end that lies outside the tissue, and centres every view on `leaving.place`.
 void show_leaving(Editor& editor, const LeavingBone& leaving);
-// After the active bone, then from the first again.
+// Selects and shows the next bone after the active one that lies partly outside the tissue. Continues with the first
+// such bone after the last.
 void show_next_leaving(Editor& editor);
 
-// Stretches and joints in air, over a view.
+// Draws marks over a view on the stretches and ends of bones that lie outside the tissue.
 void draw_rig_check(Editor& editor, const ViewProjection& view);
 
 }  // namespace limber::editor

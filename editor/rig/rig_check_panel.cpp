@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How much of the rig lies in tissue, and the bones that leave it, each with its share: a click goes there.
+// Panel of the rig check: the share of the total bone length that lies in tissue, and a list of the bones that lie
+// partly outside. A click on a bone of the list centres the views on it.
 #include <cmath>
 #include <cstdio>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr char kList[] = "rig check";
 
-// Never "100 %" of less than all.
+// Returns the share as text in percent. It is rounded down, so that only a share of 1 reads "100.0 %".
 std::string per_cent(double share) {
   char text[16];
   std::snprintf(text, sizeof text, "%.1f %%", std::floor(share * 1000) / 10);
@@ -51,7 +52,7 @@ void draw_row(Editor& editor, Column& column, int index, const LeavingBone& leav
   if (pressed.hovered)
     tooltip(editor, rect, name,
             per_cent(leaving.share) + " of its length in tissue" +
-                (leaving.head || leaving.tail ? "; outside: " + outside_text(leaving) : "") + ". Click to go there.");
+                (leaving.head || leaving.tail ? "; outside: " + outside_text(leaving) : "") + ". Click to show it.");
   if (!pressed.clicked) return;
   focus_list(editor, kList, index);
   show_leaving(editor, leaving);
@@ -62,10 +63,10 @@ void draw_row(Editor& editor, Column& column, int index, const LeavingBone& leav
 void draw_fit_check(Editor& editor, Column& column) {
   const KnownRigCheck* found = rig_check(editor);
   if (!found) return;
-  const KnownRigCheck known = *found;  // kept, since a row may choose
+  const KnownRigCheck known = *found;  // a copy, because a click on a row changes the selection
   const std::vector<LeavingBone>& rows = known.bones;
   const Look& look = editor.look;
-  const std::string count = std::to_string(rows.size()) + (rows.size() == 1 ? " bone leaves" : " bones leave");
+  const std::string count = std::to_string(rows.size()) + (rows.size() == 1 ? " bone outside" : " bones outside");
   if (column.begin_section("Fit check", rows.empty() ? "All in tissue" : count, false)) {
     const Rect rect = column.row(32);
     const Rect words{{rect.low.x + look.px(14), rect.low.y}, {rect.high.x - look.px(130), rect.high.y}};

@@ -22,7 +22,9 @@ std::vector<std::string> names_of(const Armature& armature) {
   return names;
 }
 
-// For each old bone the one that takes over its weight: itself, or the next above that stays.
+// Returns, for each bone of the old rig, the index of the new rig's bone that takes over its weights: the same bone, or
+// its nearest ancestor that remains; -1: none.
+//   from  for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
   std::vector<int> to(before.bones.size(), -1);
   for (int bone = 0; bone < std::ssize(from); ++bone)
@@ -34,8 +36,9 @@ std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
 
 using Follow = std::function<void(Document&, const Armature& before, const Armature& after)>;
 
-//   from   #bones of `next`: which one it was, -1 for a new one
-//   follow  takes along what goes by names
+// Commits the new rig as one edit that keeps pose and weights, and selects the bones of `chosen`.
+//   from    for each bone of `next`, its index in the old rig; -1: a new bone
+//   follow  updates the parts of the document that refer to bones by name
 void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from,
                      const std::vector<int>& chosen, const Follow& follow = {}) {
   drop_shown_rig(editor);
@@ -43,7 +46,7 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
   if (before && next == *before) return;
   check_armature(next, "rig");
   Document document = editor.document();
-  const std::string lost = "The weights belonged to bones that are gone: compute them again";
+  const std::string lost = "The weights belonged to deleted bones: compute them again";
   bool weights_lost = false;
   if (before && document.pose) document.pose = std::make_shared<const Pose>(carried(*document.pose, from));
   if (before && document.weights) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the rig at rest.
+// Operators that edit the rig in its rest pose.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -21,7 +21,7 @@ namespace limber::editor {
 namespace {
 
 std::string needs_rig_workspace(const Editor& editor) {
-  return editor.workspace == Workspace::Rig ? "" : "Works in the Rig workspace";
+  return editor.workspace == Workspace::Rig ? "" : "Switch to the Rig workspace first";
 }
 
 std::string needs_rig_bone(const Editor& editor) {
@@ -36,7 +36,7 @@ std::string needs_place(const Editor& editor) {
 
 std::string needs_two(const Editor& editor) {
   if (const std::string why = needs_rig_bone(editor); !why.empty()) return why;
-  return editor.selection.bones.size() > 1 ? "" : "Choose the children first, then the parent";
+  return editor.selection.bones.size() > 1 ? "" : "Select the children first, then the parent";
 }
 
 std::string needs_rig_in_workspace(const Editor& editor) {
@@ -60,7 +60,7 @@ void extrude(Editor& editor) {
   begin_tool(editor, begin_rig_change(editor, change));
 }
 
-// At the cross-hair, upward, an eighth of the volume long.
+// Adds a bone at the cross-hair that points up. Its length is an eighth of the volume's height.
 void add(Editor& editor) {
   const Armature armature = editor.document().armature ? *editor.document().armature : Armature{};
   const Box box = world_box(editor.document());
@@ -70,8 +70,8 @@ void add(Editor& editor) {
   editor.transform_settings->part = TransformSettings::Part::Tail;
 }
 
-// Between the ends of two bones that are nearest to each other, from the one chosen first; from one bone's joint to the
-// cross-hair.
+// Adds a bone that fills a gap. With two selected bones, the new bone connects their nearest ends, with its tail at the
+// active bone. With one selected bone, the new bone reaches from the selected end to the cross-hair.
 void fill(Editor& editor) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const std::vector<int> bones = bones_chosen_last(editor);
@@ -81,7 +81,7 @@ void fill(Editor& editor) {
     const glm::dvec3 to = editor.views->cross_hair;
     if (glm::distance(to, place_of(change.start, change.ends[0])) < 1e-6)
       throw Error("the cross-hair stands on the joint", rig->bones[bones[0]].name,
-                  "put it where the bone shall end: Shift and the right button");
+                  "move it to where the bone should end: Shift and the right button");
     next = with_moved_ends(change.start, change.ends, [&](const glm::dvec3&) { return to; });
   } else {
     BoneEnd from, to;
@@ -105,7 +105,7 @@ void fill(Editor& editor) {
 
 std::string needs_gap(const Editor& editor) {
   if (const std::string why = needs_rig_bone(editor); !why.empty()) return why;
-  if (editor.selection.bones.size() > 2) return "Choose one bone or two";
+  if (editor.selection.bones.size() > 2) return "Select one bone or two";
   return editor.selection.bones.size() == 2 ? "" : needs_volume(editor);
 }
 
@@ -113,11 +113,12 @@ void duplicate(Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   const std::vector<int> bones = bones_chosen_last(editor);
   RigChange change{RigChange::Kind::Move, naming_chosen(editor, "Duplicate"), duplicated(*armature, bones), {}, {}};
-  // The copies stand in the order of their numbers.
+  // duplicated() appends the copies to the rig's bones.
   for (int copy = static_cast<int>(armature->bones.size()); copy < std::ssize(change.start.bones); ++copy) {
     change.ends.insert(change.ends.end(), {{copy, false}, {copy, true}});
     change.chosen.push_back(copy);
-    // Loose, so that what they are copies of stays.
+    // A copy whose head lies on the tail of an original bone loses its parent, because moving the copy would otherwise
+    // move the original's tail too.
     if (is_connected(change.start, copy) && change.start.bones[copy].parent < std::ssize(armature->bones))
       change.start.bones[copy].parent = -1;
   }
@@ -125,7 +126,7 @@ void duplicate(Editor& editor) {
   begin_tool(editor, begin_rig_change(editor, change));
 }
 
-// What stays chosen of `bones` in a rig made from the document's: those of the same names.
+// Returns the indices of the bones in the rig `after` that have the names of `bones` in the rig `before`.
 std::vector<int> still(const Armature& before, const Armature& after, const std::vector<int>& bones) {
   std::vector<int> found;
   for (const int bone : bones)
@@ -133,7 +134,8 @@ std::vector<int> still(const Armature& before, const Armature& after, const std:
   return found;
 }
 
-enum class Sides { Chosen, Mirrored };  // the latter where X-mirror is on
+// Which bones an edit changes: the selected bones, or with X-mirror on, also their counterparts on the other side.
+enum class Sides { Chosen, Mirrored };
 
 template <class Edit>
 void edit(Editor& editor, const char* verb, const Edit& change, Sides sides = Sides::Chosen) {
@@ -154,15 +156,16 @@ void hang(Editor& editor, Join join) {
 }
 
 void subdivide(Editor& editor) {
-  act_and_allow_redo(editor, {number_of("Parts", "How many bones each chosen one becomes.", 2, 2, 100, "%.0f")},
-                     [](Editor& e, const std::vector<FormField>& fields) {
-                       edit(
-                           e, "Subdivide",
-                           [&](const Armature& rig, const std::vector<int>& bones) {
-                             return subdivided(rig, bones, static_cast<int>(std::round(fields[0].value)));
-                           },
-                           Sides::Mirrored);
-                     });
+  act_and_allow_redo(
+      editor, {number_of("Parts", "Number of bones into which each selected bone is divided.", 2, 2, 100, "%.0f")},
+      [](Editor& e, const std::vector<FormField>& fields) {
+        edit(
+            e, "Subdivide",
+            [&](const Armature& rig, const std::vector<int>& bones) {
+              return subdivided(rig, bones, static_cast<int>(std::round(fields[0].value)));
+            },
+            Sides::Mirrored);
+      });
 }
 
 void symmetrize(Editor& editor) {
@@ -170,22 +173,24 @@ void symmetrize(Editor& editor) {
   const std::vector<int> chosen = bones_chosen_last(editor);
   if (std::none_of(chosen.begin(), chosen.end(), [&](int bone) { return mirrored_name(all[bone].name).has_value(); }))
     throw Error("a bone without a side has no other side", all[chosen.back()].name,
-                "give it a name with a side first, as Arm.L or LeftArm");
-  act_and_allow_redo(
-      editor, {choice_of("From", "The side whose mirror image the other one becomes.", {"Chosen", "Not chosen"})},
-      [](Editor& e, const std::vector<FormField>& fields) {
-        edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
-          std::vector<int> from = bones;
-          const std::vector<int> pairs = mirror_pairs(rig);
-          if (fields[0].chosen == 1)
-            for (int& bone : from) bone = pairs[bone];
-          return symmetrized(rig, from);
-        });
-      });
+                "give it a name with a side first, such as Arm.L or LeftArm");
+  act_and_allow_redo(editor,
+                     {choice_of("From", "The side that is copied to the other side as its mirror image.",
+                                {"Selected", "Not selected"})},
+                     [](Editor& e, const std::vector<FormField>& fields) {
+                       edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {
+                         std::vector<int> from = bones;
+                         const std::vector<int> pairs = mirror_pairs(rig);
+                         if (fields[0].chosen == 1)
+                           for (int& bone : from) bone = pairs[bone];
+                         return symmetrized(rig, from);
+                       });
+                     });
 }
 
-// The chosen bones with the limits of that joint, or where it is -1 of what their names mean; `left` are the names of
-// those that mean nothing.
+// Returns the rig in which the bones have the usual limits of a joint.
+//   joint  index into usual_joints(); -1: each bone gets the limits of the joint that its name denotes
+//   left   receives the names of the bones whose name denotes no known joint; these bones stay unchanged
 Armature with_usual_limits(const Armature& rig, const std::vector<int>& bones, int joint,
                            std::vector<std::string>& left) {
   const auto by_name = usual_joints_of(rig);
@@ -201,15 +206,15 @@ void ask_motion_range(Editor& editor) {
   std::vector<std::string> joints = usual_joints();
   joints.insert(joints.begin(), "By the bone's name");
   const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
-    if (const std::string why = needs_rig_bone(e); !why.empty()) throw Error("no bone is chosen", "the rig", why);
+    if (const std::string why = needs_rig_bone(e); !why.empty()) throw Error("no bone is selected", "the rig", why);
     const std::vector<int> bones = bones_chosen_last(e);
     std::vector<std::string> left;
     const Armature next = with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, left);
     if (left.size() == bones.size())
-      throw Error("this bone's name means no joint known", next.bones[bones.back()].name, "choose the joint");
+      throw Error("no joint is known for this bone's name", next.bones[bones.back()].name, "select the joint");
     if (bones.size() == 1) return next.bones[bones[0]].name + ": " + limits_text(next, bones[0]) + ".";
     std::string words = std::to_string(bones.size() - left.size()) + " of " + std::to_string(bones.size()) + " bones";
-    for (std::size_t i = 0; i < left.size(); ++i) words += (i == 0 ? "; names that mean no joint: " : ", ") + left[i];
+    for (std::size_t i = 0; i < left.size(); ++i) words += (i == 0 ? "; names that match no joint: " : ", ") + left[i];
     return words + ".";
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
@@ -218,13 +223,15 @@ void ask_motion_range(Editor& editor) {
     commit_rig(e, naming_chosen(e, "Range of motion of"),
                mirrored_too(e, with_usual_limits(*e.document().armature, bones, fields[0].chosen - 1, left)), bones);
   };
-  editor.open_dialog(
-      make_form({"Range of motion",
-                 "Gives the joints at the heads of the chosen bones the range that is usual for an adult.",
-                 "Set limits",
-                 {choice_of("Joint", "Ranges of the American Academy of Orthopaedic Surgeons.", joints)},
-                 outcome,
-                 act}));
+  editor.open_dialog(make_form(
+      {"Range of motion",
+       "Limits the joints at the heads of the selected bones to an adult's usual range of motion.",
+       "Set limits",
+       {choice_of("Joint",
+                  "The joint whose range is used, as published by the American Academy of Orthopaedic Surgeons.",
+                  joints)},
+       outcome,
+       act}));
 }
 
 NameChange name_change(const std::vector<FormField>& fields) {
@@ -251,7 +258,7 @@ void ask_names(Editor& editor) {
     for (std::size_t bone = 0; bone < next.bones.size(); ++bone)
       if (next.bones[bone].name != before.bones[bone].name && count++ == 0)
         first = before.bones[bone].name + " becomes " + next.bones[bone].name;
-    if (count == 0) throw NotYet{"Fill in what is to change."};
+    if (count == 0) throw NotYet{"Fill in what to change."};
     return first + (count == 1 ? "." : ", and " + std::to_string(count - 1) + " more change.");
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
@@ -264,13 +271,13 @@ void ask_names(Editor& editor) {
   };
   editor.open_dialog(make_form(
       {"Rename bones",
-       "Changes the names of many bones at once; all that is theirs follows: weights, poses, keys, motions, pins.",
+       "Changes the names of many bones at once. Their weights, poses, keys, motions and pins are kept.",
        "Rename",
-       {choice_of("Bones", "Whose names change.", {"Chosen", "All"}, editor.selection.bones.empty() ? 1 : 0),
-        text_of("Find", "What is looked for in each name.", ""),
-        text_of("Replace with", "What stands there instead.", ""), text_of("Prefix", "Before each name.", ""),
-        text_of("Suffix", "Behind each name.", ""),
-        choice_of("Side", "Left becomes right and right left: Arm.L is Arm.R then.", {"Stays", "The other"})},
+       {choice_of("Bones", "The bones to rename.", {"Selected", "All"}, editor.selection.bones.empty() ? 1 : 0),
+        text_of("Find", "The text to find in each name.", ""),
+        text_of("Replace with", "The text that replaces the found text.", ""),
+        text_of("Prefix", "Text added before each name.", ""), text_of("Suffix", "Text added after each name.", ""),
+        choice_of("Side", "Whether left and right are exchanged: Arm.L becomes Arm.R.", {"Keep", "Exchange"})},
        outcome,
        act}));
 }
@@ -286,7 +293,9 @@ Operator edit_operator(const char* id, const char* label, const char* icon, cons
           needs_rig_bone};
 }
 
-// The chosen joint, or both ends of every chosen bone, each to where `to` takes it.
+// Moves the selected joint, or both ends of every selected bone, to the positions that `to` returns for them. An end
+// for which `to` returns nothing keeps its position. Throws Error when `to` returns nothing for every end.
+//   to  called with the bone and the end's current position, mm
 void put_joints(Editor& editor, const char* verb,
                 const std::function<std::optional<glm::dvec3>(const Bone&, const glm::dvec3&)>& to) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
@@ -304,14 +313,14 @@ void put_joints(Editor& editor, const char* verb,
 }
 
 void joints_to_bone(Editor& editor) {
-  put_joints(editor, "To bone middle:", [&](const Bone& bone, const glm::dvec3& place) {
+  put_joints(editor, "Move to bone middle:", [&](const Bone& bone, const glm::dvec3& place) {
     const glm::dmat3 axes = rest_axes(bone);
     return middle_of_bone(editor.document(), place, axes[0], axes[2]);
   });
 }
 
 void joints_to_voxels(Editor& editor) {
-  put_joints(editor, "To voxel:", [&](const Bone&, const glm::dvec3& place) {
+  put_joints(editor, "Move to voxel:", [&](const Bone&, const glm::dvec3& place) {
     return nearest_voxel(editor.document(), place);
   });
 }
@@ -321,12 +330,12 @@ const glm::dvec3& chosen_joint(const Editor& editor) {
                   {*editor.selection.bone, editor.transform_settings->part == TransformSettings::Part::Tail});
 }
 
-// A whole bone keeps its length and direction.
+// Moves the selected joint, or the selected bones as a whole, to the cross-hair. Whole bones keep length and direction.
 void joint_to_cross_hair(Editor& editor) {
   const glm::dvec3 by = editor.views->cross_hair - chosen_joint(editor);
   const RigChange change = chosen_change(editor, RigChange::Kind::Move);
   commit_rig(
-      editor, naming_chosen(editor, "To cross-hair:"),
+      editor, naming_chosen(editor, "Move to cross-hair:"),
       mirrored_too(editor, with_moved_ends(change.start, change.ends, [&](const glm::dvec3& p) { return p + by; })),
       change.chosen);
 }
@@ -353,48 +362,50 @@ Operator snap_operator(const char* id, const char* label, const char* descriptio
 std::vector<Operator> rig_operators() {
   return {
       {"rig.move", "Move", icon::kMove, "Bone",
-       "The chosen joint or bones go with the pointer; what is connected follows.",
+       "Move the selected joint or bones with the pointer. Connected bones follow.",
        [](Editor& e) { transform(e, RigChange::Kind::Move); }, needs_rig_bone},
-      {"rig.rotate", "Rotate", icon::kRotate, "Bone", "Turns the chosen bones about the active one's head.",
+      {"rig.rotate", "Rotate", icon::kRotate, "Bone", "Turn the selected bones about the head of the active bone.",
        [](Editor& e) { transform(e, RigChange::Kind::Turn); }, needs_rig_bone},
-      {"rig.scale", "Scale", icon::kScale, "Bone", "Lengthens or shortens the chosen bones from the active one's head.",
+      {"rig.scale", "Scale", icon::kScale, "Bone", "Scale the selected bones from the head of the active bone.",
        [](Editor& e) { transform(e, RigChange::Kind::Scale); }, needs_rig_bone},
-      {"rig.roll", "Roll", "", "Bone", "Turns the chosen bones about themselves.",
+      {"rig.roll", "Roll", "", "Bone", "Turn the selected bones about their own axes.",
        [](Editor& e) { transform(e, RigChange::Kind::Roll); }, needs_rig_bone},
-      {"rig.add", "Add bone", icon::kAdd, "Bone", "A new bone at the cross-hair.", add, needs_place},
-      {"rig.extrude", "Extrude", icon::kExtrude, "Bone", "A new bone grows from the chosen joint with the pointer.",
-       extrude, needs_rig_bone},
-      {"rig.fill", "Fill", "", "Bone", "A bone between two chosen ones, or from the chosen joint to the cross-hair.",
-       fill, needs_gap},
-      {"rig.duplicate", "Duplicate", icon::kDuplicate, "Bone", "Copies of the chosen bones go with the pointer.",
-       duplicate, needs_rig_bone},
-      {"rig.subdivide", "Subdivide", "", "Bone", "Each chosen bone becomes two, or more by adjusting it.", subdivide,
-       needs_rig_bone},
+      {"rig.add", "Add bone", icon::kAdd, "Bone", "Add a bone at the cross-hair.", add, needs_place},
+      {"rig.extrude", "Extrude", icon::kExtrude, "Bone",
+       "Add a bone at the selected joint and move its tail with the pointer.", extrude, needs_rig_bone},
+      {"rig.fill", "Fill", "", "Bone",
+       "Add a bone between two selected bones, or from the selected joint to the cross-hair.", fill, needs_gap},
+      {"rig.duplicate", "Duplicate", icon::kDuplicate, "Bone",
+       "Copy the selected bones and move the copies with the pointer.", duplicate, needs_rig_bone},
+      {"rig.subdivide", "Subdivide", "", "Bone",
+       "Divide each selected bone into two. Adjust last operation divides it into more.", subdivide, needs_rig_bone},
       edit_operator("rig.delete", "Delete", icon::kTrash,
-                    "Takes the chosen bones away; what hung on them hangs on the next one above.", "Delete",
+                    "Delete the selected bones. Their children are attached to the next bone above.", "Delete",
                     without_bones),
       edit_operator("rig.dissolve", "Dissolve", "",
-                    "Takes the chosen bones away and lengthens those above, so that the chain stays whole.", "Dissolve",
-                    dissolved),
-      edit_operator("rig.separate", "Separate", icon::kCut, "Cuts the chosen bones loose from the others.", "Separate",
-                    separated),
-      {"rig.parent", "Make parent", "", "Bone", "The chosen bones hang on the active one, where they are.",
+                    "Delete the selected bones and lengthen their parents, so that the chain stays connected.",
+                    "Dissolve", dissolved),
+      edit_operator("rig.separate", "Separate", icon::kCut, "Detach the selected bones from all other bones.",
+                    "Separate", separated),
+      {"rig.parent", "Make parent", "", "Bone",
+       "Make the active bone the parent of the selected bones, without moving them.",
        [](Editor& e) { hang(e, Join::KeepOffset); }, needs_two},
       {"rig.connect", "Connect to parent", icon::kLinkViews, "Bone",
-       "The chosen bones hang on the active one and move to its tail.", [](Editor& e) { hang(e, Join::Connected); },
-       needs_two},
-      edit_operator("rig.clear_parent", "Clear parent", "", "The chosen bones hang on nothing.", "Clear parent of",
-                    unparented),
+       "Make the active bone the parent of the selected bones and move them to its tail.",
+       [](Editor& e) { hang(e, Join::Connected); }, needs_two},
+      edit_operator("rig.clear_parent", "Clear parent", "", "Remove the parent of the selected bones.",
+                    "Clear parent of", unparented),
       edit_operator("rig.flip_direction", "Flip direction", "",
-                    "Head and tail of the chosen bones change places; a chain runs the other way.", "Flip direction of",
-                    with_flipped_direction),
+                    "Exchange head and tail of the selected bones. A chain then runs the other way.",
+                    "Flip direction of", with_flipped_direction),
       {"rig.mirror", "Mirror", icon::kMirror, "Bone",
-       "The chosen bones go to the other side, with their weights and keys.",
+       "Move the selected bones to the other side of the body, with their weights and keys.",
        [](Editor& e) { mirror_bones(e, bones_chosen_last(e), naming_chosen(e, "Mirror")); }, needs_rig_bone},
       {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone",
-       "The other side of the chosen bones becomes their mirror image; what is missing there is added.", symmetrize,
+       "Make the other side a mirror image of the selected bones. Bones that are missing there are added.", symmetrize,
        needs_rig_bone},
-      {"rig.recalculate_roll", "Recalculate roll", "", "Bone", "The chosen bones' own z axes look forward.",
+      {"rig.recalculate_roll", "Recalculate roll", "", "Bone",
+       "Roll the selected bones so that their z axes point forward.",
        [](Editor& e) {
          edit(
              e, "Recalculate roll of",
@@ -405,35 +416,42 @@ std::vector<Operator> rig_operators() {
        },
        needs_rig_bone},
       {"rig.motion_range", "Range of motion...", "", "Bone",
-       "Limits that are usual for a joint, by its name or as chosen.", ask_motion_range, needs_rig_bone},
+       "Limit the selected bones' joints to an adult's usual range. Each joint is found by its bone's name, or you "
+       "select it.",
+       ask_motion_range, needs_rig_bone},
       {"rig.batch_rename", "Rename bones...", icon::kRename, "Bone",
-       "Changes the names of many bones: replaces, prefixes, suffixes, sides.", ask_names, needs_rig_in_workspace},
-      {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone", "Lists what joints snap to, at the pointer.",
+       "Change the names of many bones: replace text, add a prefix or suffix, exchange sides.", ask_names,
+       needs_rig_in_workspace},
+      {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone",
+       "Open a menu at the pointer in which you select what moved joints snap to.",
        [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},
       {"rig.joints_to_bone", "Joint to bone middle", "", "Bone",
-       "The chosen joints go to the middle of the bone tissue around them, across their bone.", joints_to_bone,
-       needs_joint_in_volume},
+       "Move each selected joint to the middle of the bone tissue around it, at right angles to its bone.",
+       joints_to_bone, needs_joint_in_volume},
       {"rig.joints_to_voxels", "Joint to voxel", "", "Bone",
-       "The chosen joints go to the centres of the voxels nearest to them.", joints_to_voxels, needs_joint_in_volume},
+       "Move the selected joints to the centres of the nearest voxels.", joints_to_voxels, needs_joint_in_volume},
       {"rig.joint_to_cross_hair", "Joint to cross-hair", icon::kCrossHair, "Bone",
-       "The chosen joint or bones go to where the slices meet.", joint_to_cross_hair, needs_joint_in_volume},
+       "Move the selected joint or bones to the point where the slices meet.", joint_to_cross_hair,
+       needs_joint_in_volume},
       {"rig.cross_hair_to_joint", "Cross-hair to joint", icon::kCrossHair, "Bone",
-       "The slices go through the chosen joint.", cross_hair_to_joint, needs_joint_in_volume},
-      {"rig.next_leaving", "Next bone outside tissue", "", "Bone", "Goes to the next bone that leaves the tissue.",
-       show_next_leaving, needs_leaving},
+       "Move the cross-hair and the slices to the selected joint.", cross_hair_to_joint, needs_joint_in_volume},
+      {"rig.next_leaving", "Next bone outside tissue", "", "Bone",
+       "Select and show the next bone that lies partly outside the tissue.", show_next_leaving, needs_leaving},
       {"view.rig_check", "Where the rig leaves tissue", "", "View",
-       "Marks bones and joints outside of tissue in the Rig workspace.",
+       "Mark bones and joints outside the tissue in the Rig workspace.",
        [](Editor& e) { e.transform_settings->rig_check_marks = !e.transform_settings->rig_check_marks; }, nullptr,
        [](const Editor& e) { return e.transform_settings->rig_check_marks; }},
-      {"rig.snap", "Snap without Ctrl", icon::kSnap, "Bone", "Transforms snap without Ctrl, and with Ctrl they do not.",
+      {"rig.snap", "Snap without Ctrl", icon::kSnap, "Bone",
+       "Snap while moving, rotating and scaling. Hold Ctrl to not snap.",
        [](Editor& e) { e.transform_settings->snapping = !e.transform_settings->snapping; }, nullptr,
        [](const Editor& e) { return e.transform_settings->snapping; }},
-      snap_operator("snap.steps", "Snap to steps", "Of 5 mm, 5 degrees or a tenth; with Shift finer.", Snap::Steps),
-      snap_operator("snap.voxel", "Snap to voxels", "A moved joint goes to the centre of the nearest voxel.",
+      snap_operator("snap.steps", "Snap to steps",
+                    "Snap to steps of 5 mm, 5 degrees or a factor of 0.1; finer with Shift.", Snap::Steps),
+      snap_operator("snap.voxel", "Snap to voxels", "Snap a moved joint to the centre of the nearest voxel.",
                     Snap::Voxel),
-      snap_operator("snap.joint", "Snap to joints", "A moved joint goes where another one is.", Snap::Joint),
+      snap_operator("snap.joint", "Snap to joints", "Snap a moved joint to another joint.", Snap::Joint),
       snap_operator("snap.bone_middle", "Bone middle",
-                    "A moved joint goes to the middle of the bone tissue under the pointer.", Snap::BoneMiddle),
+                    "Snap a moved joint to the middle of the bone tissue under the pointer.", Snap::BoneMiddle),
   };
 }
 

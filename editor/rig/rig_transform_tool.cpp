@@ -14,10 +14,12 @@ namespace {
 
 constexpr double kSnapMillimetres = 5, kSnapFineMillimetres = 1, kSnapDegrees = 5, kSnapFine = 1, kSnapScale = 0.1,
                  kSnapScaleFine = 0.01;
-constexpr double kSnapPixels = 14;  // at scale 1: so near the pointer a joint is snapped to
+// A moved joint snaps to joints within this distance of the pointer, pixels at scale 1.
+constexpr double kSnapPixels = 14;
 constexpr double kLeastScale = 1e-3;
 
-// A bone rolls about its middle.
+// Returns the change's pivot: the point about which bones turn or scale, or the point that is moved. The pivot of a
+// roll is the bone's middle.
 glm::dvec3 pivot_of(const RigChange& change) {
   const BoneEnd& end = change.ends.front();
   const Bone& bone = change.start.bones[end.bone];
@@ -105,7 +107,7 @@ class RigTool final : public TransformTool {
     return found;
   }
 
-  // A place held by the lock.
+  // Returns the point projected onto the locked axis or plane; unchanged when no axis is locked.
   glm::dvec3 held(const glm::dvec3& place) const {
     const glm::dvec3 axis = lock_axis();
     if (axis == glm::dvec3(0)) return place;
@@ -165,15 +167,17 @@ class RigTool final : public TransformTool {
     switch (change_.kind) {
       case RigChange::Kind::Move: return fields_of_way(target_ - pivot_);
       case RigChange::Kind::Roll:
-        return {number_of("Angle", "How far the bones turn about themselves.", shown_, -360, 360, "%.2f", "\u00b0")};
+        return {number_of("Angle", "Angle by which the bones turn about their own axes.", shown_, -360, 360, "%.2f",
+                          "\u00b0")};
       case RigChange::Kind::Turn: break;
       case RigChange::Kind::Scale: break;
     }
     std::vector<FormField> fields = fields_of_axis();
     const bool turn = change_.kind == RigChange::Kind::Turn;
-    fields.insert(fields.begin(),
-                  turn ? number_of("Angle", "How far the bones turn.", shown_, -360, 360, "%.2f", "\u00b0")
-                       : number_of("Factor", "How many times as long.", shown_, kLeastScale, 100, "%.3f"));
+    fields.insert(
+        fields.begin(),
+        turn ? number_of("Angle", "Angle by which the bones turn.", shown_, -360, 360, "%.2f", "\u00b0")
+             : number_of("Factor", "Factor by which lengths are multiplied.", shown_, kLeastScale, 100, "%.3f"));
     return fields;
   }
   void set(const std::vector<FormField>& fields) override {
@@ -185,12 +189,12 @@ class RigTool final : public TransformTool {
   void show(Editor& editor) override { show_rig(editor, mirrored_too(editor, changed(editor))); }
   void keep(Editor& editor) override {
     Armature next = mirrored_too(editor, changed(editor));
-    // A bone drawn out by nothing is none.
+    // An extruded bone whose tail was not moved has zero length, so it is not added.
     const bool nothing = std::any_of(change_.chosen.begin(), change_.chosen.end(),
                                      [&](int bone) { return next.bones[bone].head == next.bones[bone].tail; });
     if (nothing) {
       if (change_.kind == RigChange::Kind::Scale)
-        editor.messages.warn("Nothing was scaled", "A bone keeps some length: type a factor above 0");
+        editor.messages.warn("Nothing was scaled", "A bone cannot have zero length: type a factor above 0");
       return drop_shown_rig(editor);
     }
     commit_rig(editor, change_.label, std::move(next), change_.chosen);
@@ -199,7 +203,7 @@ class RigTool final : public TransformTool {
   RigChange change_;
   glm::dvec3 pivot_, target_ = pivot_;
   AngleDrag angle_;
-  double shown_ = 0;  // mm, degrees or a factor
+  double shown_ = 0;  // the number in the tool's title: mm, degrees or a factor
   std::string snapped_to_;
 };
 
@@ -235,7 +239,7 @@ RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
   const TransformSettings::Part part = editor.transform_settings->part;
   if (kind == RigChange::Kind::Move && part != TransformSettings::Part::Whole)
     change.ends = {{change.chosen.back(), part == TransformSettings::Part::Tail}};
-  // The active one first.
+  // The ends of the active bone come first, because the first end is the pivot of turning and scaling.
   else
     for (auto bone = change.chosen.rbegin(); bone != change.chosen.rend(); ++bone)
       change.ends.insert(change.ends.end(), {{*bone, false}, {*bone, true}});

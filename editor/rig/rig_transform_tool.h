@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moving, turning and scaling joints and bones of the rig at rest, as in Blender's edit mode, in the 3D view and in
-// slices. Ends that meet move together. Ctrl snaps: to steps, to voxels, to another joint, or to the middle of the bone
-// tissue below.
+// Modal tool that moves, turns, scales and rolls joints and bones of the rig in its rest pose, in the 3D view and in
+// slices, as Blender's edit mode does. Bone ends at the same position move together. Ctrl snaps to steps, to voxels, to
+// another joint, or to the middle of the bone tissue under the pointer.
 #pragma once
 
 #include "core/rig/edit_armature.h"
@@ -11,25 +11,28 @@ namespace limber::editor {
 
 struct RigChange {
   enum class Kind { Move, Turn, Scale, Roll } kind = Kind::Move;
-  std::string label;          // of the edit
-  Armature start;             // the rig, with what the edit has added so far
-  std::vector<BoneEnd> ends;  // of `start`; the first is the one that snaps, and what turns and scales go about
-  std::vector<int> chosen;    // after it, of `start`
+  std::string label;          // name of the edit in the undo history
+  Armature start;             // the rig before the change, with the bones that the edit adds
+  std::vector<BoneEnd> ends;  // bone ends that move; the first is the pivot of turning and scaling, and snaps
+  std::vector<int> chosen;    // bones of `start` that are selected after the edit
 };
 
 std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip = {});
 
-// The axis of the active bone's hinge goes with the pointer, with Ctrl to the nearest of the bone's own axes; digits
-// turn it by degrees, about the locked axis or as the picture is seen.
+// Begins a tool that points the axis of the active bone's hinge at the pointer; Ctrl snaps it to the nearest of the
+// bone's local axes. A typed number turns the axis by that many degrees about the locked axis, or about the line of
+// sight when no axis is locked.
 std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip = {});
 
-// Of what is chosen: "Move Forearm". A joint alone is moved; turned and scaled are whole bones.
+// Returns a change of the selected bones, with a label such as "Move Forearm". A move may act on one selected joint;
+// the other kinds act on whole bones.
 RigChange chosen_change(const Editor& editor, RigChange::Kind kind);
-// A bone that grows from the chosen joint.
+// Returns the change that adds a bone at the selected joint and moves the new bone's tail.
 RigChange extrusion(const Editor& editor);
 
-// The chosen bones, the active one last; and an edit of them by name.
+// Returns the selected bones. The active bone comes last.
 std::vector<int> bones_chosen_last(const Editor& editor);
+// Returns an edit's label: the verb, then the selected bone's name or the number of selected bones ("Move 3 bones").
 std::string naming_chosen(const Editor& editor, const std::string& verb);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The area below the views: the console where it is open, else the timeline, else the results.
+// Draws the area below the views: the console if it is open, else the timeline, else the table of results.
 #include "editor/context/panels.h"
 
 namespace limber::editor {

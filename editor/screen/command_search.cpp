@@ -15,14 +15,15 @@ namespace limber::editor {
 namespace {
 
 constexpr int kMostRows = 8, kLastUsed = 5;
-constexpr int kPlacePenalty = 30, kSentencePenalty = 60;  // a match elsewhere than in the label stands behind
-constexpr std::size_t kLeastForSentence = 3;              // letters
+// Score penalties of a match in the category, or in the description, instead of the label.
+constexpr int kPlacePenalty = 30, kSentencePenalty = 60;
+constexpr std::size_t kLeastForSentence = 3;  // letters; a shorter query does not search descriptions
 
 bool can_be_searched(const Editor& editor, const Operator& op) {
   return op.id != "search.commands" && !needs_pointer(editor, op);
 }
 
-// Where the command would stand without a query: 0 is first.
+// Returns the command's sort key in the list that is shown without a query; the smallest is first.
 std::size_t place_by_use(const Preferences& preferences, const std::string& id) {
   const auto& recent = preferences.recent_commands;
   const auto last = recent.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(kLastUsed, recent.size()));
@@ -32,7 +33,7 @@ std::size_t place_by_use(const Preferences& preferences, const std::string& id) 
   return count == preferences.command_counts.end() ? 2'000'000 : static_cast<std::size_t>(1'100'000 - count->second);
 }
 
-// Every word of the query is the beginning of a word of the text.
+// Returns whether every word of the query is the beginning of a word of the text.
 bool begins_words(const std::string& query, const std::string& text) {
   const auto match = fuzzy_match(query, text);
   if (!match) return false;
@@ -70,7 +71,7 @@ class CommandSearch final : public Dialog {
   void draw_foot(Editor& editor, const Rect& rect);
   void run_chosen(Editor& editor);
 
-  std::string query_, last_query_ = "\n";  // so that the first frame searches
+  std::string query_, last_query_ = "\n";  // differs from query_, so that the first frame searches
   std::vector<FoundCommand> found_;
   int chosen_ = 0, first_ = 0;
   bool focus_ = true, accept_ = false, assign_ = false;
@@ -84,7 +85,7 @@ bool CommandSearch::key(Editor&, const Chord& chord) {
     case Key::Up: move(-1); return true;
     case Key::PageDown: move(kMostRows); return true;
     case Key::PageUp: move(-kMostRows); return true;
-    // After the text field has seen what was typed before.
+    // Enter is noted here and acts later, after the text field has read the text that was typed before Enter.
     case Key::Return:
     case Key::NumEnter: accept_ = true; return true;
     case Key::K: assign_ = chord.modifiers.ctrl; return assign_;
@@ -118,7 +119,7 @@ void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
            Align::Right);
 }
 
-// The label with its matched letters bold; returns its right end.
+// Draws the label with the letters that match the query in bold; returns the x coordinate of its right end.
 float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, bool chosen) {
   const Look& look = editor.look;
   const std::string& label = command.op->label;
@@ -184,7 +185,7 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
   float x = left;
   const float y = rect.high.y - look.px(18);
   const std::pair<std::vector<std::string>, const char*> hints[] = {
-      {{"Enter"}, "run"}, {{"Up", "Down"}, "choose"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
+      {{"Enter"}, "run"}, {{"Up", "Down"}, "select"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
   for (const auto& [caps, words] : hints) {
     x = put_key_caps(editor, x, y, caps) + look.px(7);
     x = put_text(editor, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2), words) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every command by a few letters of its name (F3).
+// The command search (F3): finds every command by a few letters of its name and runs it.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@ namespace limber::editor {
 
 struct FoundCommand {
   const Operator* op;
-  std::vector<std::size_t> letters;  // bytes of the label that were matched
-  std::string reason;                // why it cannot run now; "": it can
+  std::vector<std::size_t> letters;  // byte offsets of the label's letters that match the query
+  std::string reason;                // why the command cannot run now; "": it can
 };
-// Best first, those that cannot run now last. Without a query: the five used last, then the most used, then the rest in
-// the menus' order.
+// Returns the commands that match the query, the best match first; commands that cannot run now come last. Without a
+// query, returns the five used last, then the others by number of uses, then unused ones in the order of the menus.
 std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query);
-// How many commands there are to find.
+// Returns the number of commands that the search can find.
 int count_commands(const Editor& editor);
 
 std::unique_ptr<Dialog> open_command_search();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every message of this session, the last one last: filtered by kind and by words, and copied.
+// Draws the console, which lists every message of this session, newest last. The user can filter messages by kind and
+// text, and copy them.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/ui/fuzzy_match.h"
@@ -42,7 +43,7 @@ void draw_head(Editor& editor, const Rect& head, const std::vector<const LogLine
     editor.host.set_clipboard(text);
   }
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-    tooltip(editor, copy, "Copy", "Puts the lines that are shown on the clipboard.");
+    tooltip(editor, copy, "Copy", "Copy the visible messages to the clipboard.");
   right = copy.low.x - look.px(8);
   for (int i = 3; i >= 0; --i) {
     const auto severity = static_cast<std::size_t>(kSeverities[i]);
@@ -53,7 +54,9 @@ void draw_head(Editor& editor, const Rect& head, const std::vector<const LogLine
     const auto [sign, colour] = sign_of(look.theme, kSeverities[i]);
     put_icon(look.fonts.regular, shown ? colour : look.theme.text3, place, shown ? sign : icon::kHidden);
     if (pressed.hovered)
-      tooltip(editor, place, kNames[i], shown ? "Shown. A click hides them." : "Hidden. A click shows them.");
+      tooltip(
+          editor, place, kNames[i],
+          shown ? "These messages are shown. Click to hide them." : "These messages are hidden. Click to show them.");
     if (pressed.clicked) editor.console.hidden[severity] = shown;
     right = place.low.x - look.px(2);
   }
@@ -95,7 +98,7 @@ void draw_console(Editor& editor, const Rect& rect) {
     if (pressed.double_clicked && line->severity == Severity::Error) shown_again = line->text;
   }
   if (!shown_again.empty()) editor.messages.show_again(shown_again);
-  if (editor.console.lines_seen != editor.messages.log.size()) ImGui::SetScrollHereY(1);  // follows the last line
+  if (editor.console.lines_seen != editor.messages.log.size()) ImGui::SetScrollHereY(1);  // scroll to the newest line
   editor.console.lines_seen = editor.messages.log.size();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The user's own act failed: what happened, where, what to do. Stays until it is read; its details can be copied.
+// Draws the dialog for an error that an action of the user caused: what happened, where, and what to do. The dialog
+// stays until the user closes it. Its details can be copied.
 #include <cstdio>
 
 #include "editor/context/panels.h"
@@ -14,7 +15,8 @@ namespace {
 constexpr float kWidth = 480, kButton = 28;
 constexpr const char kUnharmed[] = "Nothing was changed in the project.";
 
-// What a report of it should hold: the chain of what failed in what, and where the program runs.
+// Returns the text for a bug report: the chain of errors from the outermost one to the cause, and the system facts
+// (program version, graphics driver, monitor scale).
 std::string details_of(const Editor& editor, const ErrorMessage& message) {
   std::string text = message.line;
   for (auto at = text.find(": "); at != std::string::npos; at = text.find(": ", at + 3)) text.replace(at, 2, ":\n");
@@ -76,13 +78,13 @@ void draw_error_message(Editor& editor) {
     editor.touch();
   }
   if (ImGui::IsItemHovered())
-    tooltip(editor, place, "Details", "The whole message and the system's facts, for a report.");
+    tooltip(editor, place, "Details", "Show the full message and the system facts, for a bug report.");
   const Rect close{{rect.high.x - look.px(80), low}, rect.high};
   const ButtonLook copy_face{icon::kCopy, "Copy"};
   const Rect copy{{close.low.x - look.px(8) - width_of_button(editor, copy_face), low},
                   {close.low.x - look.px(8), rect.high.y}};
   if (button(editor, "Copy message", copy, copy_face)) editor.host.set_clipboard(details_of(editor, message));
-  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the details on the clipboard.");
+  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Copy the message and its details to the clipboard.");
   if (button(editor, "Close", close, {"", "Close", ButtonStyle::Primary})) close_first();
   end_dialog(editor);
 }

@@ -114,7 +114,7 @@ void AboutPage::draw(Editor& editor) {
        std::string("Version ") + LIMBER_VERSION + ". Changes the pose of labelled voxel anatomy.", 24);
   line(look.fonts.regular, look.theme.text2,
        "Free software under the GNU Affero General Public License, version 3 or later.", 24);
-  line(look.fonts.regular, look.theme.text2, "It comes without any warranty, as far as the law permits.", 30);
+  line(look.fonts.regular, look.theme.text2, "It comes without any warranty, to the extent permitted by law.", 30);
   line(look.fonts.semibold, look.theme.text, "Made with", 26);
   const float foot = rect.high.y - look.px(28);
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pages of the Help menu: every key, and what the program is made of.
+// The dialogs of the Help menu: the list of keys, and the version, licence and libraries of the program.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace limber::editor {
 std::unique_ptr<Dialog> open_keys_page();
 std::unique_ptr<Dialog> open_about_page();
 
-// Version, driver, monitor scale: what a report of a mistake should hold.
+// Returns version, driver and monitor scale as text for a bug report.
 std::string system_facts(const Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every edit in a row, oldest first; a click goes there, and so do arrow keys.
+// Draws the list of edits, oldest first. A click on an edit, or the arrow keys, set the project to its state after that
+// edit.
 #include "editor/context/panels.h"
 #include "editor/ui/list_navigation.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Jobs at work: a slot in the status bar, and the list that it opens, with stage, time left and Cancel.
+// Draws the running jobs in a slot of the status bar. The slot opens a list of all jobs, with the stage, the time left
+// and a Cancel button of each.
 #include "editor/screen/job_progress.h"
 
 #include <algorithm>
@@ -14,10 +15,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFirstEstimate = 3;  // s that a job runs before its time left is shown
-constexpr double kQuickEnd = 0.1;     // s: a cancelled job that ends within them is not said to be stopping
-constexpr double kSpin = 1.0 / 12;    // s between the spinner's steps
-constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // finite elements have more to tell
+constexpr double kFirstEstimate = 3;  // s; a job's time left is shown after it has run this long
+constexpr double kQuickEnd = 0.1;     // s; a cancelled job that ends sooner is never shown as stopping
+constexpr double kSpin = 1.0 / 12;    // time between two steps of the spinner, s
+constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // px at scale 1; a FEM solve has a second line
 
 std::vector<JobStatus> at_work(const Editor& editor) {
   std::vector<JobStatus> jobs = editor.jobs.statuses();
@@ -29,7 +30,7 @@ float row_height(const Editor& editor, const JobStatus& job) {
   return editor.fem->solves.contains(job.id) ? kSolveRowHeight : kRowHeight;
 }
 
-// Of the solve itself where it tells; else of the stage.
+// Returns the time left, from the FEM solve's own estimate if there is one, else from the job's stage.
 std::optional<double> seconds_left(const Editor& editor, const JobStatus& job) {
   const auto solve = editor.fem->solves.find(job.id);
   if (solve != editor.fem->solves.end())
@@ -99,7 +100,7 @@ void draw_job_row(Editor& editor, const JobStatus& job, const Rect& row) {
     editor.jobs.cancel(job.id);
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     tooltip(editor, cancel, "Cancel",
-            stopping ? "It has been told to stop." : "Stops it; nothing of the project changes.");
+            stopping ? "The job is stopping." : "Stop this job. The project does not change.");
 }
 
 }  // namespace
@@ -144,7 +145,7 @@ float draw_job_slot(Editor& editor, const Rect& bar, float right) {
     const Pressed pressed = press_area(editor, "Running", slot);
     if (pressed.hovered) {
       fill({slot.low + glm::vec2(0, look.px(2)), slot.high - glm::vec2(0, look.px(2))}, look.theme.hover, look.px(4));
-      tooltip(editor, slot, job.label, state_of(editor, job) + "\nOpens the list of jobs.");
+      tooltip(editor, slot, job.label, state_of(editor, job) + "\nClick to open the list of jobs.");
     }
     draw_spinner(editor, {slot.low.x + look.px(12), slot.centre().y}, look.px(6));
     const Rect track{{slot.high.x - look.px(58), slot.centre().y - look.px(3)},

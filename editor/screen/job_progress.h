@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How long a job still takes, in words.
+// Returns the remaining time of a job as text.
 #pragma once
 
 #include <string>
 
 namespace limber::editor {
 
-std::string time_left_text(double seconds);  // rounded: "about 3 min"
+std::string time_left_text(double seconds);  // rounded text: "about 3 min"
 
 }  // namespace limber::editor

@@ -12,7 +12,7 @@ namespace {
 
 using Entry = std::vector<std::string>::const_iterator;
 
-// The end of the submenu that begins at `entry`; it may hold others.
+// Returns the entry "<" that ends the submenu that begins at `entry`. Submenus may be nested.
 Entry end_of(Entry entry, Entry end) {
   int depth = 0;
   for (; entry != end; ++entry) {
@@ -22,7 +22,7 @@ Entry end_of(Entry entry, Entry end) {
   return end;
 }
 
-// Puts an operator for each deformation method in place of "* methods".
+// Replaces the entry "* methods" by one operator for each deformation method.
 std::vector<std::string> with_methods(std::vector<std::string> list) {
   const std::vector<std::string> methods = method_operators(Methods::All);
   const auto place = std::find(list.begin(), list.end(), "* methods");
@@ -50,7 +50,7 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
       if (!submenu) operator_menu_item(editor, *entry);
       else {
         const std::string title = entry->substr(2);
-        // As high as the other rows: 22 and the spacing.
+        // The row of a submenu gets the height of the other rows: 22 px plus the spacing.
         const float above = std::round((editor.look.px(22) - ImGui::GetFontSize()) / 2),
                     spacing = ImGui::GetStyle().ItemSpacing.y;
         ImGui::SetCursorPos({ImGui::GetCursorPosX() + editor.look.px(34), ImGui::GetCursorPosY() + above});
@@ -74,7 +74,7 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
 
 }  // namespace
 
-// Lists of several names a line.
+// Without this, clang-format would put each operator's id on its own line.
 // clang-format off
 std::vector<Menu> menus() {
   std::vector<Menu> all = {

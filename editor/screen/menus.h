@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What stands in each menu, in order. An entry is an operator's id, "-" for a line, or "> Title" and "<" around a
+// Defines and draws the menus. An entry is an operator's id, "-" for a separator, or "> Title" and "<" around a
 // submenu.
 #pragma once
 
@@ -15,12 +15,12 @@ struct Menu {
   std::vector<std::string> entries;
 };
 std::vector<Menu> menus();
-// A menu that opens at the pointer: "context" (what fits that view), "Views", "Display", "Snap", "Similar",
-// "Workspaces", "Bone" and "Posed bone" (of the chosen ones), and of rows of the outliner "Volume", "Tissue",
-// "Armature", "Result".
+// Returns the menu of this name, which opens at the pointer. "context" is the view's context menu. Operators open
+// "Views", "Display", "Snap", "Similar" and "Workspaces". "Bone" and "Posed bone" are for the selected bones; "Volume",
+// "Tissue", "Armature" and "Result" are for rows of the outliner.
 Menu pointer_menu(const std::string& name, ViewId view);
 
-// The rows of a menu into an open popup; ids without an operator are left out, and so is what would then be empty.
+// Draws a menu's rows into an open popup. Omits ids to which no operator belongs, and submenus without any operator.
 void draw_menu(Editor& editor, const Menu& menu);
 
 }  // namespace limber::editor

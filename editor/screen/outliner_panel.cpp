@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the project holds, as a tree: the volume with its tissues, the bones by their parents, the results. A triangle
-// folds, an eye shows and hides, a double click or F2 renames, the right button lists what can be done. In the Rig
-// workspace a bone is dragged onto its new parent. The search keeps the parents of what it finds.
+// Draws the outliner, a tree of the project: the volume with its tissues, the bones under their parents, the results. A
+// row has a triangle that folds it and an eye that shows or hides it. A double-click or F2 renames it; the right button
+// opens a menu. In the Rig workspace, dragging a bone onto another one makes the other its parent. A search shows the
+// rows that it finds and the parents of these rows.
 #include <algorithm>
 
 #include <imgui_internal.h>
@@ -23,19 +24,20 @@ namespace limber::editor {
 namespace {
 
 constexpr const char kList[] = "outliner";
-constexpr int kManyBones = 24;  // more are folded below their first generation
-constexpr int kDeepest = 8;     // that still moves to the right
-constexpr float kRow = 24;      // pixels at scale 1
-constexpr float kBoneSection = 204,
-                kFewestRows = 4;  // what stays free below for the bone's numbers, and what is shown all the same
+constexpr int kManyBones = 24;  // in a rig with more bones, only the root bones are unfolded at first
+constexpr int kDeepest = 8;     // deeper levels are indented like this one
+constexpr float kRow = 24;      // px at scale 1
+// Height left free below the list for the active bone's numbers, px at scale 1. The list shows at least kFewestRows
+// rows, even if less height is then left.
+constexpr float kBoneSection = 204, kFewestRows = 4;
 
 struct Row {
   enum class Kind { Volume, Tissues, Tissue, Armature, Bone, Results, Result } kind;
   std::string key, name, count;
   const char* icon = "";
-  int depth = 0, index = 0;  // among its kind
+  int depth = 0, index = 0;  // index: in the document's list of this kind
   bool folds = false, open = false, chosen = false;
-  std::optional<bool> visible;  // none: no eye
+  std::optional<bool> visible;  // state of the eye; none: the row has no eye
   std::optional<Colour> swatch;
 };
 
@@ -119,10 +121,11 @@ class Tree {
     }
   }
 
-  // From the last row up: a parent stays for a child that stays.
+  // Keeps the rows that match the search, and the parents of these rows. Goes from the last row to the first, so that
+  // it knows which parents to keep when it comes to them.
   void keep_found() {
     std::vector<Row> kept;
-    int needed = 0;  // depth of the parents that are wanted
+    int needed = 0;  // the next row above that has a smaller depth is a parent of a kept row
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
       const bool found = contains_ignoring_case(row->name, editor_.outliner.search);
       if (!found && row->depth >= needed) continue;
@@ -134,10 +137,10 @@ class Tree {
 
   const Editor& editor_;
   const Document& document_;
-  std::vector<std::vector<int>> children_;  // of each bone, the first list without a parent
+  std::vector<std::vector<int>> children_;  // [bone + 1]: children of the bone; [0]: bones without a parent
 };
 
-// ---- what is done with a row
+// ---- actions on a row
 
 void toggle_eye(Editor& editor, const Row& row, bool alone) {
   std::set<Label> all;
@@ -223,8 +226,9 @@ void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
   if (eye.clicked) toggle_eye(editor, row, editor.input.down(Key::Ctrl));
 }
 
-// A row that is dragged hangs its bone, or all chosen ones with it, on the bone where it is let go; on the armature's
-// row on nothing. Escape leaves them.
+// Returns the bones that a dragged row moves: its bone, or all selected bones if its bone is selected. If the row is
+// dropped on a bone, they become this bone's children; if it is dropped on the armature, they lose their parent. Escape
+// cancels the drag.
 std::vector<int> dragged_bones(const Editor& editor) {
   const auto bone = editor.document().armature->find(editor.transform_settings->row_drag.bone);
   if (!bone) return {};
@@ -240,7 +244,7 @@ void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
     drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
 }
 
-// What letting go does, beside the pointer.
+// Draws a text beside the pointer that says what happens if the dragged row is dropped here.
 void draw_dragged(Editor& editor, const std::string& words) {
   const Look& look = editor.look;
   const glm::vec2 size = text_size(look.fonts.regular, words) + glm::vec2(look.px(16), look.px(8));
@@ -263,11 +267,11 @@ void draw_drag(Editor& editor, const Row& row, const Rect& rect) {
   const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
   outline(rect, editor.look.theme.select, 0, 2 * editor.look.line());
   const std::string what = bones.size() == 1 ? drag.bone : std::to_string(bones.size()) + " bones";
-  draw_dragged(editor, parent < 0 ? "Clear parent of " + what : what + " onto " + row.name);
+  draw_dragged(editor, parent < 0 ? "Clear parent of " + what : what + " to " + row.name);
   if (editor.input.down(MouseButton::Left) || bones.empty()) return;
   attempt(editor, "Make parent", [&](Editor& e) {
     hang_on(e, bones, parent);
-    e.outliner.open[row.key] = true;  // they stay in sight
+    e.outliner.open[row.key] = true;  // unfold the new parent, so that the bones stay visible
   });
 }
 
@@ -362,7 +366,7 @@ void draw_search(Editor& editor, Column& column) {
   }
 }
 
-// Unfolds what a bone lies in.
+// Unfolds the armature and all ancestors of a bone.
 void unfold_to(Editor& editor, int bone) {
   const auto& bones = editor.document().armature->bones;
   editor.outliner.open["armature"] = true;
@@ -370,7 +374,7 @@ void unfold_to(Editor& editor, int bone) {
     editor.outliner.open["bone " + bones[above].name] = true;
 }
 
-// The bone that was chosen or made since the last frame: it comes into sight.
+// Returns the bone that was selected or created since the last frame. The list scrolls to this bone.
 std::optional<int> newly_chosen(const Editor& editor) {
   const auto bone = editor.selection.bone;
   const std::shared_ptr<const Armature> rig = editor.document().armature;
@@ -380,14 +384,15 @@ std::optional<int> newly_chosen(const Editor& editor) {
   return std::exchange(last, now) != now && known ? bone : std::nullopt;
 }
 
-// As high as its rows, but in the rig only so high that the bone's numbers have room below it.
+// Returns the height of the list, px at scale 1: the height of its rows. In the Rig workspace the list may be less
+// high, so that the active bone's numbers fit below it.
 float height_of_list(const Editor& editor, const Column& column, float whole) {
   const Look& look = editor.look;
   if (editor.workspace != Workspace::Rig || !editor.document().armature) return whole;
   const float top = column.head().high.y + ImGui::GetScrollY() - editor.layout.sidebar.low.y +
                     (editor.outliner.searching ? look.px(32) : 0);
   const float room = std::floor((editor.layout.sidebar.height() - top) / look.scale - kBoneSection);
-  // While the sidebar is pointed at, what stands above the list does not change its height.
+  // While the pointer is over the sidebar, keep the list's height, even if content above the list changes.
   float& rows = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("rows"), -1);
   float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("height"), -1);
   if (rows == whole && (editor.layout.sidebar.contains(editor.input.pointer) || editor.input.down(MouseButton::Left)))
@@ -396,7 +401,7 @@ float height_of_list(const Editor& editor, const Column& column, float whole) {
   return height = std::min(whole, std::max(kRow * kFewestRows, room));
 }
 
-// The row in the middle of the list, unless it is seen already.
+// Scrolls the row to the middle of the list, unless it is already visible.
 void scroll_to_row(const Look& look, int row, float height) {
   const float top = look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
   if (top < scroll || top + look.px(kRow) > scroll + height)
@@ -441,9 +446,10 @@ void draw_outliner(Editor& editor, Column& column) {
     if (rows.empty() && editor.outliner.search.empty()) {
       const Rect row = column.row(30);
       put_text(editor, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
-               "Nothing is open");
-    } else if (rows.empty() && empty_state(editor, column.row(72), "Nothing is named '" + editor.outliner.search + "'",
-                                           "Clear search")) {
+               "No project is open");
+    } else if (rows.empty() &&
+               empty_state(editor, column.row(72), "Nothing in the project is named '" + editor.outliner.search + "'",
+                           "Clear search")) {
       editor.outliner.search.clear();
     }
   }

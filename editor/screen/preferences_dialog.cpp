@@ -39,7 +39,8 @@ class PreferencesDialog final : public Dialog {
   void draw_jobs(Editor& editor, Column& column);
   void draw_folders(Editor& editor, Column& column);
 
-  // One row each; the label's sentence is its tool tip.
+  // Each of these draws a row. labelled() draws only the label, with the description as its tooltip, and returns the
+  // area left for the field.
   Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& description);
   void number(Editor& editor, Column& column, const std::string& label, const std::string& description, double low,
               double high, const char* format, const char* unit, const std::function<double&(Preferences&)>& value);
@@ -50,7 +51,7 @@ class PreferencesDialog final : public Dialog {
 
   PreferencesPage page_;
   KeymapPage keys_;
-  std::string edited_;  // the number that is being dragged or typed
+  std::string edited_;  // label of the number being dragged or typed
   double edited_value_ = 0;
 };
 
@@ -75,7 +76,7 @@ void PreferencesDialog::number(Editor& editor, Column& column, const std::string
     edited_ = label;
     edited_value_ = shown;
   }
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description + "\nDrag it, or click it and type.");
+  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description + "\nDrag the number, or click it and type.");
   if (!committed || edited_ != label) return;
   value(editor.preferences) = edited_value_;
   edited_.clear();
@@ -111,7 +112,7 @@ void PreferencesDialog::note(Editor& editor, Column& column, const std::string& 
 
 void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
   const Look& look = editor.look;
-  const Rect theme = labelled(editor, column, "Theme", "Dark or light. The views stay dark in both.");
+  const Rect theme = labelled(editor, column, "Theme", "Dark or light colours. The views are dark in both themes.");
   const float half = std::round(theme.width() / 2);
   for (const auto& [name, label, left] :
        {std::tuple("dark", "Dark", theme.low.x), std::tuple("light", "Light", theme.low.x + half)}) {
@@ -122,21 +123,22 @@ void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
       keep_preferences(editor);
     }
   }
-  number(editor, column, "Scale", "Size of texts and buttons, times the monitor's own.", 0.75, 3, "%.2f", "\u00d7",
-         [](Preferences& p) -> double& { return p.scale; });
-  number(editor, column, "Tool tips after", "How long the pointer rests before a tool tip comes.", 0, 3, "%.1f", "s",
-         [](Preferences& p) -> double& { return p.tooltip_delay; });
+  number(editor, column, "Scale", "Size of text and buttons, multiplied with the monitor's scale.", 0.75, 3, "%.2f",
+         "\u00d7", [](Preferences& p) -> double& { return p.scale; });
+  number(editor, column, "Tool tips after", "How long the pointer must rest before a tooltip appears.", 0, 3, "%.1f",
+         "s", [](Preferences& p) -> double& { return p.tooltip_delay; });
   column.space(6);
-  check(editor, column, "Reduce motion", "Views jump instead of turning, nothing fades.",
+  check(editor, column, "Reduce motion",
+        "Switch the view at once instead of turning it, and do not fade anything in or out.",
         editor.preferences.reduce_motion);
-  check(editor, column, "Advanced steps", "The list of steps offers more than the shortest way.",
+  check(editor, column, "Advanced steps", "Show all tools of each step in the list of steps, not only the main one.",
         editor.preferences.advanced_steps);
 }
 
 void PreferencesDialog::draw_view(Editor& editor, Column& column) {
   const Look& look = editor.look;
   Preferences& preferences = editor.preferences;
-  const Rect display = labelled(editor, column, "Display", "How a body is shown when the editor starts.");
+  const Rect display = labelled(editor, column, "Display", "How the body is displayed when the editor starts.");
   const float third = std::round(display.width() / 3);
   float x = display.low.x;
   for (const auto& [name, label, op] :
@@ -157,49 +159,55 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
     check(editor, column, label, description, preferences.*kept);
     views.*shown = preferences.*kept;
   };
-  overlay("Grid", "The ground grid of the 3D view.", &Preferences::grid, &Views::grid);
-  overlay("Axes", "The axis ball of the 3D view.", &Preferences::axes, &Views::axes);
-  overlay("Scale bar", "A scale bar in every view.", &Preferences::scale_bar, &Views::scale_bar);
-  overlay("Orientation letters", "Which side of the body is where.", &Preferences::letters, &Views::letters);
-  overlay("Cross-hair", "Where the slices meet.", &Preferences::cross_hair, &Views::show_cross_hair);
+  overlay("Grid", "Show the ground grid in the 3D view.", &Preferences::grid, &Views::grid);
+  overlay("Axes", "Show the axis ball in the 3D view.", &Preferences::axes, &Views::axes);
+  overlay("Scale bar", "Show a scale bar in every view.", &Preferences::scale_bar, &Views::scale_bar);
+  overlay("Orientation letters", "Show letters for the directions of the body, such as L for left.",
+          &Preferences::letters, &Views::letters);
+  overlay("Cross-hair", "Show the cross-hair where the slices meet.", &Preferences::cross_hair,
+          &Views::show_cross_hair);
 }
 
 void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
-  whole_number(editor, column, "Memory for undo",
-               "When edits take more, the oldest can no longer be undone; the history says so.",
-               &Preferences::undo_limit_mb, 64, 65536, "MB");
+  whole_number(
+      editor, column, "Memory for undo",
+      "Memory for undo steps. When edits need more, the oldest edits can no longer be undone. The history says so.",
+      &Preferences::undo_limit_mb, 64, 65536, "MB");
   const History& history = editor.history;
   note(editor, column,
-       std::to_string(history.steps().size()) + " states take " + std::to_string(history.bytes() >> 20) + " MB now." +
-           (history.note().empty() ? "" : " " + history.note()));
+       std::to_string(history.steps().size()) + " undo states take " + std::to_string(history.bytes() >> 20) +
+           " MB now." + (history.note().empty() ? "" : " " + history.note()));
   column.space(6);
-  whole_number(editor, column, "Save every", "Saves the project's file by itself, once it has one. 0: only when asked.",
+  whole_number(editor, column, "Save every",
+               "Save the project automatically at this interval, if it already has a file. 0 = never.",
                &Preferences::autosave_minutes, 0, 240, "min");
-  note(editor, column, "Edits are kept within a second in any case, and offered again after a crash.");
+  note(editor, column, "Every edit is also stored within a second and can be recovered after a crash.");
 }
 
 void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
-  whole_number(editor, column, "Jobs at once", "As many run together, the others wait.", &Preferences::jobs_at_once, 1,
-               8, "");
-  whole_number(editor, column, "Memory of a resampling", "More ends it with a message. 0: no limit.",
-               &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
-  number(editor, column, "Time of a resampling", "Longer ends it with a message. 0: no limit.", 0, 1440, "%.1f", "min",
-         [](Preferences& p) -> double& { return p.worker_minutes; });
-  note(editor, column, "A resampling runs in a process of its own: whatever happens to it, the project stays.");
+  whole_number(editor, column, "Jobs at once", "Number of jobs that run at the same time. The others wait.",
+               &Preferences::jobs_at_once, 1, 8, "");
+  whole_number(editor, column, "Memory of a resampling",
+               "Stop a resampling above this memory, with a message. 0 = unlimited.", &Preferences::worker_memory_mb, 0,
+               1 << 18, "MB");
+  number(editor, column, "Time of a resampling", "Stop a resampling after this time, with a message. 0 = unlimited.", 0,
+         1440, "%.1f", "min", [](Preferences& p) -> double& { return p.worker_minutes; });
+  note(editor, column, "A resampling runs in a separate process: if it fails, the project is not affected.");
 }
 
 void PreferencesDialog::draw_folders(Editor& editor, Column& column) {
   Preferences& preferences = editor.preferences;
-  const Rect scratch =
-      labelled(editor, column, "Scratch", "Where a resampling reads and writes; emptied when it ends.");
+  const Rect scratch = labelled(editor, column, "Scratch",
+                                "Folder for the temporary files of a resampling, which are deleted at its end.");
   const std::string before = preferences.scratch_folder;
   const Rect wide{scratch.low, {scratch.high.x + editor.look.px(110), scratch.high.y}};
-  if (text_field(editor, "Scratch", wide, preferences.scratch_folder, "The system's own")) keep_preferences(editor);
+  if (text_field(editor, "Scratch", wide, preferences.scratch_folder, "The system's temporary folder"))
+    keep_preferences(editor);
   if (ImGui::IsItemHovered())
-    tooltip(editor, wide, "Scratch", "Where a resampling reads and writes; emptied when it ends.");
+    tooltip(editor, wide, "Scratch", "Folder for the temporary files of a resampling, which are deleted at its end.");
   column.space(6);
   note(editor, column,
-       "Preferences are kept in " +
+       "Preferences are stored in " +
            (editor.preferences_path.empty() ? preferences_path() : editor.preferences_path).string());
 }
 

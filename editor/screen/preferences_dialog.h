@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The dialog of preferences: what is changed in it acts at once and is kept.
+// The preferences dialog. A change takes effect at once and is saved.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,17 @@ namespace limber::editor {
 
 enum class PreferencesPage { Interface, Keymap, View, Undo, Jobs, Folders };
 
-// search: what the key map's list begins with
+// Returns the dialog, opened at a page. search: initial search text of the keymap page.
 std::unique_ptr<Dialog> open_preferences(PreferencesPage page = PreferencesPage::Interface,
                                          const std::string& search = "");
 
-// The page of keys. Waits for a key while one is to be bound.
+// The keymap page. After a click on a command's keys, the page waits until the user presses the new key.
 class KeymapPage {
  public:
   explicit KeymapPage(std::string search) : search_(std::move(search)) {}
   void draw(Editor& editor, const Rect& rect);
-  bool key(Editor& editor, const Chord& chord);  // true when it took the key
-  bool stop_waiting();                           // false when it did not wait
+  bool key(Editor& editor, const Chord& chord);  // true: the page used the key
+  bool stop_waiting();                           // false: the page was not waiting
 
  private:
   struct Row {
@@ -33,10 +33,10 @@ class KeymapPage {
   void draw_foot(Editor& editor, const Rect& rect, const std::vector<Clash>& clashes);
 
   std::string search_;
-  std::string waiting_context_, waiting_operator_;  // whose key is to be pressed
+  std::string waiting_context_, waiting_operator_;  // the command that waits for a new key; empty: none
 };
 
-// The title of a key map's context: "3D view".
+// Returns the title of a keymap context: "3D view".
 std::string title_of_context(const std::string& context);
 
 }  // namespace limber::editor

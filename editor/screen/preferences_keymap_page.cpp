@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every command with its keys, by the place where they act. A press on the keys waits for another one.
+// Draws the keymap page: every command with its keys, grouped by the context in which the keys work. After a click on
+// the keys, the page waits until the user presses the new key.
 #include <algorithm>
 #include <set>
 
@@ -39,7 +40,7 @@ std::string others_of(const Editor& editor, const Clash& clash, const std::strin
   return others;
 }
 
-// A key as someone types it.
+// Returns whether the texts are equal, ignoring case. Case is ignored because users type "ctrl+z" for Ctrl+Z.
 bool same_ignoring_case(const std::string& a, const std::string& b) {
   return a.size() == b.size() && contains_ignoring_case(a, b);
 }
@@ -66,7 +67,7 @@ std::vector<KeymapPage::Row> KeymapPage::rows(const Editor& editor) const {
   for (const auto& [context, title] : kContexts) {
     if (const auto bindings = editor.keymap.contexts.find(context); bindings != editor.keymap.contexts.end())
       for (const Binding& binding : bindings->second) add(context, binding.operator_id);
-    for (const auto& [place, keys] : editor.preferences.keys)  // those that lost their keys
+    for (const auto& [place, keys] : editor.preferences.keys)  // commands whose keys the user removed
       if (place.first == context) add(context, place.second);
   }
   for (const Operator& op : editor.operators)
@@ -84,7 +85,8 @@ bool KeymapPage::stop_waiting() { return !std::exchange(waiting_operator_, "").e
 
 bool KeymapPage::key(Editor& editor, const Chord& chord) {
   if (waiting_operator_.empty()) return false;
-  // Buttons and wheels stay; a bare Delete or Backspace takes the keys away.
+  // The new key replaces the command's keys, but not its mouse buttons and wheel. Delete or Backspace without modifiers
+  // only removes the command's keys.
   std::vector<Chord> chords = chords_of(editor.keymap, waiting_context_, waiting_operator_);
   std::erase_if(chords, [](const Chord& old) { return old.kind == Chord::Kind::Key; });
   const bool clear = chord.modifiers == Modifiers{} && (chord.key == Key::Delete || chord.key == Key::Backspace);
@@ -119,19 +121,21 @@ void KeymapPage::draw_head(Editor& editor, const Rect& rect) {
     }
     if (ImGui::IsItemHovered())
       tooltip(editor, place(i), label,
-              std::string("Keys near to ") + label + "'s. Takes every change of your own back.");
+              std::string("Use keys similar to ") + label + "'s. Discards all changes of your own.");
     ++i;
   }
   button(editor, "Custom", place(i), {"", "Custom", custom ? ButtonStyle::Chosen : ButtonStyle::Plain});
   if (ImGui::IsItemHovered())
-    tooltip(editor, place(i), "Custom", "With changes of your own: press the keys beside a command to change them.");
+    tooltip(editor, place(i), "Custom",
+            "The keymap with your own changes. Click the keys beside a command to change them.");
   const Rect restore{{right - undo, y}, {right, bottom}};
   if (button(editor, "Restore all", restore, {icon::kUndo, "", ButtonStyle::Plain, custom})) {
     preferences.keys.clear();
     keep_preferences(editor);
   }
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-    tooltip(editor, restore, "Restore all", custom ? "Takes every change of your own back." : "Nothing was changed.");
+    tooltip(editor, restore, "Restore all",
+            custom ? "Discard all your changes of the keymap." : "You have not changed any key.");
 }
 
 void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& row,
@@ -151,7 +155,7 @@ void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& 
       editor.preferences.keys.erase({row.context, row.operator_id});
       keep_preferences(editor);
     }
-    if (ImGui::IsItemHovered()) tooltip(editor, undo, "Restore", "Gives the command its own keys back.");
+    if (ImGui::IsItemHovered()) tooltip(editor, undo, "Restore", "Restore this command's default keys.");
   }
   right = undo.low.x - look.px(6);
 
@@ -164,7 +168,7 @@ void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& 
   const Pressed pressed = press_area(editor, "keys", keys);
   if (pressed.hovered && !waits) {
     fill(keys, look.theme.hover, look.px(4));
-    tooltip(editor, keys, "Change", "Press it, then the new key. Delete takes the key away, Esc leaves it.");
+    tooltip(editor, keys, "Change", "Click here, then press the new key. Delete removes the key, Esc cancels.");
   }
   if (waits) {
     fill(keys, look.theme.accent_soft, look.px(4));
@@ -215,8 +219,8 @@ void KeymapPage::draw_foot(Editor& editor, const Rect& rect, const std::vector<C
   if (clashes.empty()) {
     put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, rect.low.y}, {right, rect.high.y}},
              editor.preferences.keys.empty()
-                 ? "No key has two meanings"
-                 : std::to_string(editor.preferences.keys.size()) + " changed, no key has two meanings");
+                 ? "No key runs two commands"
+                 : std::to_string(editor.preferences.keys.size()) + " changed, no key runs two commands");
     return;
   }
   const Clash& first = clashes.front();

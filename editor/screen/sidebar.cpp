@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The column of sections at the right: fixed order, each folds, all scroll as one.
+// Draws the sidebar at the right. Its sections have a fixed order and scroll together; each section can be folded.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/pose/pose_bone_panel.h"
@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-// Where the sidebar is closed: a handle at the views' right edge.
+// Draws the handle that opens a closed sidebar, at the right edge of the views.
 void draw_handle(Editor& editor) {
   const Look& look = editor.look;
   const Rect& rect = editor.layout.sidebar_handle;
@@ -35,7 +35,7 @@ void draw_sidebar(Editor& editor) {
   if (rect.empty()) return;
   begin_region(editor, Region::Sidebar, "sidebar", rect, editor.look.theme.panel);
   const float shift = sidebar_shift() / editor.look.scale;
-  ImGui::PushID(static_cast<int>(editor.workspace));  // each is scrolled by itself
+  ImGui::PushID(static_cast<int>(editor.workspace));  // each workspace keeps its own scroll position
   {
     Column column(editor, "sections", rect);
     column.space(shift);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The gaps between regions can be dragged: 6 pixels are gripped, a line in accent shows it after a moment; a double
-// click restores the default.
+// Draws the splitters between regions and lets the user drag them. The user can grip a splitter on a strip 6 px wide;
+// a coloured line marks it when the pointer rests there. A double-click restores the default size.
 #include "editor/context/panels.h"
 
 namespace limber::editor {
 
 namespace {
 
-constexpr float kGrip = 6;            // pixels
-constexpr double kShownAfter = 0.15;  // s
+constexpr float kGrip = 6;            // width of the strip that can be gripped, px at scale 1
+constexpr double kShownAfter = 0.15;  // time that the pointer rests on the strip before the line is shown, s
 
 const char* name_of(SplitterId id) {
   constexpr const char* kNames[] = {"sidebar", "bottom", "split-x", "split-y", "four-x", "four-y"};

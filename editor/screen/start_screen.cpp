@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What an editor with nothing open shows: ways to begin, samples, recent files, what a crash left, the four steps. The
-// menus above it stay alive; Escape closes it, and any key that is a command closes it and runs.
+// Draws the start screen, which is shown while nothing is open: buttons to begin, samples, recent files, edits to
+// recover after a crash, and the four steps of the work. The menus above it still work. Escape closes the start screen;
+// the key of a command closes it and runs the command.
 #include <ctime>
 
 #include "editor/context/operator_button.h"
@@ -17,17 +18,17 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 1100, kHeight = 716, kPadding = 32, kMargin = 8;
-constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // of the window: below, all stands closer together
-constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights
+constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // px at scale 1; a smaller window gets the compact layout
+constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights of samples, px at scale 1
 constexpr float kRecentRow = 52, kRecovery = 58;
 constexpr float kSampleAspect = 504.0f / 232;
 
-// The card and what fits into it.
+// The layout of the start screen's card.
 struct Plan {
   Rect card;
   bool small = false, steps = true;
-  float left, right;  // of the content
-  float second;       // where the right column begins
+  float left, right;  // x coordinates of the content's edges
+  float second;       // x coordinate of the right column
 };
 
 Plan plan_of(const Editor& editor) {
@@ -47,13 +48,13 @@ Plan plan_of(const Editor& editor) {
   return plan;
 }
 
-// `picture`: its width by its height.
+// Draws a picture that fills the rectangle. picture: the picture's width divided by its height.
 void draw_picture(Editor& editor, unsigned texture, const Rect& rect, float picture, float rounding) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   canvas.AddRectFilledMultiColor(im(rect.low), im(rect.high), editor.look.theme.view_top, editor.look.theme.view_top,
                                  editor.look.theme.view_bottom, editor.look.theme.view_bottom);
   if (!texture) return;
-  // Fills the place; what is left over of the picture is cut.
+  // Cut off what is too wide or too high in the picture, so that the picture fills the rectangle undistorted.
   const float aspect = rect.width() / rect.height();
   const glm::vec2 cut =
       aspect > picture ? glm::vec2(0, (1 - picture / aspect) / 2) : glm::vec2((1 - aspect / picture) / 2, 0);
@@ -108,7 +109,7 @@ float draw_head(Editor& editor, const Plan& plan) {
   return y + look.px(34);
 }
 
-// With its facts where `facts_too`.
+// Draws a sample's button. facts_too: also draws a line about the sample's content.
 void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool facts_too) {
   const Look& look = editor.look;
   const SampleFacts& facts = facts_of(sample);
@@ -128,11 +129,12 @@ void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool facts_too
   if (facts_too)
     put_text(editor, look.fonts.small, look.theme.text2,
              Rect{{left, picture.high.y + look.px(23)}, {right, picture.high.y + look.px(40)}}, facts.facts);
-  if (state.hovered) tooltip(editor, rect, facts.name, std::string("Makes the sample: ") + facts.facts + ".");
+  if (state.hovered) tooltip(editor, rect, facts.name, std::string("Open this sample body: ") + facts.facts + ".");
   if (state.clicked) open_sample(editor, sample);
 }
 
-// In two rows where these fit above `bottom`, else in one. Returns where they end.
+// Draws the samples in two rows if two rows fit above `bottom`, else in one row. Returns the y coordinate of their
+// lower end.
 float draw_samples(Editor& editor, const Plan& plan, float y, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.left, y}, "Samples");
@@ -199,7 +201,7 @@ void dashed_outline(const Rect& rect, Colour colour, float dash, float width) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const auto side = [&](const glm::vec2& from, const glm::vec2& to) {
     const float length = glm::distance(from, to);
-    // An odd number of equal parts, so that every corner is drawn.
+    // Dashes and gaps alternate in an odd number of equal parts, so that both corners have a dash.
     const int parts = 2 * std::max(1, static_cast<int>(length / (2 * dash))) + 1;
     for (int i = 0; i < parts; i += 2)
       canvas.AddLine(im(glm::mix(from, to, float(i) / parts)), im(glm::mix(from, to, float(i + 1) / parts)), colour,
@@ -211,7 +213,7 @@ void dashed_outline(const Rect& rect, Colour colour, float dash, float width) {
   side({rect.low.x, rect.high.y}, rect.low);
 }
 
-// Where recent files will stand: how the first one comes in.
+// Draws a hint how to open the first file; it is shown while there are no recent files.
 void draw_first_file(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const Operator* op = find_operator(editor, "file.open");
@@ -231,12 +233,12 @@ void draw_first_file(Editor& editor, const Rect& rect) {
            "Drop a volume, a DICOM folder or a project", Align::Centre);
   put_text(editor, look.fonts.small, look.theme.text2,
            Rect{{rect.low.x + inset, y + look.px(23)}, {rect.high.x - inset, y + look.px(41)}},
-           "What you open stands here the next time.", Align::Centre);
+           "Files you open are listed here next time.", Align::Centre);
   if (state.hovered && op) operator_tooltip(editor, *op, rect);
   if (state.clicked && op) run(editor, *op);
 }
 
-//   first_end  of the place for the first file, where there is none
+// Draws the list of recent files, or a hint how to open the first file. first_end: y coordinate where the hint ends.
 void draw_recents(Editor& editor, const Plan& plan, float y, float first_end, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.second, y}, "Recent");
@@ -286,8 +288,8 @@ void draw_recovery(Editor& editor, const Rect& rect) {
   const std::string name = leftover.project.empty() ? "An unsaved project" : leftover.project.stem().string();
   const auto others = editor.life.recoverable.size() - 1;
   std::string line =
-      (leftover.edits == 1 ? std::string("1 edit is kept") : std::to_string(leftover.edits) + " edits are kept") +
-      ", the last: " + leftover.label;
+      (leftover.edits == 1 ? std::string("1 unsaved edit") : std::to_string(leftover.edits) + " unsaved edits") +
+      ", the last one: " + leftover.label;
   if (others > 0) line = std::to_string(others) + " more; " + line;
   const float left = rect.low.x + look.px(42);
   put_text(editor, look.fonts.regular, look.theme.text, Rect{{left, middle - look.px(18)}, {right, middle}},
@@ -305,8 +307,8 @@ void draw_steps(Editor& editor, const Plan& plan, float y) {
   const float width = (plan.right - plan.left) / 4;
   int i = 0;
   for (const Step& step : {Step{icon::kRig, "1 Rig", "Fit a skeleton into the bones."},
-                           Step{icon::kSkin, "2 Skin", "Paint how tissue follows them."},
-                           Step{icon::kPose, "3 Pose", "Turn joints or scrub a mocap take."},
+                           Step{icon::kSkin, "2 Skin", "Paint how tissue follows bones."},
+                           Step{icon::kPose, "3 Pose", "Turn joints or play a motion."},
                            Step{icon::kResample, "4 Resample", "Write a new label volume."}}) {
     const float x = std::round(plan.left + width * static_cast<float>(i++));
     if (i > 1) fill({{x - look.px(16), y}, {x - look.px(16) + look.line(), y + look.px(36)}}, look.theme.line2);

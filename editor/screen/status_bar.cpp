@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Key hints that fit what the pointer is over, what is under it, the job at work, whether all is saved.
+// Draws the status bar: key hints for the area under the pointer, the tissue under the pointer, the running job, and
+// whether the project is saved.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +25,7 @@ namespace {
 
 constexpr std::size_t kFewHints = 5, kMostHints = 8;
 
-// With modifiers held: what they do together with the keys and buttons of this place.
+// Returns hints for the held modifier keys: what each key or mouse button does together with them in this context.
 std::vector<KeyHint> held_hints(const Editor& editor) {
   std::vector<KeyHint> all;
   std::vector<Chord> seen;
@@ -41,7 +42,7 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
       Chord alone = binding.chord;
       alone.modifiers = {};
       all.push_back({key_caps(alone), op->label});
-      // A click of the left button has a meaning of its own beside its drag.
+      // A left click and a left drag do different things, so the hint of a left drag says "drag".
       if (alone.kind == Chord::Kind::Drag && alone.button == MouseButton::Left) all.back().caps.back() += " drag";
     }
   }
@@ -50,8 +51,8 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
 
 std::vector<KeyHint> hints(const Editor& editor) {
   if (editor.modal) return editor.modal->hints(editor);
-  if (editor.drag) return {{{"Esc"}, "Drop the drag"}};
-  if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Drop the drag"}};
+  if (editor.drag) return {{{"Esc"}, "Cancel the drag"}};
+  if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Cancel the drag"}};
   if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
@@ -130,7 +131,7 @@ void draw_hints(Editor& editor, const Rect& bar, float right) {
   }
 }
 
-// Each of these takes its place at the right and returns what is left.
+// Icon and text that tell whether the project is saved.
 struct SavedState {
   const char* icon;
   Colour colour;
@@ -140,11 +141,12 @@ struct SavedState {
 SavedState saved_state(const Editor& editor) {
   const Theme& theme = editor.look.theme;
   const ProjectLife& life = editor.life;
-  if (!life.trouble.empty()) return {icon::kWarning, theme.warn, "Not kept", life.trouble};
+  if (!life.trouble.empty()) return {icon::kWarning, theme.warn, "No recovery", life.trouble};
   if (editor.history.unsaved())
     return {icon::kDot, theme.select, "Not saved",
-            life.session ? "Every edit is kept on disk meanwhile, and offered again after a crash." : ""};
-  if (editor.project_path.empty()) return {"", theme.text2, "No project", "What is open has no project file yet."};
+            life.session ? "Every edit is stored on disk and can be recovered after a crash." : ""};
+  if (editor.project_path.empty())
+    return {"", theme.text2, "No project", "The open volume or rig has no project file yet."};
   std::string words = "Saved";
   if (life.saved_at > 0) {
     const std::time_t at = life.saved_at;
@@ -157,12 +159,14 @@ SavedState saved_state(const Editor& editor) {
   return {icon::kTick, theme.ok, words, editor.project_path.string()};
 }
 
+// Draws a slot of the bar that ends at the x coordinate `right`, like the functions below. Returns the x coordinate
+// where the next slot, left of this one, ends.
 float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
   const SavedState state = saved_state(editor);
   const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y},
-                  {right, bar.high.y}};  // as wide for all
+                  {right, bar.high.y}};  // the widest text gives every state the same width
   if (*state.icon)
     put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
   put_text(editor, look.fonts.small, look.theme.text2,
@@ -203,7 +207,7 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   return left;
 }
 
-// The one figure of the pose that matters, where no sidebar shows it.
+// Draws the volume change by the pose, the most important figure of a pose, if the sidebar that shows it is closed.
 float draw_volume_change(Editor& editor, const Rect& bar, float right) {
   LivePose& live = *editor.live;
   if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty())
@@ -222,8 +226,9 @@ float draw_volume_change(Editor& editor, const Rect& bar, float right) {
   put_text(editor, look.fonts.small, colour,
            Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, "Volume " + percent(change));
   if (press_area(editor, "Volume change", slot).hovered)
-    tooltip(editor, slot, "Volume " + percent(change),
-            "Of all tissue, against rest. N opens the sidebar with every tissue.");
+    tooltip(
+        editor, slot, "Volume " + percent(change),
+        "Volume change of all tissue from rest to this pose. Press N to open the sidebar, which lists each tissue.");
   return slot.low.x - look.px(12);
 }
 

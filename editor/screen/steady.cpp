@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-// Kept by the sidebar's window, under these names.
+// Ids of the values that are stored in the state storage of the sidebar's ImGui window.
 constexpr ImGuiID kShift = 1, kWidget = 2, kLow = 3, kHigh = 4, kScroll = 5, kState = 6, kHead = 7, kSection = 8,
                   kEnd = 9;
 
@@ -22,7 +22,7 @@ ImGuiWindow* sidebar() {
   return window && window->Active ? window : nullptr;
 }
 
-// Of all that scrolls in it.
+// Returns the sum of the scroll positions of the sidebar and of the child windows in it, pixels.
 float scroll_of(const ImGuiWindow& sidebar) {
   float scroll = 0;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
@@ -32,7 +32,7 @@ float scroll_of(const ImGuiWindow& sidebar) {
 
 ImGuiID id_of(const Widget& widget) { return ImHashStr(widget.name.c_str()); }
 
-// The smallest widget of the sidebar under the pointer.
+// Returns the smallest widget of the sidebar under the pointer; null: none.
 const Widget* pointed_at(const Editor& editor) {
   const Widget* found = nullptr;
   for (const Widget& widget : editor.widgets.widgets())
@@ -48,7 +48,7 @@ const Widget* with_id(const Editor& editor, ImGuiID id) {
   return nullptr;
 }
 
-// "sidebar/sections/Bone/Length" is in the section Bone.
+// Returns the id of the widget's section: "sidebar/sections/Bone/Length" is in the section Bone.
 ImGuiID section_of(const Widget& widget) {
   constexpr std::string_view kSections = "sidebar/sections/";
   if (!widget.name.starts_with(kSections)) return 0;
@@ -56,13 +56,14 @@ ImGuiID section_of(const Widget& widget) {
   return ImHashStr(rest.substr(0, rest.find('/')).c_str());
 }
 
-// How far a widget went since it was noted; the end that is not clipped by the sidebar tells.
+// Returns by how many pixels a widget has moved down since note() stored its position. If the sidebar's top edge clips
+// the widget, measures at the widget's lower end.
 float way_of(const Widget& widget, const ImGuiStorage& noted, const Rect& sidebar) {
   const bool clipped = widget.rect.low.y <= sidebar.low.y || noted.GetFloat(kLow) <= sidebar.low.y;
   return clipped ? widget.rect.high.y - noted.GetFloat(kHigh) : widget.rect.low.y - noted.GetFloat(kLow);
 }
 
-// The widget that is to stay where it is now; nullptr for none.
+// Stores the widget that must stay where it is, and its position. Null: no widget must stay.
 void note(ImGuiStorage& noted, const Widget* widget, float scroll) {
   noted.SetInt(kWidget, widget ? static_cast<int>(id_of(*widget)) : 0);
   noted.SetFloat(kScroll, scroll);
@@ -90,7 +91,7 @@ bool has_moved_under_pointer(Editor& editor) {
   ImGuiStorage& noted = window->StateStorage;
   const Rect& rect = editor.layout.sidebar;
   const float shift = noted.GetFloat(kShift), scroll = scroll_of(*window);
-  // Another arrangement begins anew.
+  // If the workspace or the sidebar's size has changed, reset the shift.
   const int state =
       static_cast<int>(editor.workspace) + 8 * static_cast<int>(rect.width()) + 65536 * static_cast<int>(rect.height());
   const bool same = noted.GetInt(kState) == state, held = editor.input.down(MouseButton::Left);
@@ -105,7 +106,7 @@ bool has_moved_under_pointer(Editor& editor) {
   const Widget* widget = id != 0 && !scrolled ? with_id(editor, id) : nullptr;
   const ImGuiID section = static_cast<ImGuiID>(noted.GetInt(kSection));
   float way = widget ? std::round(way_of(*widget, noted, rect)) : 0;
-  // One that went out of sight went with its section.
+  // If the widget is not drawn any more, use the movement of its section's heading.
   if (id != 0 && !scrolled && !widget && section != 0)
     way = std::round(noted.GetFloat(section) - noted.GetFloat(kHead));
   if (way != 0) {

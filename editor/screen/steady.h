@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What lies under the pointer in the sidebar stays there: where a text above it comes, goes or grows, the sections are
-// shifted by as much until the pointer leaves the sidebar, the user scrolls, or another workspace is shown.
+// Keeps the sidebar's widget under the pointer in place. If content above the widget appears, disappears or grows, all
+// sections are shifted by the change in height. The shift ends when the pointer leaves the sidebar or another workspace
+// is shown.
 #pragma once
 
 namespace limber::editor {
 
 struct Editor;
 
-// By how far the sections begin below the sidebar's top, pixels. Call in the sidebar's window.
+// Returns the distance from the sidebar's top to the first section, pixels. Call within the sidebar's window.
 float sidebar_shift();
-// The room that is left below the sections, pixels, so that what goes above does not scroll the rest. `end`: where they
-// end, from the beginning of what is scrolled.
+// Returns the height of the empty space to leave below the sections, pixels. It prevents scrolling when content above
+// disappears. end: lower end of the sections, measured from the start of the scrolled content, pixels.
 float sidebar_rest(float end);
-// Once after the panels were drawn. True when what the pointer points at has moved: they are to be drawn again.
+// Returns whether the widget under the pointer has moved, so that the panels must be drawn again. Call once after the
+// panels are drawn.
 bool has_moved_under_pointer(Editor& editor);
-// Once after a press was met: what it met is what the pointer points at, also where both came in one frame.
+// Stores the widget under the pointer. Call once after a button press was handled, so that the pressed widget stays in
+// place even if the pointer came to it in the same frame.
 void note_pressed(const Editor& editor);
 
 }  // namespace limber::editor

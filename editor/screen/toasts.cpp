@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Short messages at the bottom right of the 3D view: info 4 s, warnings 8 s, errors stay. At most three are seen, where
-// only slices are shown one; the older ones are counted above them. While the pointer is over them they stay as they
-// are: none goes, and what comes meanwhile waits.
+// Draws toasts, which are short messages at the bottom right of the 3D view. Infos stay 4 s, warnings 8 s, errors until
+// the user closes them. At most three toasts are visible, or one if only slices are shown; a line above them counts the
+// older ones. While the pointer is over the toasts, none disappears and new ones wait.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/ui/icons.h"
@@ -14,16 +14,16 @@ namespace {
 constexpr std::size_t kMost = 3;
 constexpr float kWidth = 332, kLeast = 52, kGap = 8, kLeastPlace = 240;
 constexpr int kLines = 2, kDetailLines = 3;
-constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // s
+constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // duration of the fades, s
 
 double life_of(Severity severity) {
   return severity == Severity::Error ? 1e300 : severity == Severity::Warning ? 8 : 4;
 }
 
-// What is shown of a toast, and how large that is.
+// The texts of a toast and their sizes, pixels.
 struct Shape {
   std::string line, action;
-  float words = 0, action_width = 0;  // widths
+  float words = 0, action_width = 0;  // widths of the text and the action's button
   float line_height = 0, height = 0;
 };
 
@@ -42,7 +42,7 @@ Shape shape_of(const Editor& editor, const Toast& toast, float width) {
   return shape;
 }
 
-// How much of it is seen as it comes and goes.
+// Returns the toast's opacity while it fades in or out, [0, 1].
 float presence(Editor& editor, const Toast& toast) {
   if (editor.preferences.reduce_motion) return 1;
   const double age = editor.now - toast.since, left = life_of(toast.severity) - age;
@@ -57,7 +57,7 @@ void fade(ImDrawList& canvas, int first, float presence) {
   }
 }
 
-// True when it was closed.
+// Draws a toast; returns true if the user closed it.
 bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Rect& rect, int index) {
   const Look& look = editor.look;
   begin_region(editor, Region::Toast, "toast " + std::to_string(index), rect, 0);
@@ -86,7 +86,8 @@ bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Re
     const Pressed pressed = press_area(editor, shape.action, link);
     put_text(editor, look.fonts.regular, look.theme.accent_text, link, shape.action, Align::Centre);
     if (pressed.hovered)
-      op ? operator_tooltip(editor, *op, link) : tooltip(editor, link, "Details", "The whole of it, with what to do.");
+      op ? operator_tooltip(editor, *op, link)
+         : tooltip(editor, link, "Details", "Show the full message, which says what to do.");
     if (pressed.clicked) op ? run(editor, *op) : editor.messages.show_again(toast.failure);
   }
   const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};
@@ -97,7 +98,7 @@ bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Re
   return closed;
 }
 
-// The older ones; a click shows them in the console.
+// Draws the number of older toasts; a click on it opens the console.
 void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
   const Look& look = editor.look;
   const std::string words = "+" + std::to_string(count) + " more";
@@ -108,7 +109,7 @@ void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
   fill(rect, pressed.hovered ? look.theme.hover : look.theme.panel, look.px(5));
   outline(rect, look.theme.line2, look.px(5), look.line());
   put_text(editor, look.fonts.small, look.theme.text2, rect, words, Align::Centre);
-  if (pressed.hovered) tooltip(editor, rect, "Older messages", "Opens the console, which keeps all of them.");
+  if (pressed.hovered) tooltip(editor, rect, "Older messages", "Open the console, which lists all messages.");
   if (pressed.clicked) {
     editor.messages.toasts.clear();
     if (!editor.arrangement().console) run(editor, "view.console");
@@ -116,7 +117,7 @@ void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
   end_region(editor);
 }
 
-// Over the 3D view, else over the views.
+// Returns the area for toasts: the 3D view, or all views if no 3D view is shown.
 Rect place_of_toasts(const Editor& editor) {
   const Layout& layout = editor.layout;
   Rect place = layout.views;
@@ -126,7 +127,7 @@ Rect place_of_toasts(const Editor& editor) {
   return place;
 }
 
-// As they were drawn last.
+// Returns whether the pointer is over a toast, by the positions in the last frame.
 bool points_at_toasts(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
@@ -142,14 +143,14 @@ void draw_toasts(Editor& editor) {
   const Look& look = editor.look;
   const bool held = points_at_toasts(editor);
   for (Toast& toast : toasts) {
-    // One that came again is seen already.
+    // A new message waits while the pointer is over the toasts. A repeated one does not, because it is already visible.
     if (toast.since < 0 && (!held || toast.times > 1)) toast.since = editor.now;
     if (held && toast.since >= 0) toast.since = std::max(toast.since, editor.now - kFadeIn);
   }
   std::erase_if(toasts, [&](const Toast& toast) {
     return toast.since >= 0 && editor.now - toast.since >= life_of(toast.severity);
   });
-  std::vector<std::size_t> seen;  // newest first
+  std::vector<std::size_t> seen;  // indices of the visible toasts, newest first
   for (std::size_t at = toasts.size(); at-- > 0;)
     if (toasts[at].since >= 0) seen.push_back(at);
 
@@ -161,7 +162,7 @@ void draw_toasts(Editor& editor) {
   std::size_t shown = 0;
   for (; shown < most && (shown == 0 || bottom > views.centre().y); ++shown) {
     const std::size_t at = seen[shown];
-    const Toast toast = toasts[at];  // what is pressed in it may bring others
+    const Toast toast = toasts[at];  // a copy, because a button in it may add toasts
     const Shape shape = shape_of(editor, toast, width);
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
     if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Below the top bar: how the body is shown, what is clipped, the layout of the views.
+// Draws the tool header, the bar below the top bar: display of the body, options of the workspace, clipping, and layout
+// of the views.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/resample/resample_job.h"
@@ -15,7 +16,7 @@ namespace {
 
 class Header {
  public:
-  // `drawn`: else it is only found out what has room.
+  // drawn: if false, nothing is drawn, and only the groups of buttons that fit are found.
   Header(Editor& editor, bool drawn, bool short_labels)
       : editor_(editor),
         bar_(editor.layout.tool_header),
@@ -23,8 +24,8 @@ class Header {
         drawn_(drawn),
         short_labels_(short_labels) {}
 
-  // Operators of which one is on, as one bar.
-  //   words  they stand there as words, as long as words beside icons have room
+  // Draws a segmented bar of operators, one of which is active. words: draws labels in place of icons, if labels are
+  // not short.
   void segments(std::initializer_list<const char*> ids, bool words = false) {
     segments(std::vector<std::string>(ids.begin(), ids.end()), words);
   }
@@ -51,10 +52,10 @@ class Header {
     x_ += px(6);
   }
 
-  // One of several, behind a button as wide as the longest of their names.
+  // Draws a drop-down list of operators, one of which is active. Its button is as wide as the longest label.
   void choice(const char* name, std::initializer_list<const char*> ids) {
     const Operator* chosen =
-        find_operator(editor_, *ids.begin());  // where none is on: what is on instead has another button
+        find_operator(editor_, *ids.begin());  // shown if none is active; another button then shows the active one
     float width = 0;
     for (const char* id : ids) {
       const Operator* op = find_operator(editor_, id);
@@ -74,7 +75,7 @@ class Header {
     ImGui::EndPopup();
   }
 
-  // A list of commands behind a word.
+  // Draws a button labelled `word` that opens a menu.
   void menu(const char* name, const char* word) {
     const float width = width_of_button(editor_, {"", word}), height = px(26),
                 y = std::round(bar_.centre().y - height / 2), x = x_;
@@ -90,7 +91,7 @@ class Header {
     ImGui::EndPopup();
   }
 
-  // A number of the brush, dragged or typed.
+  // Draws a field for a number of the brush, which the user drags or types.
   void number(const char* name, double& value, double low, double high, const char* format, const char* unit,
               float width) {
     label(name);
@@ -102,7 +103,7 @@ class Header {
     x_ += px(width + 10);
   }
 
-  // What the workspace is for.
+  // Draws the main action of the workspace as a primary button.
   void action(const char* id) {
     const Operator* op = find_operator(editor_, id);
     const ButtonLook face{op->icon, op->label};
@@ -131,13 +132,13 @@ class Header {
     x_ += editor_.look.line() + px(10);
   }
 
-  // Layout buttons never leave: they stand at the right end.
+  // Draws the buttons for the layout of the views at the right end, where they are always visible.
   void layouts() {
     x_ = bar_.high.x - px(8) - 3 * px(36) - 2 * px(1);
     right_ = x_;
     segments({"view.one", "view.split", "view.four"});
   }
-  // What did not fit goes behind "...", left of the layout buttons.
+  // Draws a "..." button that opens a menu of the operators that did not fit into the header.
   void more() {
     if (dropped_.empty()) return;
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
@@ -151,9 +152,10 @@ class Header {
     ImGui::EndPopup();
   }
   bool dropped_any() const { return !dropped_.empty(); }
-  // The width of a toggle without its label, where that is short.
+  // Returns the width of a toggle button, px at scale 1. labelled: its width with a label.
   float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
-  // Whether a group of that width fits; if not, its operators go behind "...".
+  // Returns whether a group of operators of this width (px at scale 1) fits. If not, adds its operators to the menu of
+  // the "..." button.
   bool fits(float width, std::initializer_list<const char*> ids) {
     return fits(width, std::vector<std::string>(ids.begin(), ids.end()));
   }
@@ -184,7 +186,7 @@ class Header {
   std::vector<std::string> dropped_;
 };
 
-// How the body is shown, and what the workspace chooses from.
+// Draws the display of the body and the options of the workspace.
 void put_options(Editor& editor, Header& header) {
   header.layouts();
   header.to_left();
@@ -271,7 +273,7 @@ void draw_tool_header(Editor& editor) {
   begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
   fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
-  // Labels beside icons go before anything goes behind "...".
+  // If not all groups fit with labels, the labels are omitted before any group moves into the menu of "...".
   Header measured(editor, false, editor.layout.short_labels);
   put_options(editor, measured);
   Header header(editor, true, editor.layout.short_labels || measured.dropped_any());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tools at the left edge, one of them active, and switches that belong to the views.
+// Draws the strip at the left edge: the tools, one of which is active, and buttons that turn overlays on and off.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ void draw_tool_strip(Editor& editor) {
   if (editor.workspace == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.scale", "-",
              "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane"};
-  // In a low window tools stand closer together, so that all of them are there.
+  // In a window of small height the buttons are less high, so that all fit.
   const auto lines = static_cast<float>(std::count(tools.begin(), tools.end(), "-"));
   const float rows = static_cast<float>(tools.size()) - lines;
   const float room = std::floor((rect.height() - look.px(8) - lines * look.px(11)) / rows) - look.px(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Logo, menus, workspace tabs, the project's name, the search field.
+// Draws the top bar: logo, menus, workspace tabs, project name and search field.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/screen/menus.h"
@@ -9,7 +9,7 @@ namespace limber::editor {
 
 namespace {
 
-// An L-shaped bone with two joints.
+// Draws the logo, an L-shaped bone with two joints.
 void draw_logo(Editor& editor, const glm::vec2& corner) {
   const Look& look = editor.look;
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
@@ -32,7 +32,7 @@ float draw_menus(Editor& editor, float x, const Rect& bar) {
     const Pressed pressed = press_area(editor, menu.title, rect);
     if (pressed.hovered || open) fill(rect, open ? look.theme.active : look.theme.hover, look.px(4));
     put_text(editor, look.fonts.regular, look.theme.text, rect, menu.title, Align::Centre);
-    // Opens at the press; with another menu open, pointing is enough.
+    // A menu opens when its title is pressed. While another menu is open, pointing at the title is enough.
     const bool from_neighbour =
         !open && !editor.open_menu.empty() && editor.open_menu != menu.title && rect.contains(editor.input.pointer);
     if (pressed.activated || from_neighbour) ImGui::OpenPopup(popup.c_str());
@@ -75,7 +75,7 @@ float draw_workspaces(Editor& editor, float x, const Rect& bar) {
   return x;
 }
 
-// From the right: the search, where there is one, then the name.
+// Draws the project's name between `left` and `right`.
 void draw_project_name(Editor& editor, float left, float right, const Rect& bar) {
   const Look& look = editor.look;
   const bool open = editor.document().volume || !editor.project_path.empty();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tour's bubble: beside what it speaks of, with an arrow at it.
+// Draws the tour's bubble beside the widget it explains, with an arrow to the widget.
 #include "editor/files/tour.h"
 
 #include "editor/context/panels.h"
@@ -12,10 +12,11 @@ namespace {
 
 constexpr float kWidth = 320, kPadding = 14, kArrow = 10;
 
-// Beside the target where there is room: below, at the right, at the left; inside it when it is as large as a view.
+// The position of the bubble: below, right or left of the widget, wherever there is room. If the widget is as large as
+// a view, the bubble is inside the widget.
 struct Place {
   Rect rect;
-  glm::vec2 tip, base;  // of the arrow
+  glm::vec2 tip, base;  // ends of the arrow: its tip at the widget, its base at the bubble
 };
 
 Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Over the 3D view: its name, the axis ball, the scale bar.
+// Draws over the 3D view: its title, the axis ball, the scale bar and legends.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -25,12 +25,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kBall = 34, kEnd = 9;  // radii of the axis ball and of its ends, pixels
+constexpr float kBall = 34, kEnd = 9;  // px at scale 1: radius of the axis ball; radius of the discs at its axes' ends
 
 struct AxisEnd {
   const char* letter;
   const char* operator_id;
-  glm::dvec3 direction;  // world
+  glm::dvec3 direction;  // unit vector, world
   int axis;
   bool positive;
 };
@@ -53,7 +53,7 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
     order[i] = {seen.z, i};
   }
   std::sort(order.begin(), order.end());
-  // Of two ends at one place the nearer one is pressed, and hides the other.
+  // If the discs of two axis ends overlap, the nearer one takes the click and hides the other.
   const float radius = look.px(kEnd);
   std::array<Pressed, 6> presses;
   for (auto nearest = order.rbegin(); nearest != order.rend(); ++nearest) {
@@ -92,10 +92,10 @@ std::string state_of(const Editor& editor) {
            grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" +
            (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
   if (const ProposedJoint* proposed = proposed_joint(editor))
-    return std::string("X-ray \u00b7 bone in bone about the axis ") +
-           (proposed->shows_after ? "as fitted" : "as it is");
+    return std::string("X-ray \u00b7 bone overlap about the axis ") +
+           (proposed->shows_after ? "after the fit" : "before the fit");
   if (editor.bone_table->coloured && editor.workspace == Workspace::Rig && editor.views->scene.weights)
-    return "X-ray \u00b7 bones by the rig bone that they follow";
+    return "X-ray \u00b7 bone tissue coloured by its rig bone";
   std::string state = editor.views->display == render::Display::Solid  ? "Solid"
                       : editor.views->display == render::Display::XRay ? "X-ray"
                                                                        : "Tissue";
@@ -117,7 +117,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   const BodyView& body = editor.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   if (editor.layout.by_sides) draw_side_chip(editor, place);
-  if (place.side_a) {  // what belongs to both stands on the other side
+  if (place.side_a) {  // side A of a comparison has only these; side B has all overlays
     draw_clip_handles(editor, rect);
     return draw_scale_bar(editor, rect, visible_height / rect.height());
   }
@@ -130,7 +130,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
   draw_proposed_joint(editor, rect);
-  Rect above = rect;  // what is in the corner already
+  Rect above = rect;  // the part of the view above the legend
   if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
   above.high.y -= editor.look.px(draw_marks_legend(editor, rect));
   if (!proposed_joint(editor)) draw_last_operation(editor, above);

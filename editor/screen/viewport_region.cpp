@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pictures of the body, what is drawn over them, and what the pointer is over.
+// Draws the views with their overlays and popups, and finds what is under the pointer.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,8 @@ void draw_picture(Editor& editor, const ViewPlace& place) {
   ImGui::PopClipRect();
 }
 
-// What divides a from b can be dragged to between those shares of the view.
+// Lets the user drag the divider between sides A and B of a comparison. least: smallest fraction of the view's width
+// that is left for either side.
 Pressed press_divider(Editor& editor, const std::string& name, float x, const Rect& rect, float least) {
   Comparison& comparison = editor.comparison;
   const float half = editor.look.px(4);
@@ -56,7 +57,7 @@ Pressed press_divider(Editor& editor, const std::string& name, float x, const Re
   return pressed;
 }
 
-// Upon the gap between two views side by side.
+// Draws the divider in the gap between two views that are side by side.
 void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
   const Look& look = editor.look;
   const Rect both{a.low, b.high};
@@ -71,7 +72,8 @@ void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
   put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
 }
 
-// The line between a and b, with their names at its sides; their letters alone where names would cover the picture.
+// Draws the line between sides A and B of a comparison that share a view, with the names of both results. In a low view
+// it draws only the letters, because names would cover the picture.
 void draw_wipe(Editor& editor, const Rect& rect) {
   if (!editor.views->other_scene || editor.layout.by_sides) return;
   const Look& look = editor.look;
@@ -116,7 +118,7 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point =
       world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const render::Scene& scene = scene_at_pointer(editor, place);  // at rest or posed
+  const render::Scene& scene = scene_at_pointer(editor, place);  // of the comparison's side under the pointer
   const auto voxel = voxel_shown_at(scene, hover.point);
   if (!voxel) return;
   hover.voxel = *voxel;
@@ -124,7 +126,7 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   hover.inside = hover.label != 0;
 }
 
-// Of the chosen bones.
+// Returns the title of the menu for the selected bones.
 std::string title_of_bones(const Editor& editor) {
   const std::size_t count = editor.selection.bones.size();
   return count == 1 ? editor.document().armature->bones[*editor.selection.bones.begin()].name
@@ -157,7 +159,8 @@ void draw_pointer_menu(Editor& editor) {
   ImGui::EndPopup();
 }
 
-// A row of the pick list, with a swatch's place at its left and a word at its right; true when it is clicked.
+// Draws a row of the pick list with a colour swatch at the left and the text `right` at its right end. Returns true if
+// the row was clicked.
 template <class Swatch>
 bool pick_row(Editor& editor, const std::string& key, const std::string& name, const std::string& right, bool chosen,
               const Swatch& draw_swatch) {
@@ -177,7 +180,7 @@ bool pick_row(Editor& editor, const std::string& key, const std::string& name, c
   return pressed.clicked;
 }
 
-// What lies under the pointer, nearest first.
+// Draws the pick list, a popup that lists everything under the pointer, nearest first.
 void draw_pick_list(Editor& editor) {
   if (editor.open_pick_list) {
     ImGui::OpenPopup("pick list");
@@ -241,7 +244,8 @@ void draw_side_chip(Editor& editor, const ViewPlace& place) {
     std::snprintf(words, sizeof words, facts->seconds < 10 ? "%.1f s" : "%.0f s", facts->seconds);
   const float high = look.px(26), text_left = look.px(54),
               seconds = *words ? text_size(look.fonts.regular, words).x + look.px(10) : 0;
-  const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));  // the axis ball
+  // Width available for the title, px. On the right, room is kept free for the axis ball.
+  const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));
   if (result && text_left + text_size(look.fonts.semibold, title).x + look.px(12) > room)
     title = method_name(result->method);
   const float width = std::min(text_left + text_size(look.fonts.semibold, title).x + seconds + look.px(12), room);
@@ -273,7 +277,7 @@ void draw_view_title(Editor& editor, const Rect& rect, const std::string& title,
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel) {
   if (!editor.views->scale_bar || millimetres_per_pixel <= 0) return;
   const Look& look = editor.look;
-  // 1, 2, 4, 5, 10, 15 or 20 units of mm, cm or m, between 60 and 120 pixels long.
+  // The bar is 60 to 120 px long and stands for 1, 2, 4, 5, 10, 15 or 20 mm, cm or m, or for 1 to 400 micrometres.
   const double low = look.px(60) * millimetres_per_pixel, high = look.px(120) * millimetres_per_pixel;
   constexpr std::pair<double, const char*> kUnits[] = {{0.001, "\u00b5m"}, {1, "mm"}, {10, "cm"}, {1000, "m"}};
   double length = 0, number = 0;

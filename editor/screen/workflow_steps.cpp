@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-// The job at work for that step: "Heat diffusion, weights"; "" for none.
+// Returns text about the running job of a step, "Heat diffusion, weights"; "" if none runs.
 std::string at_work(const Editor& editor, StepOfWork step) {
   for (const JobStatus& job : editor.jobs.statuses()) {
     const auto known = editor.step_of_job.find(job.id);
@@ -80,7 +80,7 @@ Step resample_step(const Editor& editor) {
             "resample.run", "Resample",       method_operators(Methods::All)};
   step.more.push_back("result.toggle");
   const Document& document = editor.document();
-  // The newest that still holds; where none does, the newest.
+  // Use the newest result of this pose whose inputs have not changed, or else the newest result of this pose.
   for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
     const auto& result = *at;
     if (!is_of_this_pose(document, *result)) continue;
@@ -138,7 +138,7 @@ void draw_step(Editor& editor, Column& column, const Step& step, int number) {
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);
 }
 
-// The other operators of a step, as small buttons in as many rows as they need.
+// Draws a step's further operators as small buttons, in as many rows as needed.
 void draw_more(Editor& editor, Column& column, const Step& step) {
   const Look& look = editor.look;
   const PathScope path(editor, step.title + " more");
@@ -195,7 +195,7 @@ void draw_steps(Editor& editor, Column& column) {
   }
   if (ImGui::IsItemHovered())
     tooltip(editor, place, advanced ? "Basic" : "Advanced",
-            advanced ? "The shortest way: one button a step." : "Offers every tool of each step.");
+            advanced ? "Show only the main button of each step." : "Show all tools of each step.");
   if (open) {
     int number = 1;
     for (const Step& step : steps(editor)) {

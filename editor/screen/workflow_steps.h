@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The way from a volume to a posed one: five steps, what each has, and what is missing next.
+// The five workflow steps from a volume to a posed volume, with the state of each step. The state tells what to do
+// next.
 #pragma once
 
 #include <string>
@@ -14,12 +15,13 @@ enum class StepState { Done, Next, Later, Working, Warning };
 struct Step {
   std::string title;
   StepState state = StepState::Later;
-  std::string line;               // what there is, or what is missing
-  std::string operator_id;        // its one button
-  std::string button;             // the button's word
-  std::vector<std::string> more;  // operators that the advanced list offers besides
+  std::string line;               // text that says what exists, or what is missing
+  std::string operator_id;        // operator of the step's main button
+  std::string button;             // label of the main button
+  std::vector<std::string> more;  // operators shown while Advanced steps is on
 };
-// Always five: Prepare, Rig, Skin, Pose, Resample. At most one is Next: the first that is missing.
+// Returns the five steps Prepare, Rig, Skin, Pose, Resample. At most one has the state Next: the first step that is not
+// done.
 std::vector<Step> steps(const Editor& editor);
 
 }  // namespace limber::editor

@@ -10,10 +10,11 @@ namespace limber::editor {
 
 namespace {
 
-// Corners of voxels lie on whole numbers: the lowest corner of voxel v has its number.
+// A rectangle of voxel faces that lie in the plane `plane` across the axis `axis`. Coordinates count voxel corners:
+// voxel v reaches from corner v to corner v + 1.
 struct Rectangle {
   int axis, plane;
-  glm::ivec2 low, high;  // along axis + 1 and axis + 2
+  glm::ivec2 low, high;  // x: along axis (axis + 1) % 3; y: along axis (axis + 2) % 3
 };
 
 glm::ivec3 corner_of(const Rectangle& r, bool second, bool third) {
@@ -24,8 +25,9 @@ glm::ivec3 corner_of(const Rectangle& r, bool second, bool third) {
   return corner;
 }
 
-// The faces of one plane, row by row.
-using Plane = std::map<int, std::vector<int>>;  // along axis + 2: places along axis + 1
+// The voxel faces of one plane, grouped by row. The key is a row's coordinate along axis (axis + 2) % 3; the value
+// lists the coordinates of its faces along axis (axis + 1) % 3.
+using Plane = std::map<int, std::vector<int>>;
 
 std::vector<std::pair<int, int>> runs_of(std::vector<int> places) {
   std::sort(places.begin(), places.end());
@@ -36,9 +38,9 @@ std::vector<std::pair<int, int>> runs_of(std::vector<int> places) {
   return runs;
 }
 
-// Runs that are alike in rows beside one another become one rectangle.
+// Merges runs of consecutive faces that are equal in neighbouring rows into rectangles.
 void merge(int axis, int plane, const Plane& rows, std::vector<Rectangle>& rectangles) {
-  std::map<std::pair<int, int>, int> open;  // run: the row that it began in
+  std::map<std::pair<int, int>, int> open;  // unfinished rectangles: from the run of faces to the first row
   const auto close = [&](const std::pair<int, int>& run, int begin, int end) {
     rectangles.push_back({axis, plane, {run.first, begin}, {run.second, end}});
   };
@@ -57,8 +59,8 @@ void merge(int axis, int plane, const Plane& rows, std::vector<Rectangle>& recta
   for (const auto& [run, begin] : open) close(run, begin, last + 1);
 }
 
-// Edges of voxels by their direction and the line that they lie on; a sheet's rim are those that an odd number of faces
-// share.
+// Collects the rim of a sheet of voxel faces: the voxel edges that belong to an odd number of the faces. Edges are
+// grouped by the grid line on which they lie.
 class Rims {
  public:
   void add(const glm::ivec3& lower, int axis) {
@@ -71,7 +73,7 @@ class Rims {
     for (const auto& [at, along] : {std::pair(corner, u), {beyond_w, u}, {corner, w}, {beyond_u, w}}) toggle(at, along);
   }
 
-  // Edges one after another as one.
+  // Calls `body` for each straight run of consecutive rim edges, with the voxel corners at its two ends.
   template <class Body>
   void for_each(const Body& body) const {
     for (const auto& [line, places] : lines_) {
@@ -103,7 +105,7 @@ class Rims {
 }  // namespace
 
 SeamSheet sheet_of(const Seams& seams, const Grid& grid) {
-  std::map<std::pair<int, int>, Plane> planes;  // by axis and place on it
+  std::map<std::pair<int, int>, Plane> planes;  // key: axis across the plane, and the plane along it
   Rims rims;
   seams.for_each([&](const glm::ivec3& lower, int axis) {
     planes[{axis, lower[axis] + 1}][lower[(axis + 2) % 3]].push_back(lower[(axis + 1) % 3]);

@@ -15,9 +15,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr Colour kSeam = 0xFF4BFFD6, kUnder = 0x8C000000;  // D6FF4B, which no tissue has; black at 55 %
-constexpr float kSheet = 0.22f;                            // its cover
-constexpr std::size_t kMostRectangles = 15'000;            // in 3D; of more the rims alone
+// Colour of seams, ABGR (RGB: D6FF4B): no tissue has it. Under each line a wider line is drawn in black at 55 %.
+constexpr Colour kSeam = 0xFF4BFFD6, kUnder = 0x8C000000;
+constexpr float kSheet = 0.22f;                  // opacity of a seam in the 3D view, [0, 1]
+constexpr std::size_t kMostRectangles = 15'000;  // a seam of more rectangles is drawn in 3D by its rims only
 
 const SeamSheet& drawn_sheet(Editor& editor, const std::shared_ptr<const Seams>& seams, std::int64_t strokes) {
   auto& drawn = editor.seams->drawn;
@@ -48,7 +49,8 @@ void draw_in_body(const Look& look, const ViewProjection& seen, const SeamSheet&
   }
 }
 
-// Where the slice's plane goes through a rectangle.
+// Returns the two ends of the line in which the plane of a slice cuts a rectangle; nothing when it does not cut it.
+//   point, normal  a point of the slice's plane, and the plane's normal
 std::optional<std::array<glm::dvec3, 2>> crossing(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& point,
                                                   const glm::dvec3& normal) {
   std::array<glm::dvec3, 2> ends;
@@ -96,8 +98,8 @@ std::string why_weights_are_old(const Editor& editor) {
   const auto& from = editor.seams->weights_from;
   const Document& document = editor.document();
   if (!document.weights || !from || from->volume != document.volume) return "";
-  if (from->kept != document.seams) return "Older than the seams";
-  return from->bone_map != document.bone_map ? "Older than the bone map" : "";
+  if (from->kept != document.seams) return "Weights are older than the seams";
+  return from->bone_map != document.bone_map ? "Weights are older than the bone map" : "";
 }
 
 void draw_seams(Editor& editor, const ViewPlace& view) {
@@ -132,7 +134,8 @@ const std::vector<SeamPair>* counted_pairs(Editor& editor) {
           e.touch();
         };
       },
-      [source, seams = *shown](Editor& e, const std::string& error) {  // not tried again for the same ones
+      [source, seams = *shown](Editor& e, const std::string& error) {
+        // An empty result keeps the failed task from starting again for the same seams.
         e.seams->counted = {source, seams, {}};
         e.messages.show_error(error, "Counting seams");
       });
@@ -142,9 +145,10 @@ const std::vector<SeamPair>* counted_pairs(Editor& editor) {
 std::string why_no_seams(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
-  if (!document.armature) return "Import a rig first: its names say what the limbs are";
-  if (!body_seams().has_limbs(document.armature)) return "The names of the rig's bones mean no arms, legs or fingers";
-  return editor.seams->searching && editor.tasks.contains(*editor.seams->searching) ? "They are being looked for" : "";
+  if (!document.armature) return "Import a rig first: its bone names tell where the limbs are";
+  if (!body_seams().has_limbs(document.armature)) return "No bone of the rig is named as an arm, leg or finger";
+  return editor.seams->searching && editor.tasks.contains(*editor.seams->searching) ? "The search for seams is running"
+                                                                                    : "";
 }
 
 void find_seams_again(Editor& editor) {

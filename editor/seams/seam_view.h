@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams as the Skin workspace shows and changes them: a sheet in 3D and lines in slices where tissue touches without
-// being one, how many faces lie between which parts of the body, and a brush. A stroke of the brush cuts like a knife
-// as deep as the brush's radius, along the line of sight in 3D and to both sides of a slice; with Ctrl it erases what
-// lies within the ball. A stroke is one edit.
+// Shows and edits seams in the Skin workspace. A seam is a set of voxel faces at which two body parts, such as arm and
+// trunk, touch without being joined. It is drawn as a surface in 3D and as lines in slices, and its faces are counted
+// per pair of body parts. A stroke of the seam brush cuts like a knife: in 3D along the line of sight, as deep as the
+// brush's radius; in a slice by this radius to both sides. With Ctrl it erases seams within a ball of this radius. A
+// stroke is one edit.
 #pragma once
 
 #include <array>
@@ -20,7 +21,8 @@ namespace limber::editor {
 
 enum class SeamStroke { Cut, Join };
 
-// Of seams, in the world, mm: rectangles of faces that lie in one plane, and the edges that bound the sheets.
+// The drawn geometry of seams, world coordinates in mm: rectangles of voxel faces that lie in one plane, and the line
+// segments of the seams' rims.
 struct SeamSheet {
   std::vector<std::array<glm::dvec3, 4>> rectangles;
   std::vector<std::array<glm::dvec3, 2>> rims;
@@ -28,10 +30,10 @@ struct SeamSheet {
 SeamSheet sheet_of(const Seams& seams, const Grid& grid);
 
 struct SeamView {
-  bool shown = true;   // over the views of the Skin workspace
-  bool brush = false;  // strokes change seams in place of weights
+  bool shown = true;   // whether the Skin workspace draws seams
+  bool brush = false;  // whether strokes change seams instead of weights
 
-  // A stroke that is being painted.
+  // The stroke of the seam brush in progress.
   struct Running {
     std::shared_ptr<const LabelVolume> volume;
     LabelSet soft;
@@ -39,44 +41,52 @@ struct SeamView {
     SeamStroke stroke = SeamStroke::Cut;
     ViewPlace view;
     glm::vec2 pixel{0};
-    std::optional<Blade> blade;  // where the knife was
-    std::int64_t faces = 0;      // that were changed
+    std::optional<Blade> blade;  // the knife after the last step that cut; nothing: none
+    std::int64_t faces = 0;      // number of voxel faces that the stroke has changed
   };
-  std::shared_ptr<Running> running;  // while a button paints
+  std::shared_ptr<Running> running;  // null: no stroke in progress
 
-  // What was drawn last, and what it was made of.
+  // The geometry that was drawn last, with the seams (`of`) and the number of faces changed by the stroke (`strokes`)
+  // for which it was computed.
   struct {
     std::shared_ptr<const Seams> of;
     std::int64_t strokes = 0;
     SeamSheet sheet;
   } drawn;
 
-  // The pairs of parts that were counted last.
+  // The last count of faces per pair of body parts, with the document parts and seams that were counted.
   struct Counted {
     SeamSource source;
     std::shared_ptr<const Seams> seams;
     std::vector<SeamPair> pairs;
   } counted;
-  std::optional<int> counting, searching;  // tasks
+  std::optional<int> counting, searching;  // ids of the background tasks that count and find seams
 
-  // What the weights were computed from, once it is known.
+  // The document parts (such as seams and bone map) from which the weights were computed; nothing: unknown.
   std::optional<SeamSource> weights_from;
 };
 
-// Before seams or the bone map change: the weights that there are know of them as they were.
+// Stores the seams and the bone map from which the current weights were computed. Call it before the document's seams
+// or bone map change.
 void note_weights_source(Editor& editor);
-std::string why_weights_are_old(const Editor& editor);  // "" when they are not, or nobody knows
+// Returns why the weights are out of date, such as "Weights are older than the seams"; "" when they are not, or when
+// this is unknown.
+std::string why_weights_are_old(const Editor& editor);
 
-// What is painted, else the document's, else what was found; nothing where nobody looked for them yet, null where there
-// are none.
+// Returns the seams that the views show: those of the stroke in progress, else the document's edited seams, else those
+// that were found automatically. Returns std::nullopt while the search has not run, and a null pointer when there are
+// no seams.
 std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor);
-// The tissue of the open volume, parted at those: brushes and edits of weights do not cross them.
+// Returns the tissue voxels of the open volume. Voxels on both sides of a shown seam are not neighbours, so that
+// brushes and edits of weights do not cross seams.
 std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor);
-// Null while they are being counted, which this begins.
+// Returns the number of faces of the shown seams per pair of body parts. Starts a background task if they are not
+// counted yet, and returns null until it has ended.
 const std::vector<SeamPair>* counted_pairs(Editor& editor);
 
-std::string why_no_seams(const Editor& editor);  // why none can be looked for; "" when they can
-// Looks for them anew, beside the editor; edits of them are dropped by one edit.
+std::string why_no_seams(const Editor& editor);  // why seams cannot be searched now; "": they can
+// Starts a background task that finds the seams again. When it ends, seams that were changed by hand are discarded in
+// one edit.
 void find_seams_again(Editor& editor);
 void clear_seams(Editor& editor);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Seams between which parts of the body, each with its faces: a click goes there.
+// Panel of the seams. It lists the pairs of body parts that touch at a seam, with the seam's number of voxel faces. A
+// click on a row moves the cross-hair to the seam.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/seams/seam_view.h"
@@ -36,7 +37,7 @@ void draw_row(Editor& editor, Column& column, int index, const SeamPair& pair) {
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{end - unit, rect.low.y}, {end, rect.high.y}}, "faces",
            Align::Right);
   if (pressed.hovered)
-    tooltip(editor, rect, name, faces + " voxel faces do not hang together. Click to put the cross-hair there.");
+    tooltip(editor, rect, name, faces + " voxel faces touch but are not joined. Click to move the cross-hair to them.");
   if (!pressed.clicked) return;
   focus_list(editor, kList, index);
   go_to(editor, pair);
@@ -51,8 +52,8 @@ void draw_list(Editor& editor, Column& column) {
   const Look& look = editor.look;
   if (!counted)
     return put_text(editor, look.fonts.regular, look.theme.text3, column.row(24),
-                    editor.document().armature ? "Counting" : "No rig says between what", Align::Centre);
-  const std::vector<SeamPair> pairs = *counted;  // kept, since a row may change them
+                    editor.document().armature ? "Counting faces" : "Import a rig to list body parts", Align::Centre);
+  const std::vector<SeamPair> pairs = *counted;  // copied, because drawing a row may change the list
   const ListKey key = list_key(editor, kList, static_cast<int>(pairs.size()));
   if (!pairs.empty() && (key == ListKey::Moved || key == ListKey::Activate))
     go_to(editor, pairs[static_cast<std::size_t>(editor.list_focus.row)]);
@@ -78,7 +79,7 @@ void draw_foot(Editor& editor, Column& column) {
   }
   if (editor.document().seams)
     put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, y}, {rect.high.x - look.px(10), y + look.px(26)}},
-             "By hand", Align::Right);
+             "Edited", Align::Right);
 }
 
 }  // namespace
@@ -90,13 +91,13 @@ void draw_seam_section(Editor& editor, Column& column) {
   if (column.begin_section("Seams", !seams ? "" : faces ? grouped(faces) + " faces" : "None", false)) {
     if (!seams) {
       const bool searching = editor.seams->searching && editor.tasks.contains(*editor.seams->searching);
-      if (empty_state(editor, column.row(72), searching ? "Looking for seams" : "Not looked for yet", "Find seams"))
+      if (empty_state(editor, column.row(72), searching ? "Finding seams" : "Seams not searched yet", "Find seams"))
         run(editor, "skin.find_seams");
     } else {
       if (faces > 0) draw_list(editor, column);
       else
         put_text(editor, editor.look.fonts.regular, editor.look.theme.text3, column.row(24),
-                 editor.document().seams ? "None, by hand" : "No limbs touch", Align::Centre);
+                 editor.document().seams ? "All seams were removed" : "No limbs touch", Align::Centre);
       draw_foot(editor, column);
     }
   }

@@ -14,11 +14,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kSamples = 16;                            // parts of a bone that are looked at
-constexpr float kRadius = 24, kLeast = 4, kMost = 400;  // of the circle, pixels at scale 1
-constexpr float kGrowth = 1.15f;                        // for a step of the wheel
+constexpr int kSamples = 16;                            // a bone is tested at kSamples + 1 points from head to tail
+constexpr float kRadius = 24, kLeast = 4, kMost = 400;  // first, smallest, largest circle radius, pixels at scale 1
+constexpr float kGrowth = 1.15f;                        // factor by which a wheel step changes the circle radius
 
-// A bone as it is seen: points from its head to its tail.
+// A bone as the view shows it: the visible ones of its tested points, from head to tail, pixels.
 struct SeenBone {
   int bone;
   std::vector<glm::dvec2> points;
@@ -65,8 +65,9 @@ class AreaSelection : public Modal {
  protected:
   virtual bool ends_by_key() const { return false; }
 
-  // Bones with a point in the area join the chosen ones, or leave them with Shift. The active one stays while it is
-  // chosen.
+  // Adds the bones that have a tested point in the area to the selection; with Shift, removes them from it. The active
+  // bone stays active as long as it is selected.
+  //   inside  returns whether a pixel lies in the area
   template <class Inside>
   void take(Editor& editor, const Inside& inside) {
     Selection& selection = editor.selection;
@@ -122,7 +123,7 @@ class BoxSelection final : public AreaSelection {
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"LMB"}, "Draw a box"}, {{"Shift"}, "Take out"}, {{"Esc"}, "Back"}};
+    return {{{"LMB"}, "Draw a box"}, {{"Shift"}, "Deselect"}, {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return "Select in a box"; }
 
@@ -161,7 +162,7 @@ class CircleSelection final : public AreaSelection {
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"LMB"}, "Paint"}, {{"Shift"}, "Take out"}, {{"Wheel"}, "Size"}, {{"Enter"}, "Done"}, {{"Esc"}, "Back"}};
+    return {{{"LMB"}, "Paint"}, {{"Shift"}, "Deselect"}, {{"Wheel"}, "Size"}, {{"Enter"}, "Done"}, {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return "Select with a circle"; }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones chosen by an area of a view, as in Blender: in a box that is drawn with the left button, or under a circle that
-// paints while the button is held and grows with the wheel. Shift takes bones out. A box ends it; Enter or the right
-// button ends the circle; Escape brings back what was chosen before.
+// Two modal tools that select the bones in an area of a view, as in Blender. Box select: the user draws a box with the
+// left button, which ends the tool. Circle select: a circle selects while the left button is held; the wheel changes
+// its size, and Enter or the right button ends the tool. In both, Shift removes bones from the selection, and Escape
+// restores the earlier selection.
 #pragma once
 
 #include <memory>

@@ -14,17 +14,17 @@ namespace limber::editor {
 
 namespace {
 
-// Pixels at scale 1.
-constexpr float kShortest = 40;  // of a bone that is labelled, unless it is chosen
+// All lengths below are in pixels at scale 1.
+constexpr float kShortest = 40;  // shorter bones are labelled only while selected
 constexpr float kBeside = 10, kHeight = 16, kPad = 4;
-constexpr float kGizmo = 114, kJointGizmo = 136;  // the reach of rings, and in the rig of the handles outside them
-constexpr double kAxisShare = 0.25, kLongestAxis = 36;  // of the bone's length; pixels
+constexpr float kGizmo = 114, kJointGizmo = 136;        // radius of the gizmo; with joint handles
+constexpr double kAxisShare = 0.25, kLongestAxis = 36;  // drawn axis: share of the bone's length; upper limit
 
-// A bone where it is shown.
+// A bone as the 3D view shows it.
 struct SeenBone {
   int bone;
   glm::vec2 head, tail;  // pixels
-  double depth;          // towards the eye
+  double depth;          // coordinate of the bone's middle towards the eye, mm; larger is nearer
   bool chosen, active;
 };
 
@@ -41,7 +41,7 @@ std::vector<SeenBone> seen_bones(const Editor& editor, const ViewProjection& vie
     seen.push_back({b, glm::vec2(*from), glm::vec2(*to), glm::dot((head + tail) / 2.0, view.towards_eye), chosen,
                     scene.bones[b].active});
   }
-  // Who comes first has the choice of places.
+  // Names are placed in this order: the active bone, then selected bones, then bones near the eye.
   std::sort(seen.begin(), seen.end(), [](const SeenBone& a, const SeenBone& b) {
     return std::tuple(!a.active, !a.chosen, -a.depth) < std::tuple(!b.active, !b.chosen, -b.depth);
   });
@@ -63,7 +63,7 @@ class Names {
     if (centre)
       gizmo_ = {glm::vec2(*centre),
                 px(editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate ? kJointGizmo : kGizmo)};
-    // What else is written over the view: its title, the axis ball, the scale bar, a tool's read-out.
+    // Bone names must not cover the view's title, the axis ball, the scale bar or the numbers that a tool shows.
     taken_.push_back({inside_.low, inside_.low + glm::vec2(px(300), px(48))});
     if (editor.views->axes)
       taken_.push_back({{inside_.high.x - px(100), inside_.low.y}, {inside_.high.x, inside_.low.y + px(104)}});
@@ -91,7 +91,9 @@ class Names {
            std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) { return other.overlaps(rect); });
   }
 
-  // Beside the middle, then nearer to an end; of a chosen bone under the gizmo beside that.
+  // Returns a rectangle for a bone's name that covers no other name: beside the bone's middle, or if that is taken,
+  // beside a point nearer to an end. For a selected bone, tries positions around the gizmo last. Returns nothing when
+  // all positions are taken.
   std::optional<Rect> place_for(const SeenBone& bone, const glm::vec2& size) const {
     const auto free_at = [&](const glm::vec2& low) -> std::optional<Rect> {
       const Rect rect{glm::round(low), glm::round(low) + size};
@@ -108,7 +110,7 @@ class Names {
     for (int turn = 0; turn < 8; ++turn) {
       const float angle = begin + static_cast<float>((turn % 2 ? 1 : -1) * ((turn + 1) / 2) * std::numbers::pi / 4);
       const glm::vec2 out(std::cos(angle), std::sin(angle));
-      // The rectangle's middle so far out that its nearest corner clears the circle.
+      // The rectangle is moved outwards until it lies outside the gizmo's circle.
       if (const auto found = free_at(gizmo_->centre + out * (gizmo_->radius + px(4)) + (out - 1.0f) * size * 0.5f))
         return found;
     }
@@ -121,7 +123,7 @@ class Names {
   std::vector<Rect> taken_;
 };
 
-// From the tail, each with its letter.
+// Draws the bone's local axes from its tail, with the letters X, Y and Z.
 void draw_axes(Editor& editor, const ViewProjection& view, const SeenBone& seen) {
   const render::Scene& scene = editor.views->scene;
   const Bone& bone = scene.armature->bones[seen.bone];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What bones are called and how their own axes lie, written over the 3D view. A name stands beside its bone, where
-// nothing else is written and outside the gizmo; one that finds no such place is left out, the nearest bones' last.
+// Draws the names and the local axes of the bones over the 3D view. A name is drawn beside its bone, where it covers
+// neither other text nor the gizmo, and is left out if no such position is free. Names of the active bone, of selected
+// bones and of bones near the eye are placed first.
 #pragma once
 
 #include "editor/context/view_projection.h"

@@ -30,7 +30,7 @@ void pick(Editor& editor) {
 void extend(Editor& editor) {
   editor.transform_settings->part = TransformSettings::Part::Whole;
   if (const auto bone = bone_at_pointer(editor)) {
-    // The active one pressed again is given up.
+    // A click on the active bone deselects it.
     if (editor.selection.bone == bone) {
       editor.selection.bones.erase(*bone);
       editor.selection.bone =
@@ -44,8 +44,8 @@ void extend(Editor& editor) {
   if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
 }
 
-// Every visible tissue along the line of sight, nearest first, with its depth before the eye. In a slice only the one
-// under the pointer, at none.
+// Returns the visible tissues under the pointer, each with its distance from the eye, mm. In the 3D view, these are all
+// tissues along the line of sight, nearest first. In a slice, it is one tissue, at distance 0.
 std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
   const Hover& hover = editor.views->hover;
   std::vector<std::pair<double, Label>> found;
@@ -78,7 +78,8 @@ std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
   return found;
 }
 
-// What is meant by a click is chosen at once; a list offers all that lies there, nearest first.
+// Selects the bone or tissue that a click would select. If there are several under the pointer, opens a list of all of
+// them, nearest first.
 void pick_list(Editor& editor) {
   pick(editor);
   std::vector<std::pair<double, Pickable>> below;
@@ -106,10 +107,11 @@ void go_to_child(Editor& editor, bool extend) {
     if (bones[b].parent == *editor.selection.bone) return extend ? add_bone(editor, b) : choose_bone(editor, b);
 }
 
-// The bone and all that hangs on it.
+// Adds all descendants of the selected bones to the selection. One pass is enough, because an armature lists parents
+// before their children.
 void choose_chain(Editor& editor) {
   const std::vector<Bone>& bones = editor.document().armature->bones;
-  for (int b = *editor.selection.bone; b < std::ssize(bones); ++b)
+  for (int b = 0; b < std::ssize(bones); ++b)
     if (bones[b].parent >= 0 && editor.selection.bones.contains(bones[b].parent)) editor.selection.bones.insert(b);
 }
 
@@ -134,7 +136,7 @@ void choose_all(Editor& editor) {
 
 std::string needs_bones(const Editor& editor) {
   if (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose)
-    return "Works in the Rig and Pose workspaces";
+    return "Switch to the Rig or Pose workspace first";
   return editor.document().armature ? "" : "Import a rig first";
 }
 
@@ -157,7 +159,8 @@ void invert(Editor& editor) {
   selection.tissues = std::move(others);
 }
 
-// Adds the bones that `alike` finds like one of the chosen ones.
+// Adds the bones to the selection that are similar to a selected bone.
+//   alike  returns whether the bone `other` is similar to the selected bone `chosen`
 void choose_alike(Editor& editor, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
   const Armature& rig = *editor.document().armature;
   const std::set<int> chosen = editor.selection.bones;
@@ -184,68 +187,70 @@ Operator tool_operator(const char* id, const char* label, const char* icon, cons
 
 std::vector<Operator> select_operators() {
   return {
-      {"select.pick", "Select", icon::kSelect, "Select", "Chooses the bone or tissue under the pointer.", pick,
+      {"select.pick", "Select", icon::kSelect, "Select", "Select the bone or tissue under the pointer.", pick,
        needs_volume},
       {"select.extend", "Extend selection", "", "Select",
-       "Adds the tissue under the pointer to the chosen ones, or takes it out.", extend, needs_volume},
-      {"select.pick_list", "Select from list", icon::kPick, "Select",
-       "Chooses what is under the pointer and lists the bones and tissues behind it.", pick_list, needs_volume},
-      {"select.none", "Select nothing", "", "Select", "Chooses nothing.", [](Editor& e) { e.selection = {}; }},
-      {"select.all", "Select all", "", "Select",
-       "Chooses every bone in the Rig and Pose workspaces, every tissue elsewhere or where one is chosen.", choose_all,
+       "Add the bone or tissue under the pointer to the selection, or remove it if it is selected.", extend,
        needs_volume},
+      {"select.pick_list", "Select from list", icon::kPick, "Select",
+       "Select the bone or tissue under the pointer and list those behind it.", pick_list, needs_volume},
+      {"select.none", "Select nothing", "", "Select", "Deselect all bones and tissues.",
+       [](Editor& e) { e.selection = {}; }},
+      {"select.all", "Select all", "", "Select",
+       "Select all bones in the Rig and Pose workspaces (in Rig, all tissues if one is selected), else all tissues.",
+       choose_all, needs_volume},
       {"select.invert", "Invert selection", "", "Select",
-       "Chooses the bones, or tissues, that are not chosen, in place of those that are.", invert, needs_volume},
-      {"select.box", "Box select", "", "Select", "Adds the bones in a box that is drawn; with Shift takes them out.",
+       "Select the bones or tissues that are not selected, and deselect the others.", invert, needs_volume},
+      {"select.box", "Box select", "", "Select",
+       "Add the bones in a box that you draw to the selection. Shift removes them.",
        [](Editor& e) { e.modal = begin_box_selection(e); }, needs_bones},
       {"select.circle", "Circle select", "", "Select",
-       "Adds the bones that a circle is painted over; with Shift takes them out.",
+       "Add the bones under a circle that you paint with to the selection. Shift removes them.",
        [](Editor& e) { e.modal = begin_circle_selection(e); }, needs_bones},
       {"select.similar", "Select similar", "", "Select",
-       "Lists in what other bones may be like the chosen ones, at the pointer.",
+       "Open a menu that selects bones that are similar to the selected bones.",
        [](Editor& e) { e.open_popup = "Similar"; }, needs_bone},
-      alike_operator("select.siblings", "Siblings", "Adds the bones that hang where the chosen ones hang.",
+      alike_operator("select.siblings", "Siblings", "Select bones with the same parent as the selected bones.",
                      [](const Armature& rig, int chosen, int other) {
                        return rig.bones[chosen].parent == rig.bones[other].parent;
                      }),
-      alike_operator("select.children", "Children", "Adds the bones that hang on the chosen ones.",
+      alike_operator("select.children", "Children", "Select the children of the selected bones.",
                      [](const Armature& rig, int chosen, int other) { return rig.bones[other].parent == chosen; }),
       alike_operator("select.same_joint", "Same joint",
-                     "Adds the bones whose joints are of the chosen ones' kind: hinge, ball, fixed or free.",
+                     "Select bones with the same kind of joint as the selected bones: hinge, ball, fixed or free.",
                      [](const Armature& rig, int chosen, int other) {
                        return rig.bones[chosen].limits.type == rig.bones[other].limits.type;
                      }),
-      alike_operator("select.same_length", "Same length", "Adds the bones as long as the chosen ones, to a tenth.",
+      alike_operator("select.same_length", "Same length",
+                     "Select bones of the same length as the selected bones, within 10 %.",
                      [](const Armature& rig, int chosen, int other) {
                        return std::abs(length_of(rig.bones[chosen]) - length_of(rig.bones[other])) <=
                               0.1 * length_of(rig.bones[chosen]);
                      }),
-      {"select.parent", "Select parent", "", "Select", "Chooses the bone that the active one hangs on.",
+      {"select.parent", "Select parent", "", "Select", "Select the parent of the active bone.",
        [](Editor& e) { go_to_parent(e, false); }, needs_bone},
-      {"select.child", "Select child", "", "Select", "Chooses the first bone that hangs on the active one.",
+      {"select.child", "Select child", "", "Select", "Select the first child of the active bone.",
        [](Editor& e) { go_to_child(e, false); }, needs_bone},
-      {"select.extend_parent", "Extend to parent", "", "Select", "Adds the bone that the active one hangs on.",
+      {"select.extend_parent", "Extend to parent", "", "Select", "Add the parent of the active bone to the selection.",
        [](Editor& e) { go_to_parent(e, true); }, needs_bone},
-      {"select.extend_child", "Extend to child", "", "Select", "Adds the first bone that hangs on the active one.",
-       [](Editor& e) { go_to_child(e, true); }, needs_bone},
-      {"select.chain", "Select chain", "", "Select", "Adds everything that hangs on the chosen bones.", choose_chain,
-       needs_bone},
-      {"select.mirror", "Select mirrored", "", "Select", "Chooses the bones of the other side instead.",
-       choose_mirrored, needs_bone},
-      tool_operator("tool.select", "Select", icon::kSelect, "A click chooses the tissue under the pointer.",
-                    Tool::Select),
+      {"select.extend_child", "Extend to child", "", "Select",
+       "Add the first child of the active bone to the selection.", [](Editor& e) { go_to_child(e, true); }, needs_bone},
+      {"select.chain", "Select chain", "", "Select", "Add all descendants of the selected bones to the selection.",
+       choose_chain, needs_bone},
+      {"select.mirror", "Select mirrored", "", "Select",
+       "Select the counterparts of the selected bones on the other side instead.", choose_mirrored, needs_bone},
+      tool_operator("tool.select", "Select", icon::kSelect, "Click a bone or tissue to select it.", Tool::Select),
       tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair,
-                    "A click moves the cross-hair, and the slices with it.", Tool::CrossHair),
+                    "Click to move the cross-hair and the slices there.", Tool::CrossHair),
       tool_operator("tool.move", "Move tool", icon::kMove,
-                    "Arrows at the active bone's end move it, and its limb follows; at the root they move the body.",
+                    "Move the active bone with arrows at its end; its limb follows. The root bone moves the body.",
                     Tool::Move),
-      tool_operator("tool.rotate", "Rotate tool", icon::kRotate, "Rings at the active bone's joint turn it.",
+      tool_operator("tool.rotate", "Rotate tool", icon::kRotate, "Turn the active bone with rings at its joint.",
                     Tool::Rotate),
-      tool_operator("tool.scale", "Scale tool", icon::kScale,
-                    "Boxes at the active bone's head lengthen and shorten it.", Tool::Scale),
-      tool_operator("tool.extrude", "Extrude tool", icon::kExtrude, "A new bone grows from the joint that is dragged.",
-                    Tool::Extrude),
-      tool_operator("tool.reach", "Reach tool", icon::kReach, "Any joint is dragged, and its limb follows.",
+      tool_operator("tool.scale", "Scale tool", icon::kScale, "Scale the active bone with handles at its head.",
+                    Tool::Scale),
+      tool_operator("tool.extrude", "Extrude tool", icon::kExtrude, "Drag from a joint to add a bone.", Tool::Extrude),
+      tool_operator("tool.reach", "Reach tool", icon::kReach, "Drag any joint; the bones of its limb follow.",
                     Tool::Reach),
   };
 }

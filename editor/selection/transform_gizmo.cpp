@@ -24,12 +24,14 @@ namespace limber::editor {
 
 namespace {
 
-// Pixels at scale 1.
+// Radii and lengths of the gizmo's parts, and distances within which the pointer hits a part (k...Hit); pixels at
+// scale 1.
 constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
 constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
 constexpr double kJointHit = 10;
-constexpr double kHidden = 0.0698,
-                 kEdgeOn = 0.1392;  // sines of 4 and 8 degrees: from where a ring fades, until where it is gone
+// A ring is hidden when the angle between its plane and the line of sight is below 4 degrees, and fully opaque above 8
+// degrees. These are the sines of the two angles.
+constexpr double kHidden = 0.0698, kEdgeOn = 0.1392;
 constexpr int kSteps = 96;
 
 double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, double& share) {
@@ -39,20 +41,23 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
   return glm::distance(p, a + share * along);
 }
 
-// How steeply a plane is seen: the sine of its angle with the line of sight.
+// Returns the sine of the angle between the line of sight and the plane perpendicular to an axis: 0 when the ring about
+// this axis is seen edge-on, 1 when it faces the eye.
 double steepness(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return std::abs(glm::dot(gizmo.axes[axis], view.direction_to_eye(gizmo.centre)));
 }
 float ring_alpha(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return static_cast<float>(glm::clamp((steepness(gizmo, view, axis) - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
 }
-// An arrow that points at the eye cannot be drawn along.
+// Returns the opacity of an arrow, [0, 1]. An arrow that points at the eye is faded out, because it cannot be dragged.
 float arrow_alpha(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   const double s = steepness(gizmo, view, axis), across = std::sqrt(std::max(0.0, 1 - s * s));
   return static_cast<float>(glm::clamp((across - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
 }
 
-// How near the eye the visible part of a ring is where the pixel touches it; nothing where it does not.
+// Returns, at the point where the pixel touches the front half of a ring, how much nearer to the eye this point is than
+// the ring's centre, mm; nothing when the pixel does not touch the ring.
+//   reach  distance from the ring within which the pixel touches it, pixels
 std::optional<double> touched(const Ring& ring, const ViewProjection& view, const glm::dvec2& pixel, double reach) {
   const glm::dvec3 to_eye = view.direction_to_eye(ring.centre);
   const auto [begin, by] = ring.front(view);
@@ -126,7 +131,8 @@ std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const ViewProjection& v
   return std::nullopt;
 }
 
-// The tail nearest to the pointer, else the bone under it.
+// Returns the bone whose tail is nearest to the pixel, within kJointHit. If there is none, returns the bone under the
+// pointer.
 std::optional<int> joint_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const Armature& armature = *editor.document().armature;
   const auto posed = posed_from_rest(armature, seen_pose(editor));
@@ -162,7 +168,7 @@ void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Editor&
   const bool seen = over(GizmoPart::Kind::ViewRing);
   painter.ring(ring_of(view, scale, gizmo.centre, view.towards_eye, kViewRing),
                with_alpha(theme.view_text, seen ? 1 : 0.55f), seen ? 2.5f : 1.5f, GizmoPainter::Part::Whole);
-  // The one turned away most lies behind the others.
+  // Rings that face the eye are drawn first, so that rings seen edge-on are drawn over them.
   int order[] = {0, 1, 2};
   std::sort(order, order + 3, [&](int a, int b) { return steepness(gizmo, view, a) > steepness(gizmo, view, b); });
   for (const int axis : order) {
@@ -200,7 +206,8 @@ struct BonePart {
   TransformSettings::Part part;
 };
 
-// The joint nearest to the pointer, the active bone's before others'; else the bone under it.
+// Returns the bone end nearest to the pixel, within kJointHit; of ends at the same position, one of the active bone. If
+// there is no such end, returns the bone under the pixel in the 3D view.
 std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
@@ -210,7 +217,7 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection&
     for (const bool tail : {false, true}) {
       const glm::dvec3& place = place_of(*rig, {bone, tail});
       const auto seen = view.shows(place) ? view.pixel_of(place) : std::nullopt;
-      // A tail before the heads that lie on it.
+      // The subtracted amounts decide between ends at one position: the active bone's end first, then a tail.
       const double distance =
           seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
       if (distance > nearest) continue;
@@ -224,7 +231,7 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection&
   return std::nullopt;
 }
 
-// Where the bones lie that slices show: posed in the Pose workspace.
+// A bone as slices draw it: posed in the Pose workspace, at rest in the Rig workspace; world coordinates in mm.
 struct DrawnBone {
   int bone;
   glm::dvec3 head, tail;
@@ -242,7 +249,8 @@ std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
   return drawn;
 }
 
-// In slices as lines, fainter away from them; in the rig the chosen joint in every view.
+// In a slice, draws the bones as lines; bones with no end near the slice are fainter. In the Rig workspace, also marks
+// the selected joint, in every view.
 void draw_rig(Editor& editor, const ViewProjection& view) {
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
@@ -263,7 +271,8 @@ void draw_rig(Editor& editor, const ViewProjection& view) {
   if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
 }
 
-// Moves what is pressed, or draws a bone out of it.
+// Begins to move the joint or bone under the pointer, or with the Extrude tool, to extrude a new bone from it. Returns
+// false when another tool is active or nothing is under the pointer.
 bool press_rig(Editor& editor, const ViewProjection& view) {
   if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
   const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
@@ -277,7 +286,8 @@ bool press_rig(Editor& editor, const ViewProjection& view) {
   return true;
 }
 
-// The end of a limb and its pole, posed.
+// The pole of a limb: the limb's last bone, the posed position of its middle joint, and the pole's position; world
+// coordinates in mm.
 struct Pole {
   int bone;
   glm::dvec3 middle, point;
@@ -303,7 +313,7 @@ std::optional<int> pole_at(const Editor& editor, const ViewProjection& view, con
   return std::nullopt;
 }
 
-// Pinned joints and poles.
+// Draws marks on pinned joints and on poles in the 3D view of the Pose workspace.
 void draw_marks(Editor& editor, const ViewProjection& view) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
@@ -320,10 +330,11 @@ void draw_marks(Editor& editor, const ViewProjection& view) {
   }
 }
 
-constexpr double kLimits = 58, kTwist = 18;  // pixels at scale 1
+constexpr double kLimits = 58, kTwist = 18;  // radii of drawn limits: hinge fan or cone, twist; pixels at scale 1
 
-// What the joint at the active bone's head allows: a hinge's fan, a ball's cone and range of twist. About the bone at
-// rest, and in the Pose workspace about where the bone above carries it, while limits are kept.
+// Draws the limits of the joint at the active bone's head: the range of a hinge as a fan, or the cone and the twist
+// range of a ball joint. The Rig workspace draws them at rest. The Pose workspace draws them posed with the parent
+// bone, and only while Keep to joint limits is on.
 void draw_limits(Editor& editor, const ViewProjection& view) {
   const bool posed = editor.workspace == Workspace::Pose;
   if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
@@ -333,7 +344,7 @@ void draw_limits(Editor& editor, const ViewProjection& view) {
       !editor.views->bones)
     return;
   const Bone& bone = armature->bones[*chosen];
-  RigidTransform carried;  // from rest
+  RigidTransform carried;  // motion of the parent bone from rest
   if (posed) {
     const Pose pose = seen_pose(editor);
     carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation}
@@ -424,7 +435,7 @@ bool press_gizmo(Editor& editor) {
     return press_joint(editor, view);
   const auto gizmo = gizmo_in(editor, view);
   const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
-  // The ball of the rings hides no bone here.
+  // The Rig workspace ignores the trackball, so that a press inside it reaches the joints and bones there.
   if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
     return press_rig(editor, view);
   if (!part) return false;
@@ -453,7 +464,8 @@ std::optional<int> bone_at_pointer(const Editor& editor) {
   if (!editor.document().armature || !place) return std::nullopt;
   if (place->id == ViewId::Body)
     return body_at_pointer(editor, *place).pick_bone(glm::ivec2(editor.input.pointer - place->rect.low));
-  // In a slice those that lie in it; in the rig its joints alone are taken hold of.
+  // Whole bones can be picked in a slice only in the Pose workspace. In the Rig workspace, a slice lets the user pick
+  // joints (bone_part_at).
   if (editor.workspace != Workspace::Pose) return std::nullopt;
   const auto below = bones_below(editor);
   const auto nearest = std::min_element(below.begin(), below.end());

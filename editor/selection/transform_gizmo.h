@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the tool of the strip lets one take hold of at the active bone: rings to turn it, arrows to move it.
-//   rotate  three rings about the axes of the chosen space, a ring about the line of sight, a trackball inside
-//   move    three arrows, the squares of the planes across them, a circle for the plane of the view
-// Of several that lie under the pointer: the ring that is nearest to the eye, the view's ring, the trackball.
+// The gizmo that is drawn at the active bone. Its parts depend on the tool that is selected in the tool strip:
+//   rotate  three rings about the axes of the selected space, a ring about the line of sight, a trackball inside them
+//   move    three arrows, three squares that each move in a plane of two axes, a circle that moves in the view's plane
+//   scale   three arrows with boxes, a circle that scales along all axes
+// When several parts lie under the pointer, the axis ring nearest to the eye is hit first, then the ring about the line
+// of sight, then the trackball. The file also finds and draws bones, pins, poles and joint limits over the views.
 #pragma once
 
 #include <optional>
@@ -17,37 +19,40 @@ namespace limber::editor {
 struct GizmoPart {
   enum class Kind { Ring, ViewRing, Trackball, Arrow, Plane, Centre };
   Kind kind = Kind::Ring;
-  int axis = -1;  // of a ring or arrow; the one across a plane
+  int axis = -1;  // axis of a ring or arrow; Plane: the axis perpendicular to it; -1: none
 
   bool operator==(const GizmoPart&) const = default;
 };
 
 struct Gizmo {
   Tool tool = Tool::Rotate;  // Rotate, Move or Scale
-  glm::dvec3 centre{0};
-  glm::dmat3 axes{1};  // columns; unit
+  glm::dvec3 centre{0};      // position in the world, mm
+  glm::dmat3 axes{1};        // unit axes as columns
 };
 
-// Of the tool in use, where it stands in that view; nothing where it takes hold of nothing.
+// Returns the gizmo that the selected tool shows in a view; nothing when it shows none.
 std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view);
-// What of it lies under the pixel.
+// Returns the part of the gizmo under the pixel; nothing when there is none.
+//   scale  scale of the interface, 1: 100 %
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel);
 
-// That bone alone.
+// Selects only this bone and deselects everything else.
 void choose_bone(Editor& editor, int bone);
 
-// In the Rig workspace: chooses the joint or bone under the pointer, in any view; false where there is none.
+// In the Rig workspace, selects the joint or bone under the pointer in any view. Returns false when there is none.
 bool pick_bone_part(Editor& editor);
 
-// The bone under the pointer in the 3D view, in the Pose workspace in any.
+// Returns the bone under the pointer; nothing when there is none. Slices give bones only in the Pose workspace.
 std::optional<int> bone_at_pointer(const Editor& editor);
 
-// The bones under the pointer, in any view: how far they lie before the 3D view's eye, or from the slice, mm.
+// Returns all bones under the pointer, each with its distance in mm: from the eye in the 3D view, from the slice in a
+// slice.
 std::vector<std::pair<double, int>> bones_below(const Editor& editor);
 
-// Begins a tool when the pointer is over a part, or over a joint that the reach tool drags; false when it is over none.
+// Begins to drag what is under the pointer: a pole, a joint handle, a part of the gizmo, or a joint or bone that the
+// selected tool drags. Returns false when none of these is under the pointer.
 bool press_gizmo(Editor& editor);
-// Over a view, after its picture.
+// Draws the gizmo, bone names, pins, poles, joint limits and the marks of the rig check over a view.
 void draw_gizmo(Editor& editor, const ViewPlace& place);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the window and its pictures are arranged and shown.
+// Operators that arrange the views and panels of the window, and that set what the views show.
 #include "editor/context/operator_polls.h"
 #include "editor/context/pointer_context.h"
 #include "editor/selection/transform_gizmo.h"
@@ -54,7 +54,7 @@ void maximize(Editor& editor) {
   maximized = view ? view->id : editor.views->active;
 }
 
-// What is under the pointer becomes what the menu's commands work on.
+// Selects the bone or tissue under the pointer, and opens the context menu whose commands act on the selection.
 void open_context_menu(Editor& editor) {
   if (const auto bone = editor.workspace == Workspace::Rig || editor.workspace == Workspace::Pose
                             ? bone_at_pointer(editor)
@@ -90,58 +90,63 @@ void toggle_timeline(Editor& editor) {
 
 std::vector<Operator> view_operators() {
   return {
-      layout_operator("view.one", "One view", icon::kOneView, "The 3D view alone.", ViewLayout::One),
-      layout_operator("view.split", "3D and slices", icon::kSplitViews, "The 3D view and two slices beside it.",
+      layout_operator("view.one", "One view", icon::kOneView, "Show only the 3D view.", ViewLayout::One),
+      layout_operator("view.split", "3D and slices", icon::kSplitViews, "Show the 3D view and two slices beside it.",
                       ViewLayout::Split),
-      layout_operator("view.four", "Four views", icon::kFourViews, "The 3D view and three linked slices.",
+      layout_operator("view.four", "Four views", icon::kFourViews, "Show the 3D view and three linked slices.",
                       ViewLayout::Four),
       {"view.maximize", "Maximize area", icon::kFullScreen, "View",
-       "The area under the pointer fills the window, or shrinks back.", maximize, nullptr,
+       "Enlarge the view under the pointer to the whole window, or restore it.", maximize, nullptr,
        [](const Editor& e) { return e.arrangement().maximized.has_value(); }},
-      display_operator("view.solid", "Solid", "Shows the outermost visible tissue, opaque.", render::Display::Solid),
-      display_operator("view.xray_display", "X-ray", "Shows flesh as a ghost around the bones.", render::Display::XRay),
-      display_operator("view.tissue", "Tissue", "Shows every tissue with its own opacity.", render::Display::Tissue),
-      {"view.xray", "Toggle X-ray", "", "View", "Changes between solid and X-ray.", toggle_xray, nullptr,
+      display_operator("view.solid", "Solid", "Show the outermost visible tissue opaque.", render::Display::Solid),
+      display_operator("view.xray_display", "X-ray", "Show soft tissue transparent around the bones.",
+                       render::Display::XRay),
+      display_operator("view.tissue", "Tissue", "Show every tissue with the opacity that is set for it.",
+                       render::Display::Tissue),
+      {"view.xray", "Toggle X-ray", "", "View", "Switch between the displays Solid and X-ray.", toggle_xray, nullptr,
        [](const Editor& e) { return e.views->display == render::Display::XRay; }},
-      overlay_operator("view.grid", "Grid", "Shows the ground grid.", &Views::grid),
-      overlay_operator("view.axes", "Axes", "Shows the axis ball.", &Views::axes),
-      overlay_operator("view.scale_bar", "Scale bar", "Shows a scale bar in every view.", &Views::scale_bar),
-      overlay_operator("view.letters", "Orientation letters", "Shows which side of the body is where.",
-                       &Views::letters),
-      overlay_operator("view.bones", "Bones", "Shows the skeleton in the views.", &Views::bones),
-      shape_operator("view.bones_octahedron", "Octahedra", "Draws bones as octahedra, wide at the head.",
+      overlay_operator("view.grid", "Grid", "Show the grid on the ground.", &Views::grid),
+      overlay_operator("view.axes", "Axes", "Show the axis ball, which shows the direction of view.", &Views::axes),
+      overlay_operator("view.scale_bar", "Scale bar", "Show a scale bar in every view.", &Views::scale_bar),
+      overlay_operator("view.letters", "Orientation letters",
+                       "Show letters for the sides of the body, such as L and R.", &Views::letters),
+      overlay_operator("view.bones", "Bones", "Show the skeleton in the views.", &Views::bones),
+      shape_operator("view.bones_octahedron", "Octahedra", "Draw bones as octahedra that are wide at the head.",
                      render::BoneShape::Octahedron),
-      shape_operator("view.bones_stick", "Sticks", "Draws bones as thin sticks between their joints.",
+      shape_operator("view.bones_stick", "Sticks", "Draw bones as thin sticks between their joints.",
                      render::BoneShape::Stick),
-      shape_operator("view.bones_cylinder", "Cylinders", "Draws bones as cylinders.", render::BoneShape::Cylinder),
-      overlay_operator("view.bone_names", "Bone names", "Shows bones' names beside them in the 3D view.",
+      shape_operator("view.bones_cylinder", "Cylinders", "Draw bones as cylinders.", render::BoneShape::Cylinder),
+      overlay_operator("view.bone_names", "Bone names", "Show the name of each bone beside it in the 3D view.",
                        &Views::bone_names),
       overlay_operator("view.bone_axes", "Bone axes",
-                       "Shows bones' own axes at their tails in the 3D view: y along the bone.", &Views::bone_axes),
-      overlay_operator("view.bones_in_front", "Bones in front", "Draws bones over the body that hides them.",
+                       "Show each bone's local axes at its tail in the 3D view. The y axis points along the bone.",
+                       &Views::bone_axes),
+      overlay_operator("view.bones_in_front", "Bones in front", "Draw bones over the body instead of inside it.",
                        &Views::bones_in_front),
-      overlay_operator("view.cross_hair", "Cross-hair", "Shows where the slices meet.", &Views::show_cross_hair),
-      {"view.find", "Search the project", icon::kSearch, "View", "Finds a tissue, a bone or a result in the outliner.",
+      overlay_operator("view.cross_hair", "Cross-hair", "Show the cross-hair at the point where the slices meet.",
+                       &Views::show_cross_hair),
+      {"view.find", "Search the project", icon::kSearch, "View", "Find a tissue, a bone or a result in the outliner.",
        search_outliner},
-      {"view.sidebar", "Sidebar", "", "View", "Opens or closes the sidebar.",
+      {"view.sidebar", "Sidebar", "", "View", "Open or close the sidebar.",
        [](Editor& e) { e.arrangement().sidebar = e.layout.sidebar.empty(); }, nullptr,
        [](const Editor& e) { return !e.layout.sidebar.empty(); }},
-      {"view.tool_strip", "Tool strip", "", "View", "Shows or hides the tools at the left.",
+      {"view.tool_strip", "Tool strip", "", "View", "Show or hide the tools at the left edge of the window.",
        [](Editor& e) { e.arrangement().tool_strip = !e.arrangement().tool_strip; }, nullptr,
        [](const Editor& e) { return e.arrangement().tool_strip; }},
-      {"view.timeline", "Timeline", icon::kMotion, "View", "Opens or closes the timeline below the views.",
+      {"view.timeline", "Timeline", icon::kMotion, "View", "Open or close the timeline below the views.",
        toggle_timeline, nullptr, timeline_seen},
-      {"view.console", "Console", icon::kConsole, "Help", "Opens or closes the list of messages below the views.",
+      {"view.console", "Console", icon::kConsole, "Help", "Open or close the list of messages below the views.",
        [](Editor& e) { e.arrangement().console = !e.arrangement().console; }, nullptr,
        [](const Editor& e) { return e.arrangement().console; }},
-      {"view.context_menu", "Menu", "", "View", "Lists what can be done with what is under the pointer.",
+      {"view.context_menu", "Menu", "", "View", "Open a menu of commands for the bone or tissue under the pointer.",
        open_context_menu},
-      {"view.pie", "View menu", icon::kCamera, "View", "Lists the standard views at the pointer.",
+      {"view.pie", "View menu", icon::kCamera, "View", "Open a menu of the standard views at the pointer.",
        [](Editor& e) { e.open_popup = "Views"; }},
-      {"view.shading_pie", "Display menu", "", "View", "Lists the displays at the pointer.",
+      {"view.shading_pie", "Display menu", "", "View",
+       "Open a menu at the pointer that selects how tissue is shown, such as Solid or X-ray.",
        [](Editor& e) { e.open_popup = "Display"; }},
-      {"view.full_screen", "Full screen", icon::kExpand, "View", "The window fills the screen, or shrinks back.",
-       [](Editor& e) { e.host.toggle_full_screen(); }},
+      {"view.full_screen", "Full screen", icon::kExpand, "View",
+       "Enlarge the window to the full screen, or restore it.", [](Editor& e) { e.host.toggle_full_screen(); }},
   };
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is seen of finite elements. While a solve runs in the worker, the Resample workspace shows the volume settle:
-// the places of the mesh's nodes after each iteration lead the views through the same inverse map as a pose does
-// (live_preview.h). What follows is for the eye alone; the document changes when the result is there.
+// Shows a finite element solve while it runs in a worker process. After each iteration, the views of the Resample
+// workspace show the volume deformed by the mesh's new node positions. They use the same inverse map as the preview of
+// a pose (live_preview.h). The document changes only when the solve has ended.
 #pragma once
 
 #include <map>
@@ -20,15 +20,15 @@ namespace limber::editor {
 
 struct Editor;
 
-// What the worker tells, from the job's thread to the editor's.
+// Passes the progress of the worker process from the job's thread to the editor's thread.
 class SolveFeed {
  public:
   struct Seen {
     WorkerProgress progress;
     std::shared_ptr<const FemMesh> rest;
-    MeshPose mesh;                        // its tets and where they are; empty: no step yet
-    std::vector<RigidTransform> motions;  // of the weights' bones, in that step
-    double reached = 0;                   // of the way to the pose, in that step
+    MeshPose mesh;                        // tets and node positions after the last iteration; empty: none yet
+    std::vector<RigidTransform> motions;  // rest to posed, for each bone of the weights, in the last iteration
+    double reached = 0;                   // fraction of the pose that the last iteration applies, [0, 1]; 0: rest
   };
 
   void tell(const WorkerProgress& progress);
@@ -40,23 +40,25 @@ class SolveFeed {
   Seen seen_;
 };
 
-// A solve that waits or is at work.
+// A finite element solve that is queued or running.
 struct Solve {
-  Document from;             // with the pose
-  double angle_degrees = 0;  // of the joint that turns furthest
+  Document from;             // the document whose pose is solved for
+  double angle_degrees = 0;  // largest angle by which the pose turns a joint, degrees
   std::shared_ptr<SolveFeed> feed;
 };
 
 struct FemView {
-  std::map<int, Solve> solves;  // by job
-  int watched = 0;              // the job whose tissue is seen; 0: none
+  std::map<int, Solve> solves;  // the solve of each job, by the job's id
+  int watched = 0;              // id of the job whose solve the views show; 0: none
 };
 
-// The solve that the views show; null: none, as where its volume is no longer the document's.
+// Returns the solve that the views show. Null if there is none, or if the document now has another volume than the
+// solve.
 const Solve* watched_solve(const Editor& editor);
-// "34.5 of 90.0°, iteration 12, moving 0.80 mm"; "" before the first iteration.
+// Returns the progress of a solve as text, such as "34.5 of 90.0 ..., iteration 12, moving 0.80 mm": the joint angle
+// reached and the pose's, the iteration, and the longest move of a node in it. Returns "" before the first iteration.
 std::string progress_text(const Solve& solve);
-// The newest solve; no result hides it.
+// Makes the views show the newest solve in place of a resampled volume.
 void watch(Editor& editor);
 void stop_watching(Editor& editor);
 

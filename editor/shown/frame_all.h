@@ -5,7 +5,8 @@
 
 namespace limber::editor {
 
-// Puts cameras and cross-hair where the whole body is seen.
+// Moves the cameras of all views so that they show all visible tissue. If not animated, also moves the cross-hair to
+// the body's middle.
 void frame_all(Editor& editor, bool animated);
 
 }  // namespace limber::editor

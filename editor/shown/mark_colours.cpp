@@ -5,7 +5,7 @@ namespace limber::editor {
 
 namespace {
 
-// Grey as bright as the tissue, with a little of its colour.
+// Returns a nearly grey version of a colour, with similar brightness.
 glm::vec3 dulled(const glm::vec3& colour) {
   const float light = glm::dot(colour, glm::vec3(0.2126f, 0.7152f, 0.0722f));
   return glm::mix(glm::vec3(0.25f + 0.45f * light), colour, 0.18f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Colours of a volume in which some voxels are marked and the rest steps back.
+// Computes dull colours for the tissues of a volume, so that marked voxels stand out.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace limber::editor {
 
 glm::u8vec3 bytes_of(const glm::vec3& srgb);
-std::vector<glm::u8vec3> dull_colours(
-    const TissueTable& tissues);  // [65536]: what is not marked, as bright as it is, nearly grey
+// Returns 65536 colours, one for each label: a nearly grey version of the tissue's colour.
+std::vector<glm::u8vec3> dull_colours(const TissueTable& tissues);
 
 }  // namespace limber::editor

@@ -5,7 +5,7 @@
 
 namespace limber::editor {
 
-// A method that does not blend is previewed by the default blend.
+// Resampling methods that do not blend bone transforms (finite elements) are previewed by the default blend.
 Blend preview_blend(const Editor& editor) {
   return find_method(editor.resampling.method)->blend.value_or(*deformation_methods().front().blend);
 }

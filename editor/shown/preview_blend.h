@@ -6,7 +6,7 @@
 
 namespace limber::editor {
 
-// By what the pose is previewed: as it would be resampled.
+// Returns how the preview of the pose blends bone transforms: in the same way as the selected resampling method.
 Blend preview_blend(const Editor& editor);
 
 }  // namespace limber::editor

@@ -27,10 +27,10 @@ std::shared_ptr<const Result> chosen_result(const Editor& editor) {
 }
 
 std::string why_no_comparison(const Editor& editor) {
-  if (editor.document().results.empty()) return "Nothing was resampled yet";
+  if (editor.document().results.empty()) return "Resample a pose first";
   const bool same =
       result_named(editor.document(), editor.comparison.a) == result_named(editor.document(), editor.comparison.b);
-  return same ? "Choose two results: a click makes one B, Shift and a click A" : "";
+  return same ? "Select two results: click one to make it B, Shift+click one to make it A" : "";
 }
 
 bool wiping(const Editor& editor) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The result that the views show in place of the volume at rest, and the one it is compared with.
+// Finds the result (a resampled volume) that the views show in place of the volume at rest, and the result that it is
+// compared with.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +11,29 @@
 
 namespace limber::editor {
 
-// Where it is told by colour who is who, always with its letter.
-inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;  // B07AD9, 3FB6A8, as ImGui packs them
+// The colours that mark results A and B of a comparison. They are always shown together with the letter.
+inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;  // RRGGBB: B07AD9, 3FB6A8
 std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
-// Why there is nothing to compare; "" when there is.
+// Returns why no two results can be compared now, as a hint for the user; "" when they can.
 std::string why_no_comparison(const Editor& editor);
-// In the Resample workspace alone: elsewhere there is work on one body.
+// wiping() returns whether the views are divided by a line to compare two results; side_by_side(), whether each view is
+// shown twice for that. Results are compared only in the Resample workspace.
 bool wiping(const Editor& editor);
 bool side_by_side(const Editor& editor);
-bool comparing(const Editor& editor);  // either
-// Name of a side as the views show it: "Fore 30°, DQ", "At rest".
+bool comparing(const Editor& editor);  // wiping() or side_by_side()
+// Returns the name that the views show for the result with this name: the name itself, or "At rest" if there is no such
+// result.
 std::string name_of_side(const Editor& editor, const std::string& result);
 
-// The result that is seen in the views in place of the volume; null: the volume at rest, or as it follows the pose.
-// Where poses are made a result stands back as soon as the pose is another than its own.
+// Returns the result that the views show. Null if they show the volume at rest or its preview in the pose. In the Pose
+// workspace, a result is shown only while the current pose is the one that the result was made from.
 std::shared_ptr<const Result> shown_result(const Editor& editor);
-// The one the tables are about: the shown one, else the last.
+// Returns the result that the tables of results describe: the one that the views show, else the last one.
 std::shared_ptr<const Result> chosen_result(const Editor& editor);
 
-// The grid and tissue of what the views show. Needs a volume.
+// Returns the volume that the views show: that of the shown result, else the document's. One of them must exist.
 std::shared_ptr<const LabelVolume> shown_volume(const Editor& editor);
-// The document with that volume in place of its own.
+// Returns a copy of the document that has shown_volume() in place of its own volume.
 Document shown_document(const Editor& editor);
 
 }  // namespace limber::editor

@@ -10,9 +10,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kStraight = 0.17;  // sine of 10 degrees: two bones that enclose less have no plane that they bend in
+// Sine of the smallest angle (10 degrees) between a bone and its parent at which both define the plane of bending.
+constexpr double kStraight = 0.17;
 
-// As flex_axis(); a straight joint without a hinge bends about the bone's own x.
+// Returns the axis about which a bone is bent against its parent. For a hinge joint, this is the hinge's axis.
+// Otherwise it is the normal of the plane of both bones, as in flex_axis(), or the bone's own x axis if the joint is
+// straight.
 glm::dvec3 bend_axis(const Armature& armature, int index) {
   const Bone& bone = armature.bones[static_cast<std::size_t>(index)];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;
@@ -51,12 +54,12 @@ std::optional<int> skin_bone(const Editor& editor) {
 }
 
 std::string why_not_bend(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   const auto bone = skin_bone(editor);
   if (!bone) return "Import a rig first";
   if (!editor.document().weights) return "Compute the weights first";
   return editor.document().armature->bones[static_cast<std::size_t>(*bone)].parent < 0
-             ? "No joint lies above this bone: choose one further down"
+             ? "A bone without a parent cannot be bent: select another bone"
              : "";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every bone that tissue can follow in a row: colour, name, its share of all weight, lock, eye of its region
-// (Ctrl+click: only this one).
+// Draws the list of bones that can have weights. A row shows the bone's colour, name, share of all weight, lock, and an
+// eye that hides the bone's region (Ctrl+click shows only this region).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,8 +18,10 @@ namespace limber::editor {
 namespace {
 
 constexpr char kList[] = "bones";
-constexpr int kMostRows = 8;                                     // seen at once
-constexpr float kShareBar = 64, kShortestBar = 24, kName = 112;  // in a narrow sidebar the bar gives way to the name
+constexpr int kMostRows = 8;  // rows visible without scrolling
+// Widths in a row, pixels at scale 1. In a narrow sidebar, the bar that shows the bone's share of all weight becomes
+// shorter before the name does.
+constexpr float kShareBar = 64, kShortestBar = 24, kName = 112;
 constexpr float kRightOfBar = 95, kLeftOfName = 28;
 
 float bar_width(const Look& look, const Rect& row) {
@@ -53,7 +55,7 @@ void draw_lock(Editor& editor, const Rect& rect, int bone, const std::string& na
            rect, locked ? icon::kLock : icon::kUnlocked);
   if (pressed.hovered)
     tooltip(editor, rect, locked ? "Unlock" : "Lock",
-            "The weights of a locked bone cannot change. Ctrl+click locks all bones but this one.");
+            "The weights of a locked bone cannot change. Ctrl+click locks all bones except this one.");
   if (!pressed.clicked) return;
   if (editor.input.down(Key::Ctrl)) lock_all_but(editor, bone);
   else toggle_lock(editor, bone);
@@ -67,7 +69,7 @@ void draw_eye(Editor& editor, const Rect& rect, const std::string& name) {
            hidden ? icon::kHidden : icon::kVisible);
   if (pressed.hovered)
     tooltip(editor, rect, hidden ? "Show region" : "Hide region",
-            "Where this bone has most of the weight. Ctrl+click shows only this region.");
+            "The region is the tissue where this bone has the largest weight. Ctrl+click shows only this region.");
   if (!pressed.clicked) return;
   if (editor.input.down(Key::Ctrl)) isolate_regions(editor, {name});
   else hide_region(editor, name, !hidden);
@@ -75,7 +77,8 @@ void draw_eye(Editor& editor, const Rect& rect, const std::string& name) {
 
 void choose(Editor& editor, int bone, bool extended) {
   Selection& selection = editor.selection;
-  if (!extended) selection.bones.clear();  // chosen tissues stay: brushes may be kept to them
+  // The selected tissues stay selected, because brushes may be limited to them.
+  if (!extended) selection.bones.clear();
   selection.bone = bone;
   selection.bones.insert(bone);
   editor.skin->revealed = bone;
@@ -134,7 +137,7 @@ void draw_rows(Editor& editor, Column& column, const std::vector<int>& rows) {
   for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[static_cast<std::size_t>(i)]);
 }
 
-// A bone that was picked in a view comes into sight.
+// Scrolls the list to the active bone after it was picked in a view.
 void reveal_active(Editor& editor, const std::vector<int>& rows) {
   const auto active = skin_bone(editor);
   if (editor.skin->revealed == active) return;
@@ -190,7 +193,7 @@ void draw_search_icon(Editor& editor, const Rect& head) {
 }  // namespace
 
 void draw_bones(Editor& editor, Column& column) {
-  const auto armature = editor.document().armature;  // kept, since a row may commit
+  const auto armature = editor.document().armature;  // a copy, because a row may commit an edit that replaces it
   const bool open = column.begin_section("Bones");
   if (armature) draw_search_icon(editor, column.head());
   if (open && !armature) {

@@ -11,11 +11,13 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMostSteps = 96;  // up or down from the plane
-constexpr int kHalvings = 4;    // of the last step
-constexpr int kSmoothed = 2;    // neighbours at either side that a height is the mean with: voxels are steps
+constexpr int kMostSteps = 96;  // upper limit on the steps of a search for the surface along the normal
+constexpr int kHalvings = 4;    // bisections of the step that crosses the surface
+// The height of each ring point above the tangent plane is averaged with those of this many neighbours on either side,
+// because the surface of voxels has steps.
+constexpr int kSmoothed = 2;
 
-// What of the body is seen where nothing lies before it.
+// The visible part of the body: the voxels of visible tissues inside the clip plane and the clip box.
 class SeenBody {
  public:
   explicit SeenBody(const render::Scene& scene) : scene_(scene), to_voxel_(voxel_from_world(scene.volume->grid)) {}
@@ -39,7 +41,8 @@ class SeenBody {
   AffineTransform to_voxel_;
 };
 
-// How far above the plane the body begins.
+// Searches the body's surface from `point` in steps of `step` mm: upwards from inside the body, else downwards. Returns
+// the surface's height above `point`, mm (negative: below); none if it is farther away than `most` mm.
 std::optional<double> height_of(const SeenBody& body, const glm::dvec3& point, const glm::dvec3& up, double most,
                                 double step) {
   const bool inside = body.holds(point);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rim of a brush laid upon the body: a circle about the place in the plane that touches it there, each of its
-// points let down, or lifted, along the normal to where what is seen of the body begins. A point that finds nothing
-// within the radius stays in the plane.
+// Projects the brush's circle onto the body. The circle lies in the body's tangent plane at the brush. Each point of it
+// moves along the normal to the visible surface; if no surface lies within the radius, the point stays in the plane.
 #pragma once
 
 #include <vector>
@@ -12,10 +11,10 @@ namespace limber::editor {
 
 struct RingPoint {
   glm::dvec3 at{0};      // world, mm
-  bool on_body = false;  // else in the plane
+  bool on_body = false;  // false: no surface was found, the point lies in the tangent plane
 };
 
-//   radius  mm, positive     returns  #count, even angles
+// Returns `count` points of the projected circle at equal angles. radius: mm, positive.
 std::vector<RingPoint> ring_on_body(const Editor& editor, const BrushPlace& place, double radius, int count);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The Skin workspace's brush: how it fades, how its dabs follow one another, what it reaches.
+// Draws the Brush section of the Skin workspace's sidebar: falloff, spacing, reach and normalization.
 #include <algorithm>
 #include <cstdio>
 
@@ -17,11 +17,11 @@ namespace {
 
 constexpr float kCurveHeight = 56;
 constexpr int kCurvePoints = 48;
-constexpr int kMostPoints = 16;     // of a curve of the user's own
-constexpr double kPointGap = 0.02;  // between two of them, of the radius
+constexpr int kMostPoints = 16;     // upper limit on the points of a custom falloff curve
+constexpr double kPointGap = 0.02;  // smallest distance between two points, a fraction of the radius
 constexpr float kPointReach = 8;
 
-// How the brush fades from its middle, at the left, to its rim.
+// Draws the brush's falloff from its centre (left) to its rim (right).
 void draw_curve(const Editor& editor, const Rect& rect, const Falloff& falloff) {
   const Look& look = editor.look;
   fill(rect, look.theme.field, look.px(4));
@@ -36,7 +36,8 @@ void draw_curve(const Editor& editor, const Rect& rect, const Falloff& falloff) 
                                           1.5f * look.scale);
 }
 
-// Points of a curve of the user's own: dragged, added by a click beside them, taken away by the right button.
+// Edits the points of a custom falloff curve: a drag moves a point, a click beside the points adds one, a right click
+// on a point removes it.
 void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
   const Look& look = editor.look;
   const Rect inside{rect.low + look.px(6), rect.high - look.px(6)};
@@ -81,7 +82,8 @@ void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
   if (pressed.hovered && !pressed.held) operator_tooltip(editor, *find_operator(editor, "skin.falloff_own"), rect);
 }
 
-// How far the active bone is bent on trial; that another one is, with the way back.
+// Draws a field for the angle by which the test pose bends the active bone. If the test pose bends another bone, draws
+// that bone's name and a button that straightens it.
 void draw_test_pose(Editor& editor, Column& column) {
   const TestPose& test = *editor.trial;
   if (why_not_bend(editor).empty()) {
@@ -118,7 +120,7 @@ void draw_brush_section(Editor& editor, Column& column) {
   int shape = painting.falloff_curve.empty() ? static_cast<int>(painting.falloff) : kOwn;
   const Rect choice = column.property("Falloff");
   push_path(editor, "Falloff");
-  if (choice_field(editor, choice, {"Smooth", "Sphere", "Root", "Sharp", "Linear", "Constant", "Own curve"}, shape)) {
+  if (choice_field(editor, choice, {"Smooth", "Sphere", "Root", "Sharp", "Linear", "Constant", "Custom"}, shape)) {
     if (shape == kOwn) {
       begin_falloff_curve(painting);
     } else {

@@ -14,8 +14,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWhole = 120;  // pixels at scale 1, of a strength or value of one
-constexpr float kSlow = 0.1f;   // with Shift
+constexpr double kWhole = 120;  // distance, pixels at scale 1, that stands for a strength or value of 1
+constexpr float kSlow = 0.1f;   // factor of the pointer's movement while Shift is held
 
 class BrushNumberTool final : public Modal {
  public:
@@ -61,7 +61,7 @@ class BrushNumberTool final : public Modal {
            (which_ == BrushNumber::Radius ? " mm" : "");
   }
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"LMB"}, "Keep"}, {{"0-9"}, "Number"}, {{"Shift"}, "Slowly"}, {{"Esc"}, "Back"}};
+    return {{{"LMB"}, "Confirm"}, {{"0-9"}, "Type a number"}, {{"Shift"}, "Precise"}, {{"Esc"}, "Cancel"}};
   }
 
   void draw(Editor& editor, const ViewPlace& place) override {

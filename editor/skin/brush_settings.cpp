@@ -40,22 +40,22 @@ std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, con
 std::string why_not_paint(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume || !document.armature) return "Open a volume with a rig first";
-  if (!document.weights) return "There are no weights yet: compute them first";
+  if (!document.weights) return "There are no weights yet: compute weights first";
   const auto bone = skin_bone(editor);
   if (!bone || weights_bone(*document.weights, document.armature->bones[*bone].name) < 0)
-    return "The weights belong to another rig";
+    return "The weights belong to another rig: compute them again";
   return why_not_paint_layer(editor);
 }
 
 std::string why_brush_reaches_nothing(const Editor& editor) {
   if (editor.skin->painting->tissue == PaintedTissue::Chosen && editor.selection.tissues.empty())
-    return "No tissue is chosen: choose one in the list, or paint all tissue";
+    return "No tissue is selected: select one in the list, or paint all tissue";
   return "";
 }
 
 namespace {
 
-// The bone, the one that it hangs on, and all below it; of the weights' bones.
+// Returns the set of the bone, its parent and all its descendants, indexed by the weights' bones.
 BoneSet bones_about(const Armature& armature, int bone, const SkinWeights& weights) {
   BoneSet set(weights.bones().size(), 0);
   for (int b = 0; b < std::ssize(armature.bones); ++b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where brushes may paint, and with which settings.
+// Converts the user's brush settings into the settings of a stroke, and tells whether and where brushes can paint.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,18 @@
 
 namespace limber::editor {
 
-// Where a brush at this pixel would paint; nothing beside the body.
+// Returns the position where a brush at this pixel of the view would paint; none if the pixel shows no tissue.
 std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
 
-// Why nothing can be painted now: "There are no weights"; "" when it can.
+// Returns why painting is impossible now ("There are no weights"); "" when it is possible.
 std::string why_not_paint(const Editor& editor);
-// Why a brush would reach no tissue, as it is set; "" when it would.
+// Returns why a brush with the current settings would reach no tissue; "" when it would reach some.
 std::string why_brush_reaches_nothing(const Editor& editor);
 
-// What the brushes may change, and the bones they paint, as set now.
+// Returns the stroke settings from the current brush settings, selection, locks, clip and region.
 StrokeSettings stroke_settings(const Editor& editor, BrushKind kind);
-// The base and masks have none to leave it to: they are normalized as they are painted.
+// Returns the normalize mode of strokes. On the base and on masks the user's WhenComposed becomes Unlocked, because
+// only the weights of a layer can be normalized later, when the layers are composed.
 Normalize normalize_of(const Editor& editor);
 
 }  // namespace limber::editor

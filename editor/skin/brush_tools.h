@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The radius, strength or value of the brush set by the pointer, as in Blender: the ring stays where it is, the
-// pointer's distance from its middle is the size. Or typed. The left button or Enter keeps it, Escape or the right
-// button gives it up.
+// Modal operators of brushes. begin_brush_number() sets the brush's radius, strength or value as in Blender: the ring
+// does not move, and the pointer's distance from the ring's centre sets the number. The user may also type it. The left
+// button or Enter confirms, Escape or the right button cancels.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ enum class BrushNumber { Radius, Strength, Value };
 
 std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which);
 
-// A line that is drawn with the left button, from full weight to none; R makes it a ball around its beginning. Escape
-// or the right button gives it up.
+// Begins a weight gradient from full weight to none along a line that the user draws with the left button. With R the
+// gradient is radial around the line's start. Escape or the right button cancels.
 std::unique_ptr<Modal> begin_gradient(Editor& editor);
 
 }  // namespace limber::editor

@@ -34,13 +34,14 @@ bool of_rig(const Document& document) {
                     [](const std::string& name, const Bone& bone) { return name == bone.name; });
 }
 
-// The bones and the tissue that a computation in part is about.
+// The bones and the tissue that a partial computation changes.
 struct Part {
   LayerToEdit edited;
   std::vector<int> bones;
   EditScope scope{.rigid_bone_tissue = false};
-  std::vector<std::uint8_t> labels;  // empty: all
-  std::vector<int> regions;          // of these bones; empty: everywhere
+  std::vector<std::uint8_t> labels;  // [label]: nonzero if its voxels change; empty: all voxels change
+  // Bones. Only voxels where one of them has the largest weight change; empty: all voxels change.
+  std::vector<int> regions;
 };
 
 std::vector<int> chosen_of(const Editor& editor) {
@@ -92,9 +93,10 @@ SkinWeights computed(const Document& from, TissueVoxels tissue, const Computatio
 }
 
 void require_same(const Document& now, const Document& from) {
-  if (now.volume != from.volume) throw Error("the volume was changed meanwhile", "computing weights", "start it again");
+  if (now.volume != from.volume)
+    throw Error("the volume was changed meanwhile", "computing weights", "compute them again");
   if (now.armature != from.armature)
-    throw Error("the rig was changed meanwhile", "computing weights", "start it again");
+    throw Error("the rig was changed meanwhile", "computing weights", "compute them again");
 }
 
 }  // namespace
@@ -136,7 +138,7 @@ void start_binding(Editor& editor, const Computation& computation) {
     if (job.state != JobState::Done || !e.document().weights) return;
     if (!in_part) e.seams->weights_from = source;
     if (in_part)
-      e.messages.ok(label, *changed ? grouped(*changed) + " voxels were computed anew" : "Nothing is different there");
+      e.messages.ok(label, *changed ? grouped(*changed) + " voxels were computed again" : "No weight changed");
     else
       e.messages.ok(label, grouped(e.document().weights->size()) + " voxels follow " +
                                std::to_string(e.document().armature->bones.size()) + " bones");
@@ -150,7 +152,8 @@ void ask_computation(Editor& editor) {
   constexpr double kSoftest = 0.1, kStiffest = 10;
   const auto stiffness = [&](const char* name) {
     return number_of(name,
-                     "Of the blend between bones in it: 2 halves the way over which one bone gives over to the next.",
+                     "Relative stiffness of this tissue. 2 halves the distance over which the weight passes from one "
+                     "bone to the next.",
                      1, kSoftest, kStiffest, "%.2f", "\u00d7");
   };
   const auto asked = [](const Editor& e, const std::vector<FormField>& fields) {
@@ -171,32 +174,34 @@ void ask_computation(Editor& editor) {
   const auto outcome = [asked](const Editor& e, const std::vector<FormField>& fields) -> std::string {
     const Computation computation = asked(e, fields);
     if (!computation.in_part())
-      return e.document().layers ? "All weights anew, below the layers." : "All weights anew.";
+      return e.document().layers ? "Computes all weights again, below the layers." : "Computes all weights again.";
     if (!of_rig(e.document()))
-      throw Error("there are no weights of this rig yet", "computing them in part", "compute all of them first");
+      throw Error("there are no weights of this rig yet", "computing some of them", "compute all weights first");
     if (computation.where == Computation::Where::ChosenTissue && e.selection.tissues.empty())
-      throw NotYet{"Choose tissues in the list first"};
-    const std::string what = computation.bones == Computation::Bones::Chosen
-                                 ? "Only the chosen bones; the others share the rest as they did."
-                             : computation.bones == Computation::Bones::Unlocked
-                                 ? "All bones but the locked ones."
-                                 : "All bones, in that part of the body alone.";
+      throw NotYet{"Select tissues in the list first"};
+    const std::string what =
+        computation.bones == Computation::Bones::Chosen
+            ? "Changes the weights of the selected bones; the others share the rest in the same ratio as before."
+        : computation.bones == Computation::Bones::Unlocked
+            ? "Changes the weights of all bones except the locked ones."
+            : "Changes the weights of all bones, but only in that part of the body.";
     return what;
   };
-  editor.open_dialog(
-      make_form({"Compute weights",
-                 "What is left out stays as it was. Numbers are stiffness: the higher, the narrower a tissue blends.",
-                 "Compute",
-                 {choice_of("Method", "Heat is the smoothest, geodesic is quicker, rigid gives each voxel to one bone.",
-                            {"Heat", "Geodesic", "Rigid"}),
-                  choice_of("Bones", "Whose weights are computed anew.", {"All", "Chosen", "Unlocked"}),
-                  choice_of("Where",
-                            "In which part of the body: in the tissues chosen in the list, or where the chosen bones "
-                            "have most of the weight.",
-                            {"Everywhere", "Chosen tissue", "Chosen bones"}),
-                  stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
-                 outcome,
-                 [asked](Editor& e, const std::vector<FormField>& fields) { start_binding(e, asked(e, fields)); }}));
+  editor.open_dialog(make_form(
+      {"Compute weights",
+       "Weights outside the selection do not change. The numbers are relative stiffness: in stiffer tissue, the "
+       "weights of two bones blend over a shorter distance.",
+       "Compute",
+       {choice_of("Method", "Heat: the smoothest weights. Geodesic: faster. Rigid: each voxel follows only one bone.",
+                  {"Heat", "Geodesic", "Rigid"}),
+        choice_of("Bones", "The bones whose weights are computed.", {"All", "Chosen", "Unlocked"}),
+        choice_of("Where",
+                  "The part of the body: everywhere, in the tissues selected in the list, or where the selected bones "
+                  "have most of the weight.",
+                  {"Everywhere", "Chosen tissue", "Chosen bones"}),
+        stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
+       outcome,
+       [asked](Editor& e, const std::vector<FormField>& fields) { start_binding(e, asked(e, fields)); }}));
 }
 
 }  // namespace limber::editor

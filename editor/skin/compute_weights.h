@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computing how tissue follows the bones, as a job and one edit: all of it, or some bones or places anew while the rest
-// stays as it was painted.
+// Computes skin weights in a job and commits them as one edit: all weights, or only those of some bones or tissues
+// while the rest stays as painted.
 #pragma once
 
 #include "core/binding/heat_diffusion.h"
@@ -12,20 +12,23 @@ enum class BindingMethod { Heat, Geodesic, Rigid };
 
 struct Computation {
   enum class Bones { All, Chosen, Unlocked };
-  enum class Where { Everywhere, ChosenTissue, ChosenBones };  // the last: where these have most of the weight
+  // The voxels whose weights are computed. ChosenBones: those where a selected bone has the largest weight.
+  enum class Where { Everywhere, ChosenTissue, ChosenBones };
 
   BindingMethod method = BindingMethod::Heat;
   Bones bones = Bones::All;
   Where where = Where::Everywhere;
-  BlendStiffness stiffness;  // not of rigid weights
+  BlendStiffness stiffness;  // factors per tissue; rigid weights do not use them
 
-  // Where it is not, layers stay above what is computed; where it is, that goes to the active layer.
+  // Whether only some weights are computed. A full computation replaces the base weights below all layers; a partial
+  // one edits the active layer.
   bool in_part() const { return bones != Bones::All || where != Where::Everywhere; }
 };
 
-// Needs a volume, tissues and an armature; weights of that rig where it is in part.
+// Starts the computation in a job. Needs a volume, tissues and an armature. A partial computation also needs weights
+// that belong to this armature.
 void start_binding(Editor& editor, const Computation& computation);
-// Asks for all of it in a dialog.
+// Opens a dialog that asks for the computation's settings and starts it.
 void ask_computation(Editor& editor);
 
 }  // namespace limber::editor

@@ -30,15 +30,17 @@ void drop_weights(Editor& editor) {
 std::vector<Operator> skin_operators() {
   return {
       binding_operator("skin.heat", "Heat diffusion",
-                       "Computes weights by heat that flows from the bones through the tissue.", BindingMethod::Heat),
-      binding_operator("skin.geodesic", "Geodesic", "Computes weights by the shortest ways inside the tissue.",
+                       "Compute weights as heat that flows from the bones through the tissue.", BindingMethod::Heat),
+      binding_operator("skin.geodesic", "Geodesic",
+                       "Compute weights from the shortest paths between bones and voxels inside the tissue.",
                        BindingMethod::Geodesic),
-      binding_operator("skin.rigid", "Rigid", "Every voxel follows its nearest bone alone.", BindingMethod::Rigid),
+      binding_operator("skin.rigid", "Rigid", "Let every voxel follow only its nearest bone.", BindingMethod::Rigid),
       {"skin.compute", "Compute weights...", icon::kSkin, "Weights",
-       "Computes weights by a method of choice, also of some bones or tissues alone, with a stiffness for each kind of "
+       "Compute weights with a method you select, for all or some bones and tissues, with a stiffness for each kind of "
        "tissue.",
        ask_computation, needs_rig},
-      {"skin.drop_weights", "Drop weights", icon::kTrash, "Weights", "Takes the weights away.", drop_weights,
+      {"skin.drop_weights", "Drop weights", icon::kTrash, "Weights", "Remove all weights and layers from the project.",
+       drop_weights,
        [](const Editor& e) { return e.document().weights ? std::string() : std::string("There are no weights"); }},
   };
 }

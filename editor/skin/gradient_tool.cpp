@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kLeast = 3;  // pixels: less is a slip of the hand
+constexpr double kLeast = 3;  // shortest drag, pixels at scale 1; a shorter one is ignored as a slip of the hand
 
 using Fields = std::vector<FormField>;
 
@@ -39,7 +39,8 @@ class GradientTool final : public Modal {
       const ViewPlace* place = editor.layout.view_at(pointer_);
       if (!place) return false;
       view_.emplace(editor, *place);
-      // On the body, or else as far away as its middle.
+      // The line starts on the body. Beside the body, it starts at the depth of the camera's centre (3D view) or of the
+      // crosshair (slice).
       const auto body = brush_place(editor, *place, pointer_);
       from_ = body                        ? body->seen
               : place->id == ViewId::Body ? editor.views->body.camera.centre
@@ -66,15 +67,15 @@ class GradientTool final : public Modal {
       }
     painter.line(from_, to_, dark, 4);
     painter.line(from_, to_, 0xFFFFFFFF, 2);
-    painter.dot(from_, 0xFFD9F4FF, dark, 5);  // the ends in the colours of exact 1 and 0
+    painter.dot(from_, 0xFFD9F4FF, dark, 5);  // the line's ends have the colours of weight 1 and 0
     painter.dot((from_ + to_) / 2.0, 0xFFFFFFFF, dark, 2.5f);
     painter.dot(to_, 0xFF69625E, 0xFFFFFFFF, 5);
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"LMB"}, "Draw from full to none"},
-            {{"R"}, radial_ ? "Along the line" : "Around its beginning"},
-            {{"Esc"}, "Back"}};
+    return {{{"LMB"}, "Drag from full weight to none"},
+            {{"R"}, radial_ ? "Fade along the line" : "Fade around the line's start"},
+            {{"Esc"}, "Cancel"}};
   }
   std::string title() const override {
     return std::string(radial_ ? "Gradient around a point" : "Gradient along a line") +
@@ -86,34 +87,36 @@ class GradientTool final : public Modal {
 
   void keep(Editor& editor) {
     const Painting& painting = *editor.skin->painting;
-    edit_weights(editor,
-                 {choice_of("Way", "Along the line, or around its beginning.", {"Linear", "Radial"}, radial_ ? 1 : 0),
-                  number_of("Begin", "The weight where the line begins.", painting.value, 0, 1, "%.2f"),
-                  number_of("End", "The weight where it ends.", 0, 0, 1, "%.2f"),
-                  choice_of("Falloff", "How it goes from one to the other.",
-                            {"Smooth", "Sphere", "Root", "Sharp", "Linear"}, static_cast<int>(FalloffShape::Linear)),
-                  number_of("Amount", "How much of it is done.", 1, 0, 1, "%.2f")},
-                 [from = from_, to = to_](const Editor& e, const Fields& fields) {
-                   Gradient gradient{from,
-                                     to,
-                                     fields[0].chosen == 1,
-                                     fields[1].value,
-                                     fields[2].value,
-                                     static_cast<FalloffShape>(fields[3].chosen)};
-                   return WeightOperation{
-                       .label = "Gradient of " + painted_name(e),
-                       .work = [gradient, amount = fields[4].value](const WeightsToEdit& what,
-                                                                    const EditScope& scope) -> EditedWeights {
-                         return {with_gradient(what.body(), *what.document.weights, what.settings.bones, gradient,
-                                               amount, scope),
-                                 ""};
-                       }};
-                 });
+    edit_weights(
+        editor,
+        {choice_of("Way",
+                   "Linear: the weight fades along the line. Radial: it fades in all directions from the line's start.",
+                   {"Linear", "Radial"}, radial_ ? 1 : 0),
+         number_of("Begin", "The weight at the start of the line.", painting.value, 0, 1, "%.2f"),
+         number_of("End", "The weight at the end of the line.", 0, 0, 1, "%.2f"),
+         choice_of("Falloff", "How the weight changes from start to end.",
+                   {"Smooth", "Sphere", "Root", "Sharp", "Linear"}, static_cast<int>(FalloffShape::Linear)),
+         number_of("Amount", "How much of the change is applied. 0 = none, 1 = all.", 1, 0, 1, "%.2f")},
+        [from = from_, to = to_](const Editor& e, const Fields& fields) {
+          Gradient gradient{from,
+                            to,
+                            fields[0].chosen == 1,
+                            fields[1].value,
+                            fields[2].value,
+                            static_cast<FalloffShape>(fields[3].chosen)};
+          return WeightOperation{.label = "Gradient of " + painted_name(e),
+                                 .work = [gradient, amount = fields[4].value](const WeightsToEdit& what,
+                                                                              const EditScope& scope) -> EditedWeights {
+                                   return {with_gradient(what.body(), *what.document.weights, what.settings.bones,
+                                                         gradient, amount, scope),
+                                           ""};
+                                 }};
+        });
   }
 
   glm::vec2 pointer_, begun_{0};
-  std::optional<ViewProjection> view_;  // once the button is down
-  glm::dvec3 from_{0}, to_{0};          // world, mm
+  std::optional<ViewProjection> view_;  // the view in which the line is drawn; none until the button is pressed
+  glm::dvec3 from_{0}, to_{0};          // the line's ends, world, mm
   bool radial_ = false;
 };
 

@@ -21,13 +21,14 @@ namespace limber::editor {
 namespace {
 
 constexpr int kRingPoints = 64;
-constexpr double kStepOfRadius = 0.5;  // of the radius as it is seen, that the pointer is followed by
-constexpr int kMostSteps = 24;         // of one movement
+// Distance between samples of the pointer's path, as a fraction of the brush's radius on the screen.
+constexpr double kStepOfRadius = 0.5;
+constexpr int kMostSteps = 24;  // upper limit on the samples per pointer movement
 
-// The same place on the other side; where the stroke dabs too.
+// Returns the point mirrored to the other side of the body, where an X-mirrored stroke paints too.
 glm::dvec3 mirrored(const Armature& armature, const glm::dvec3& point) { return mirror_plane(armature).place(point); }
 
-// The vertical extent of a ring on the screen stays readable when it is seen from its edge.
+// Returns the brush's circle around `centre` in the plane perpendicular to the surface normal.
 Ring ring_at(const BrushPlace& place, const glm::dvec3& centre, double radius) {
   const glm::dvec3 axis = glm::normalize(place.normal),
                    other = std::abs(axis.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
@@ -37,20 +38,21 @@ Ring ring_at(const BrushPlace& place, const glm::dvec3& centre, double radius) {
 }  // namespace
 
 struct Painting::Running {
-  // What the stroke refers to.
+  // The document when the stroke began.
   Document document;
   std::shared_ptr<const TissueVoxels> tissue;
   LayerToEdit edited;
-  // Of the layer: its canvas, or what stands for its mask or for what its bones share with what lies below, and the
-  // bones of that.
+  // What the stroke paints. Canvas: the weights that the layer and all below it give. Mask: the layer's mask. Shares:
+  // the layer's own weights, where the layers below have the rest. A stroke can paint only weights of bones, so
+  // `before` and `bones` represent what it paints as such.
   enum class Of { Canvas, Mask, Shares } of = Of::Canvas;
   std::shared_ptr<const SkinWeights> before;
   Armature bones;
-  std::optional<SkinWeights> shown;  // what comes out of the layers as the stroke goes on
+  std::optional<SkinWeights> shown;  // the composed weights with the stroke so far; none: no layers
   std::unique_ptr<Stroke> stroke;
   ViewPlace view;
   std::string label;
-  glm::vec2 pixel{0};  // where the pointer was
+  glm::vec2 pixel{0};  // the pointer's position at the last sample
 };
 
 namespace {
@@ -84,7 +86,7 @@ void drop_stroke(Editor& editor) {
   editor.touch();
 }
 
-// Dabs at what lies under the pixels on the pointer's way.
+// Paints along the pointer's path from the last sample to this pixel.
 void paint_to(Editor& editor, const glm::vec2& pixel) {
   Painting& painting = *editor.skin->painting;
   Painting::Running& running = *painting.running;
@@ -127,16 +129,18 @@ void end_stroke(Editor& editor) {
   drop_stroke(editor);
   if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
   if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
-    editor.messages.toast_error("The layer is full here",
-                                "Its other bones keep what they have while normalizing is left to the composition",
-                                "skin.normalize_unlocked");
+    editor.messages.toast_error(
+        "The layer is full here",
+        "Normalize is off, so the layer's other bones keep their weights and leave none to paint",
+        "skin.normalize_unlocked");
   } else {
-    editor.messages.toast_error(lock_message(running->bones, lock), "Nothing else can take or give the weight here",
+    editor.messages.toast_error(lock_message(running->bones, lock), "No unlocked bone can give or take weight here",
                                 "skin.unlock_all");
   }
 }
 
-// What lies below takes the place before all bones; of these only the painted ones may change.
+// Makes kBelow, which stands for the weights below the layer, the stroke's first bone. Locks every bone that the stroke
+// does not paint, so that only the painted bones and kBelow change.
 void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
   BoneSet kept(settings.locked.size() + 1, 1);
   kept[kBelow] = 0;
@@ -159,7 +163,7 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   const ViewPlace* view = hovered_view(editor);
   if (!view || !why_not_paint(editor).empty()) return;
   if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule)
-    return editor.messages.info("Paint", "A joint capsule paints bones: choose another brush for the mask");
+    return editor.messages.info("Paint", "A joint capsule paints bones: select another brush for the mask");
   auto running = std::make_shared<Painting::Running>();
   running->document = editor.document();
   running->tissue = parted_tissue(editor);
@@ -230,7 +234,8 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
   const ViewProjection seen(editor, view);
   const GizmoPainter painter(editor, seen);
   const BrushPlace& place = *painting.place;
-  // Upon the body, where the part that finds none of it is faint; in a slice a circle.
+  // In 3D the brush's ring follows the body's surface, and is faint where it lies beside the body. In a slice the ring
+  // is a circle.
   const auto line = [&](const std::vector<RingPoint>& points, float alpha, float width, bool dashed) {
     for (const bool under : {true, false})
       for (std::size_t i = 0; i < points.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Painting weights: brushes, how they are set, what they may reach.
+// Operators of weight painting: brushes, their settings, and the tissue they may paint.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kGrowth = 1.15, kStep = 0.05;  // of the radius; of the strength
+constexpr double kGrowth = 1.15, kStep = 0.05;  // per key press: factor of the radius, change of strength
 
 std::string needs_paint_below(const Editor& editor) {
   if (editor.seams->brush) {
@@ -40,7 +40,7 @@ const char* icon_of(BrushKind kind) {
   return place < std::size(kIcons) ? kIcons[place] : icon::kSkin;
 }
 
-// One for each brush of the table.
+// Returns one operator for each brush in brush_rules().
 std::vector<Operator> brush_operators() {
   std::vector<Operator> all;
   for (const BrushRule& rule : brush_rules())
@@ -50,7 +50,8 @@ std::vector<Operator> brush_operators() {
   return all;
 }
 
-// One of several settings.
+// Returns an operator that sets a member of Painting to `value`. It is shown as checked while the member has this
+// value.
 template <class Value>
 Operator setting(const char* id, const char* label, const char* description, Value Painting::*member, Value value) {
   return {id,          label,
@@ -83,15 +84,15 @@ Operator shape(const char* id, const char* label, const char* description, Fallo
 }
 
 std::string needs_layer(const Editor& editor) {
-  if (!active_layer(editor)) return "Choose a layer first: the base is normalized as it is painted";
-  return editor.skin->painting->mask ? "The layer's mask is painted, which has nothing to normalize" : "";
+  if (!active_layer(editor)) return "Select a layer first: strokes on the base are always normalized";
+  return editor.skin->painting->mask ? "The layer's mask is being painted, and a mask is not normalized" : "";
 }
 
 Operator leaving_normalizing() {
   Operator off = normalizing(
       "skin.normalize_off", "Normalize: off",
-      "Strokes leave the layer's other bones what they have: what lies below it makes room for the painted bone, and "
-      "weights are normalized when the layers are put together. Edits of the whole body normalize all the same.",
+      "Strokes do not change the layer's other bones. The painted bone takes its weight from the layers below, "
+      "and weights are normalized when the layers are combined. Edits of the whole body always normalize.",
       Normalize::WhenComposed);
   off.disabled_reason = needs_layer;
   return off;
@@ -106,7 +107,7 @@ void add_strength(Editor& editor, double step) {
       std::clamp(std::round((editor.skin->painting->strength + step) / kStep) * kStep, 0.0, 1.0);
 }
 
-// The active bone's weight under the pointer becomes the value of the brush.
+// Sets the brush's value to the active bone's weight under the pointer.
 void sample(Editor& editor) {
   const std::string& name = editor.document().armature->bones[*skin_bone(editor)].name;
   double value = 0;
@@ -121,92 +122,98 @@ void sample(Editor& editor) {
 std::vector<Operator> paint_operators() {
   std::vector<Operator> all = {
       {"skin.paint", "Paint", icon::kSkin, "Brush",
-       "Paints the active bone's weight with the brush, until the button is let go.",
+       "Paint the active bone's weight with the brush until the mouse button is released.",
        [](Editor& e) {
          e.seams->brush ? begin_seam_stroke(e, SeamStroke::Cut) : begin_stroke(e, e.skin->painting->kind);
        },
        needs_paint_below},
       {"skin.paint_subtract", "Paint less", "", "Brush",
-       "Takes weight away with the brush, or adds where the brush takes away.",
+       "Paint with the opposite effect: subtract weight, or add weight if the brush subtracts.",
        [](Editor& e) {
          e.seams->brush
              ? begin_seam_stroke(e, SeamStroke::Join)
              : begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract);
        },
        needs_paint_below},
-      {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooths weights with the brush.",
+      {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooth weights with the brush.",
        [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Join) : begin_stroke(e, BrushKind::Smooth); },
        needs_paint_below},
-      {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Lists the brushes at the pointer.",
+      {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Open a menu of the brushes at the pointer.",
        [](Editor& e) { e.open_popup = "Brushes"; }},
-      {"skin.radius", "Radius", "", "Brush", "Sets the brush's radius with the pointer.",
+      {"skin.radius", "Radius", "", "Brush", "Set the brush's radius by moving the pointer.",
        [](Editor& e) { begin_number(e, BrushNumber::Radius); },
        [](const Editor& e) { return e.seams->brush ? why_not_cut(e) : why_not_paint(e); }},
-      {"skin.strength", "Strength", "", "Brush", "Sets the brush's strength with the pointer.",
+      {"skin.strength", "Strength", "", "Brush", "Set the brush's strength by moving the pointer.",
        [](Editor& e) { begin_number(e, BrushNumber::Strength); }, why_not_paint},
-      {"skin.value", "Value", "", "Brush", "Sets the brush's value with the pointer.",
+      {"skin.value", "Value", "", "Brush", "Set the brush's value by moving the pointer.",
        [](Editor& e) { begin_number(e, BrushNumber::Value); }, why_not_paint},
-      {"skin.radius_down", "Smaller", "", "Brush", "Makes the brush smaller.",
+      {"skin.radius_down", "Smaller", "", "Brush", "Make the brush smaller.",
        [](Editor& e) { scale_radius(e, 1 / kGrowth); }},
-      {"skin.radius_up", "Larger", "", "Brush", "Makes the brush larger.", [](Editor& e) { scale_radius(e, kGrowth); }},
-      {"skin.strength_down", "Weaker", "", "Brush", "Makes the brush weaker.",
+      {"skin.radius_up", "Larger", "", "Brush", "Make the brush larger.", [](Editor& e) { scale_radius(e, kGrowth); }},
+      {"skin.strength_down", "Weaker", "", "Brush", "Lower the brush's strength.",
        [](Editor& e) { add_strength(e, -kStep); }},
-      {"skin.strength_up", "Stronger", "", "Brush", "Makes the brush stronger.",
+      {"skin.strength_up", "Stronger", "", "Brush", "Raise the brush's strength.",
        [](Editor& e) { add_strength(e, kStep); }},
       {"skin.sample", "Sample value", icon::kPick, "Brush",
-       "The active bone's weight under the pointer becomes the value of the brush.", sample,
+       "Set the brush's value to the active bone's weight under the pointer.", sample,
        [](const Editor& e) {
          return !why_not_paint(e).empty()        ? why_not_paint(e)
                 : e.views->hover.weights.empty() ? std::string("Put the pointer on the body")
                                                  : std::string();
        }},
-      setting("skin.reach_surface", "Surface", "Only the outermost tissue is painted.", &Painting::depth,
+      setting("skin.reach_surface", "Surface", "Paint only the outermost tissue.", &Painting::depth,
               BrushDepth::Surface),
-      setting("skin.reach_depth", "To a depth", "Tissue down to a depth below the air is painted.", &Painting::depth,
-              BrushDepth::ToDepth),
-      setting("skin.reach_through", "Through", "All tissue within the radius is painted.", &Painting::depth,
+      setting("skin.reach_depth", "To a depth", "Paint tissue down to a set depth below the body's surface.",
+              &Painting::depth, BrushDepth::ToDepth),
+      setting("skin.reach_through", "Through", "Paint all tissue within the brush's radius.", &Painting::depth,
               BrushDepth::Through),
       {"skin.along_tissue", "Geodesic", "", "Brush",
-       "Distances go inside the tissue, so that the brush never crosses air to the next finger.",
+       "Measure the brush's distances inside the tissue, so that it never crosses air to the next finger.",
        [](Editor& e) {
          e.skin->painting->distance =
              e.skin->painting->distance == BrushDistance::Geodesic ? BrushDistance::Euclidean : BrushDistance::Geodesic;
        },
        nullptr, [](const Editor& e) { return e.skin->painting->distance == BrushDistance::Geodesic; }},
-      setting("skin.paint_all", "All tissue", "Every tissue is painted, hidden ones as well.", &Painting::tissue,
+      setting("skin.paint_all", "All tissue", "Paint every tissue, including hidden ones.", &Painting::tissue,
               PaintedTissue::All),
-      setting("skin.paint_soft", "Soft tissue", "Everything that is shown is painted, but for bone.", &Painting::tissue,
+      setting("skin.paint_soft", "Soft tissue", "Paint all visible tissue except bone.", &Painting::tissue,
               PaintedTissue::Soft),
-      setting("skin.paint_chosen", "Chosen tissue", "The tissues that are chosen in the list are painted.",
-              &Painting::tissue, PaintedTissue::Chosen),
-      setting("skin.paint_visible", "Visible tissue", "Tissues that are shown are painted.", &Painting::tissue,
+      setting("skin.paint_chosen", "Chosen tissue", "Paint only the tissues selected in the list.", &Painting::tissue,
+              PaintedTissue::Chosen),
+      setting("skin.paint_visible", "Visible tissue", "Paint all visible tissues.", &Painting::tissue,
               PaintedTissue::Visible),
       {"skin.subtree", "Below the bone", "", "Brush",
-       "Only where the active bone, the one it hangs on or one below it has most of the weight is painted.",
+       "Paint only where the active bone, its parent or one of its descendants has most of the weight.",
        [](Editor& e) { e.skin->painting->subtree = !e.skin->painting->subtree; }, nullptr,
        [](const Editor& e) { return e.skin->painting->subtree; }},
       normalizing("skin.normalize_unlocked", "Normalize: unlocked",
-                  "Other unlocked bones make room for what is painted.", Normalize::Unlocked),
-      normalizing("skin.normalize_all", "Normalize: all", "All unlocked bones are scaled alike, the painted one too.",
+                  "Keep the sum of weights at 1 by changing the other unlocked bones, not the painted one.",
+                  Normalize::Unlocked),
+      normalizing("skin.normalize_all", "Normalize: all",
+                  "Keep the sum of weights at 1 by scaling all unlocked bones, including the painted one.",
                   Normalize::All),
       leaving_normalizing(),
       {"skin.relative_to_locks", "Relative to locks", "", "Brush",
-       "To strokes that add, subtract, set or multiply, what locked bones leave of a place counts as the whole: half "
-       "of it is what a value of a half sets.",
+       "Strokes that add, subtract, set or multiply treat the weight that locked bones leave free as 1: a value of 0.5 "
+       "sets half of it.",
        [](Editor& e) { e.skin->painting->relative_to_locks = !e.skin->painting->relative_to_locks; }, nullptr,
        [](const Editor& e) { return e.skin->painting->relative_to_locks; }},
-      {"skin.accumulate", "Accumulate", "", "Brush", "A stroke adds up where it comes over a place again.",
+      {"skin.accumulate", "Accumulate", "", "Brush", "Let a stroke act again each time it passes over the same tissue.",
        [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
        [](const Editor& e) { return e.skin->painting->accumulate; }},
-      shape("skin.falloff_smooth", "Smooth falloff", "The brush fades in an S.", FalloffShape::Smooth),
-      shape("skin.falloff_sphere", "Sphere falloff", "The brush fades as a ball's side does.", FalloffShape::Sphere),
-      shape("skin.falloff_root", "Root falloff", "The brush fades late.", FalloffShape::Root),
-      shape("skin.falloff_sharp", "Sharp falloff", "The brush fades early.", FalloffShape::Sharp),
-      shape("skin.falloff_linear", "Linear falloff", "The brush fades evenly.", FalloffShape::Linear),
-      shape("skin.falloff_constant", "Constant falloff", "The brush does not fade.", FalloffShape::Constant),
-      {"skin.falloff_own", "Own falloff", "", "Brush",
-       "The brush fades by a curve whose points are dragged in the sidebar; a click adds one, the right button takes "
-       "it away.",
+      shape("skin.falloff_smooth", "Smooth falloff", "Fade the brush from its centre to its rim along an S curve.",
+            FalloffShape::Smooth),
+      shape("skin.falloff_sphere", "Sphere falloff",
+            "Fade the brush from its centre to its rim like the side of a sphere.", FalloffShape::Sphere),
+      shape("skin.falloff_root", "Root falloff", "Fade the brush mostly near its rim.", FalloffShape::Root),
+      shape("skin.falloff_sharp", "Sharp falloff", "Fade the brush mostly near its centre.", FalloffShape::Sharp),
+      shape("skin.falloff_linear", "Linear falloff", "Fade the brush evenly from its centre to its rim.",
+            FalloffShape::Linear),
+      shape("skin.falloff_constant", "Constant falloff", "Paint with full effect up to the brush's rim.",
+            FalloffShape::Constant),
+      {"skin.falloff_own", "Custom falloff", "", "Brush",
+       "Fade the brush by a curve of your own. Drag its points in the sidebar; a click adds a point, a right click "
+       "removes it.",
        [](Editor& e) {
          if (e.skin->painting->falloff_curve.empty()) begin_falloff_curve(*e.skin->painting);
        },

@@ -21,7 +21,8 @@ std::int64_t count(const TissueRegion& region) {
 TissueRegion together(const TissueRegion* old, TissueRegion made, RegionChange change) {
   if (change == RegionChange::Replace) return made;
   for (std::size_t i = 0; i < made.size(); ++i) {
-    const bool before = old ? (*old)[i] != 0 : change != RegionChange::Add;  // without a region all is in it
+    // Without an old region, Add begins with no voxel; the other changes begin with all voxels.
+    const bool before = old ? (*old)[i] != 0 : change != RegionChange::Add;
     made[i] = change == RegionChange::Add       ? before || made[i]
               : change == RegionChange::TakeOut ? before && !made[i]
                                                 : before && made[i];
@@ -38,9 +39,9 @@ void change_region(Editor& editor, const std::string& label, RegionChange change
   const auto keep = [volume = what.document.volume, label](Editor& e, TissueRegion made) {
     const std::int64_t voxels = count(made);
     if (e.document().volume != volume) return;
-    if (voxels == 0) return e.messages.warn(label, "No tissue lies in it");
+    if (voxels == 0) return e.messages.warn(label, "No tissue lies in this region: the old region stays");
     e.skin->painting->region = {volume, std::make_shared<const TissueRegion>(std::move(made)), voxels};
-    e.messages.info(label, grouped(voxels) + " voxels can be changed");
+    e.messages.info(label, grouped(voxels) + " voxels can be changed by brushes and edits");
     e.touch();
   };
   if (what.tissue->size() <= editor.skin->painting->edited_at_once) return keep(editor, make());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The region of the body that brushes and edits of weights keep to, drawn over a view as a box or a lasso: what lies in
-// it from front to back, at rest. It belongs to the volume that it was drawn on, and is no part of the document; the
-// views dull what lies outside.
+// Changes the region of the body that limits brushes and weight edits. The user draws a box or a lasso over a view; the
+// region is all tissue of the rest pose behind the drawn area, at any depth. The region belongs to the volume that it
+// was drawn on and is not part of the document. The views dim the tissue outside the region.
 #pragma once
 
 #include <functional>
@@ -16,11 +16,12 @@ namespace limber::editor {
 
 struct WeightsToEdit;
 
-// What becomes of the region that is there.
+// How a new region combines with the existing one. Common: the intersection of both.
 enum class RegionChange { Replace, Add, TakeOut, Common };
 
 using WhereOfRegion = std::function<TissueRegion(const WeightsToEdit&)>;
-// Beside the editor where the body is large. A region without a voxel is none: that is told and the old one stays.
+// Combines the region that `where` returns with the existing one, in a job if the body is large. If the result is
+// empty, warns the user and keeps the old region.
 void change_region(Editor& editor, const std::string& label, RegionChange change, const WhereOfRegion& where);
 void clear_region(Editor& editor);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The region that brushes and edits of weights keep to.
+// Operators of the region that limits brushes and weight edits.
 #include "editor/context/operator.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/paint_region.h"
@@ -12,16 +12,17 @@ namespace limber::editor {
 namespace {
 
 std::string needs_paint(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   return why_not_paint(editor);
 }
 std::string needs_rest(const Editor& editor) {
   const std::string why = needs_paint(editor);
-  return why.empty() && editor.views->scene.pose ? "Bring the body to rest first: a region is drawn on it there" : why;
+  return why.empty() && editor.views->scene.pose ? "Show the body at rest first: a region is drawn on the rest pose"
+                                                 : why;
 }
 std::string needs_region(const Editor& editor) { return painted_region(editor) ? "" : "No region is set"; }
 std::string needs_unmatched(const Editor& editor) {
-  return editor.skin->painting->unmatched.empty() ? "The last mirror found a match for every voxel"
+  return editor.skin->painting->unmatched.empty() ? "There are no voxels for which Mirror weights found no match"
                                                   : needs_paint(editor);
 }
 
@@ -30,7 +31,7 @@ void begin(Editor& editor, std::unique_ptr<Modal> (*tool)(Editor&)) {
   editor.modal_wrap = {};
 }
 
-// Where the chosen bones together have most of the weight.
+// Sets the region to the voxels where the selected bones together have more than half of the weight.
 void region_of_bones(Editor& editor) {
   change_region(editor, "Region of " + painted_name(editor), RegionChange::Replace, [](const WeightsToEdit& what) {
     const SkinWeights& weights = *what.document.weights;
@@ -67,20 +68,21 @@ void region_of_unmatched(Editor& editor) {
 std::vector<Operator> region_operators() {
   return {
       {"skin.region_box", "Region by a box", icon::kRegion, "Weights",
-       "Brushes and edits keep to what lies in a box, from front to back; drawn in 3D or in a slice.",
+       "Limit brushes and edits to a box that you draw over the 3D view or a slice. It goes through the whole body.",
        [](Editor& e) { begin(e, begin_region_box); }, needs_rest},
       {"skin.region_lasso", "Region by a lasso", icon::kRegion, "Weights",
-       "Brushes and edits keep to what is drawn around, from front to back; in 3D or in a slice.",
+       "Limit brushes and edits to an outline that you draw over the 3D view or a slice. It goes through the whole "
+       "body.",
        [](Editor& e) { begin(e, begin_region_lasso); }, needs_rest},
       {"skin.region_bone", "Region of bone", icon::kRegion, "Weights",
-       "Brushes and edits keep to where the chosen bones have most of the weight.", region_of_bones, needs_paint},
+       "Limit brushes and edits to where the selected bones have most of the weight.", region_of_bones, needs_paint},
       {"skin.region_invert", "Invert region", "", "Weights",
-       "Brushes and edits keep to what lies outside of the region.", invert_region, needs_region},
+       "Limit brushes and edits to what lies outside the current region.", invert_region, needs_region},
       {"skin.region_unmatched", "Region without a match", icon::kWarning, "Weights",
-       "Brushes and edits keep to where the last mirror found nothing on the other side.", region_of_unmatched,
-       needs_unmatched},
-      {"skin.region_clear", "Clear region", icon::kClose, "Weights", "Brushes and edits reach the whole body again.",
-       clear_region, needs_region},
+       "Limit brushes and edits to the voxels for which Mirror weights found no match on the other side.",
+       region_of_unmatched, needs_unmatched},
+      {"skin.region_clear", "Clear region", icon::kClose, "Weights",
+       "Let brushes and edits reach the whole body again.", clear_region, needs_region},
   };
 }
 

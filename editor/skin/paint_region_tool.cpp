@@ -12,10 +12,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kStep = 2;        // pixels between two points of a lasso
-constexpr double kLeastArea = 4;  // square pixels: less is a slip of the hand
+constexpr float kStep = 2;        // smallest distance between two points of a lasso, pixels
+constexpr double kLeastArea = 4;  // smallest outline, square pixels; a smaller one is ignored as a slip of the hand
 
-// Whether a pixel of a view lies in an outline, for many pixels: even-odd, a byte a pixel.
+// The pixels of a view inside an outline (even-odd rule). They are stored as one byte per pixel, because millions of
+// voxels may be tested against them.
 class Stencil {
  public:
   Stencil(const Rect& view, const std::vector<glm::dvec2>& outline)
@@ -120,11 +121,11 @@ class RegionTool final : public Modal {
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"LMB"}, lasso_ ? "Draw around it" : "Draw a box"},
-            {{"Shift"}, "Add"},
-            {{"Ctrl"}, "Take out"},
-            {{"Shift", "Ctrl"}, "Keep what is in both"},
-            {{"Esc"}, "Back"}};
+    return {{{"LMB"}, lasso_ ? "Draw an outline" : "Draw a box"},
+            {{"Shift"}, "Add to region"},
+            {{"Ctrl"}, "Subtract from region"},
+            {{"Shift", "Ctrl"}, "Intersect with region"},
+            {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return lasso_ ? "Region by a lasso" : "Region by a box"; }
 
@@ -149,7 +150,7 @@ class RegionTool final : public Modal {
 
   const bool lasso_;
   glm::vec2 pointer_;
-  std::optional<ViewProjection> view_;  // once the button is down
+  std::optional<ViewProjection> view_;  // the view in which the outline is drawn; none until the button is pressed
   std::vector<glm::dvec2> outline_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The region that brushes and edits of weights keep to.
+// Returns the region that limits brushes and weight edits.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace limber::editor {
 
-// Null where none is set, or it was drawn on another volume.
+// Returns the region; null if no region is set, or if it was drawn on another volume.
 std::shared_ptr<const TissueRegion> painted_region(const Editor& editor);
 std::int64_t painted_region_voxels(const Editor& editor);
 

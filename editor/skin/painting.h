@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the brushes of the Skin workspace are set, and the stroke that is being painted. No part of the document.
+// The brush settings of the Skin workspace and the running stroke. They are not part of the document.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,14 @@ struct PaintedRegion {
 
 struct FoundProblems;
 
-// Tissues that a brush may change.
+// The tissues that a brush may change.
 enum class PaintedTissue { All, Soft, Chosen, Visible };
 
-// Where a brush stands: on the body in 3D, in the plane of a slice.
+// The position of a brush: on the body's surface in the 3D view, or in the plane of a slice.
 struct BrushPlace {
   ViewId view = ViewId::Body;
-  glm::dvec3 seen{0}, normal{0};  // world, mm: where it is drawn; unit
-  glm::dvec3 rest{0};             // where it paints
+  glm::dvec3 seen{0}, normal{0};  // seen: position in the displayed pose, world, mm; normal: unit vector
+  glm::dvec3 rest{0};             // the same point in the rest pose, where the brush paints, world, mm
 };
 
 struct Painting {
@@ -39,43 +39,43 @@ struct Painting {
   BrushKind kind = BrushKind::Add;
   double radius = 20;      // mm
   double strength = 0.75;  // [0, 1]
-  double value = 1;        // [0, 1], of Set and Multiply
+  double value = 1;        // [0, 1], used by Set and Multiply
   FalloffShape falloff = FalloffShape::Smooth;
-  std::vector<glm::dvec2>
-      falloff_curve;     // (share of the radius, cover), distances growing, in place of the shape; empty: none
-  double spacing = 0.2;  // of the radius
-  double blend_mm = 40;  // of the joint capsule
+  // Points (distance as a fraction of the radius, brush effect) of a custom falloff, by distance; empty: use `falloff`.
+  std::vector<glm::dvec2> falloff_curve;
+  double spacing = 0.2;  // distance between dabs, a fraction of the radius
+  double blend_mm = 40;  // length over which the joint capsule brush blends a bone with its parent
   bool accumulate = false;
   BrushDistance distance = BrushDistance::Geodesic;
   BrushDepth depth = BrushDepth::ToDepth;
   double depth_mm = 25;
   PaintedTissue tissue = PaintedTissue::Visible;
-  bool subtree = false;  // only where the active bone, the one it hangs on or one below it has most of the weight
-  Normalize normalize = Normalize::Unlocked;  // as chosen; see normalize_of
+  bool subtree = false;  // paint only where the active bone, its parent or a descendant has most of the weight
+  Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of()
   bool relative_to_locks = false;
 
-  int dragged_point = -1;  // of the falloff's curve
-  // Of weights (editor/skin/weight_layers.h).
-  std::optional<std::size_t> layer;  // that is painted; none: the base
-  bool mask = false;                 // its mask is painted in place of its weights
-  struct {                           // what is painted on, and what it was made of
+  int dragged_point = -1;  // the point of `falloff_curve` being dragged; -1: none
+  // The weight layer being painted (editor/skin/weight_layers.h).
+  std::optional<std::size_t> layer;  // index of the painted layer; none: the base
+  bool mask = false;                 // strokes paint the layer's mask instead of its weights
+  struct {  // cache: the weights that a stroke on a layer starts from, and the layers they are computed from
     std::shared_ptr<const WeightLayers> of;
     std::size_t layer = 0;
     std::shared_ptr<const SkinWeights> weights;
   } canvas;
 
-  std::shared_ptr<const FoundProblems> problems;  // of editor/skin/weight_problems.h; null: not looked for yet
-  int problem = -1;                               // the one that was gone to
+  std::shared_ptr<const FoundProblems> problems;  // see editor/skin/weight_problems.h; null: not searched yet
+  int problem = -1;                               // index of the problem visited last; -1: none
 
-  std::optional<BrushPlace> place;  // under the pointer, by the last frame
+  std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 
-  // Of edits of the whole body (weight_edits.h)
-  std::int64_t edited_at_once = 300'000;  // voxels: some ten milliseconds; an edit of more is a job
-  std::optional<int> edit_job;            // at work
-  PaintedRegion region;                   // that brushes keep to as well
-  std::vector<std::int64_t> unmatched;    // places of tissue that the last mirror found nothing for
+  // State of the edits of the whole body (weight_edits.h).
+  std::int64_t edited_at_once = 300'000;  // largest body, in voxels, edited without a job (some 10 ms)
+  std::optional<int> edit_job;            // id of the edit's running job
+  PaintedRegion region;                   // limits brushes and edits
+  std::vector<std::int64_t> unmatched;    // indices of the tissue voxels that the last mirror found no match for
 
-  // While a button paints.
+  // The running stroke; null: no stroke is being painted.
   struct Running;
   std::shared_ptr<Running> running;
 
@@ -84,11 +84,12 @@ struct Painting {
 };
 
 Falloff falloff_of(const Painting& painting);
-// A curve of its own that begins as the shape is.
+// Starts a custom falloff curve with the points of the current falloff shape.
 void begin_falloff_curve(Painting& painting);
-std::string name_of(BrushKind kind);             // "Add"
-std::string operator_of(const BrushRule& rule);  // "skin.brush_add"
-// A list of operators with those of all brushes in place of "*", plain ones apart from the others.
+std::string name_of(BrushKind kind);             // the brush's label: "Add"
+std::string operator_of(const BrushRule& rule);  // id of the operator that selects the brush: "skin.brush_add"
+// Returns the list of operator ids with "*" replaced by the ids of all brushes. A "-" separates the brushes that change
+// each voxel by itself from the others.
 std::vector<std::string> with_brushes(std::vector<std::string> list);
 
 }  // namespace limber::editor

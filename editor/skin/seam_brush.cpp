@@ -13,9 +13,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPixelStep = 4;  // that a stroke is followed by, at scale 1
+constexpr double kPixelStep = 4;  // pixels at scale 1 between samples of a stroke
 
-// The knife's edge at a place: along the line of sight into the body, to both sides of a slice.
+// Returns the line segment that cuts seams at the brush. In 3D it runs along the line of sight into the body; in a
+// slice it is perpendicular to the slice and extends to both sides of it.
 Blade blade_at(const ViewProjection& seen, const BrushPlace& place, double radius, const Grid& grid) {
   if (place.view != ViewId::Body)
     return {place.rest + radius * seen.towards_eye, place.rest - radius * seen.towards_eye};
@@ -61,7 +62,7 @@ void end_stroke(Editor& editor) {
   if (running->faces == 0)
     return editor.messages.info(
         cuts ? "No seam was cut" : "No seam was erased",
-        cuts ? "Draw a line over soft tissue: the brush cuts along it" : "None lies within the brush");
+        cuts ? "Draw a line over soft tissue: the brush cuts along it" : "No seam lies within the brush");
   Document next = editor.document();
   if (next.volume != running->volume) return;
   note_weights_source(editor);
@@ -72,7 +73,7 @@ void end_stroke(Editor& editor) {
 }  // namespace
 
 std::string why_not_cut(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   const Document& document = editor.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
   if (editor.views->scene.pose) return "Show the body at rest first";

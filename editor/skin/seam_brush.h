@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Strokes of the brush that change seams in place of weights.
+// Strokes of the seam brush, which cuts or erases seams instead of painting weights. A seam separates body parts that
+// touch at rest.
 #pragma once
 
 #include "editor/seams/seam_view.h"
 
 namespace limber::editor {
 
-std::string why_not_cut(const Editor& editor);  // why the brush cannot be used; "" when it can
-// Until the button is let go.
+std::string why_not_cut(const Editor& editor);  // returns why the seam brush cannot be used; "" when it can
+// Begins a stroke of the seam brush at the pointer. The stroke ends when the button is released.
 void begin_seam_stroke(Editor& editor, SeamStroke stroke);
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pose in which weights are painted.
+// Operators of the test pose, in which the body is shown while weights are painted: the rest pose or the project's
+// pose, with one joint bent temporarily.
 #include "editor/shown/test_pose.h"
 
 #include "editor/context/operator.h"
@@ -12,13 +13,13 @@ namespace limber::editor {
 namespace {
 
 std::string needs_weights(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   return seen_weights(editor) ? "" : "Compute the weights first";
 }
 
 std::string needs_bend(const Editor& editor) {
   const std::string why = needs_weights(editor);
-  return !why.empty() ? why : editor.trial->degrees == 0 ? "No joint is bent on trial" : "";
+  return !why.empty() ? why : editor.trial->degrees == 0 ? "No joint is bent in the test pose" : "";
 }
 
 }  // namespace
@@ -26,18 +27,19 @@ std::string needs_bend(const Editor& editor) {
 std::vector<Operator> test_pose_operators() {
   return {
       {"skin.posed", "Posed", icon::kPose, "Test pose",
-       "Shows the body in its pose while its weights are painted; once more at rest, a joint bent on trial too, and "
-       "back. Strokes land where the pointer is seen.",
+       "While you paint weights, switch between the body at rest and in its pose, with the joint bent in the test "
+       "pose. Strokes paint the tissue under the pointer.",
        toggle_test_pose, needs_weights, [](const Editor& e) { return e.trial->posed; }},
       {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose",
-       "Bends the active bone on trial, by a step of the wheel.",
+       "Bend the active bone in the test pose by a step of the mouse wheel.",
        [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep * e.input.wheel); }, why_not_bend},
       {"skin.bend_more", "Bend further", "", "Test pose",
-       "Bends the active bone on trial; the pose of the project stays.",
+       "Bend the active bone in the test pose; the project's pose does not change.",
        [](Editor& e) { set_bend(e, bend(e) + TestPose::kStep); }, why_not_bend},
-      {"skin.bend_less", "Bend less", "", "Test pose", "Bends the active bone on trial the other way.",
+      {"skin.bend_less", "Bend less", "", "Test pose", "Bend the active bone in the test pose in the other direction.",
        [](Editor& e) { set_bend(e, bend(e) - TestPose::kStep); }, why_not_bend},
-      {"skin.unbend", "Unbend", "", "Test pose", "The joint that is bent on trial goes back.", clear_bend, needs_bend},
+      {"skin.unbend", "Unbend", "", "Test pose", "Straighten the joint that is bent in the test pose.", clear_bend,
+       needs_bend},
   };
 }
 

@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kCountedAtOnce = 1'500'000;  // voxels: some milliseconds
+// Largest body, in voxels, whose weights are summed at once (some milliseconds); a larger one is summed in a thread.
+constexpr std::int64_t kCountedAtOnce = 1'500'000;
 
 void add(const SkinWeights::Chunk& chunk, std::vector<std::int64_t>& sums, int sign) {
   for (const Influence& influence : chunk)
@@ -38,7 +39,7 @@ std::shared_ptr<const LabelVolume> without_regions(const LabelVolume& volume, co
   return rest;
 }
 
-// In the order of the weights' bones.
+// Returns the bones' colours in the order of the weights' bones.
 const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Editor& editor, const SkinWeights& weights) {
   auto& known = editor.skin->swatches;
   const auto& armature = editor.document().armature;
@@ -59,13 +60,15 @@ void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weig
   auto& region = skin.region;
   if (skin.hidden.empty()) return void(region = {});
   const auto volume = scene.volume;
-  // As the document's weights are: what a stroke paints stays in sight until it ends.
+  // Hidden regions are found by the document's weights, not by those of a running stroke, so that the tissue under the
+  // brush stays visible until the stroke ends.
   const bool stale = region.from != volume || region.hidden != skin.hidden || region.weights != weights;
   if (stale && !(skin.region_task && editor.tasks.contains(*skin.region_task))) {
     const auto make = [volume, weights, hidden = skin.hidden, tissue = tissue_voxels(*editor.views, editor.document()),
                        old = region.from == volume ? region.volume : nullptr] {
       auto made = without_regions(*volume, *tissue, *weights, hidden);
-      return old && old->voxels == made->voxels ? old : made;  // the same need not be uploaded again
+      // If the old volume has the same voxels, keep it: this avoids an upload to the GPU.
+      return old && old->voxels == made->voxels ? old : made;
     };
     const auto keep = [volume, weights, hidden = skin.hidden](Editor& e, std::shared_ptr<const LabelVolume> made) {
       if (!e.skin->hidden.empty()) e.skin->region = {volume, std::move(made), weights, hidden};
@@ -86,7 +89,7 @@ SkinDisplay::SkinDisplay() : painting(std::make_unique<Painting>()) {}
 SkinDisplay::~SkinDisplay() = default;
 
 WeightShares::Counted WeightShares::count(const std::shared_ptr<const SkinWeights>& weights) {
-  constexpr std::int64_t kGrain = 512;  // bricks
+  constexpr std::int64_t kGrain = 512;  // bricks summed in one block of work
   const std::int64_t blocks = (weights->chunk_count() + kGrain - 1) / kGrain;
   std::vector<std::vector<std::int64_t>> sums(static_cast<std::size_t>(blocks));
   parallel_for(weights->chunk_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -180,7 +183,7 @@ void show_weights(Editor& editor) {
   if (tissue_voxels(*editor.views, editor.document())->size() != weights->size()) return;
   if (editor.document().weights) show_regions(editor, editor.document().weights);
   if (!editor.skin->display) return;
-  scene.outlined.reset();  // the weights are what is chosen here
+  scene.outlined.reset();  // no outline of selected tissues: colours show the selected bone's weights
   scene.weights = render::ShownWeights{
       .weights = weights,
       .tissue = tissue_voxels(*editor.views, editor.document()),
@@ -199,8 +202,8 @@ bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolum
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
   const Grid& grid = volume.grid;
   const glm::dvec3 s = grid.spacing;
-  double nearest = 1e300;  // squared
-  // Outwards from the voxel along each axis, no further than what is known.
+  double nearest = 1e300;  // squared distance, mm2
+  // Search from the voxel outwards along each axis, no farther than the nearest air voxel found so far.
   const auto within = [&](int off, int axis) { return (off * s[axis]) * (off * s[axis]) < nearest; };
   for (int dz = 0; within(dz, 2); ++dz) {
     bool any = false;
@@ -220,7 +223,7 @@ double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
     }
     if (!any) break;
   }
-  // From middle to middle, less the air voxel's half.
+  // `nearest` is measured between voxel centres, so half of the air voxel is subtracted.
   return std::max(0.0, std::sqrt(nearest) - std::min({s.x, s.y, s.z}) / 2);
 }
 

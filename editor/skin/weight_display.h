@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the Skin workspace shows of skin weights: by which display, of which bone, the regions of which bones; and the
-// locks of bones, which belong to the document.
+// State of the weight display in the Skin workspace: the colouring, the hidden regions, and caches for both. Also edits
+// the locks of bones, which belong to the document.
 #pragma once
 
 #include <future>
@@ -15,18 +15,19 @@
 
 namespace limber::editor {
 
-// The share that each bone has of all weight. Counted once for a body, beside the editor where that is large; from then
-// on only what differs from the weights counted last.
+// The share of each bone in the weight of the whole body. The first update sums the weights of all voxels, in a thread
+// if the body is large; later updates sum only the chunks that have changed since.
 class WeightShares {
  public:
   void update(const std::shared_ptr<const SkinWeights>& weights, const std::function<void()>& wake);
-  std::optional<double> of(int bone) const;  // of the weights' bones, [0, 1]; nothing yet: not counted
+  // Returns the share of a bone (index into the weights' bones), [0, 1]; none: not computed yet.
+  std::optional<double> of(int bone) const;
   bool busy() const { return counting_.valid(); }
 
  private:
   struct Counted {
     std::shared_ptr<const SkinWeights> weights;
-    std::vector<std::int64_t> sums;  // #bones, in 1/65535
+    std::vector<std::int64_t> sums;  // #bones: the sum of the bone's weights, in units of 1/65535
   };
   static Counted count(const std::shared_ptr<const SkinWeights>& weights);
 
@@ -40,26 +41,27 @@ struct SkinDisplay {
   SkinDisplay();
   ~SkinDisplay();
 
-  std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;  // nothing: the tissues
+  std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;  // none: shows the tissues
   bool contours = true;
   std::set<std::string> hidden;  // bones whose regions are hidden
-  float ring = 0;                // pixels about the pointer that a brush takes: the read-out keeps off
+  float ring = 0;                // radius of the brush's ring, pixels; the weights readout stays outside it
 
-  std::string search;  // of the list of bones
+  std::string search;  // search text of the bone list
   bool searching = false, focus_search = false;
-  std::optional<int> revealed;  // the active bone that the list came to last
+  std::optional<int> revealed;  // the active bone that the list last scrolled to
 
-  std::unique_ptr<Painting> painting;  // of painting.h; never null
+  std::unique_ptr<Painting> painting;  // see painting.h; never null
 
   WeightShares shares;
-  // The volume without the hidden regions, and what it was made of.
+  // Cache: the volume without the hidden regions, and the inputs that it is computed from.
   struct {
     std::shared_ptr<const LabelVolume> from, volume;
     std::shared_ptr<const SkinWeights> weights;
     std::set<std::string> hidden;
   } region;
-  std::optional<int> region_task;  // makes it anew for a large body; the old one is seen meanwhile
-  // The colours of the weights' bones, and what they were made for.
+  // The task that computes `region` again for a large body; the views show the old volume meanwhile.
+  std::optional<int> region_task;
+  // Cache: the colours of the weights' bones, and the inputs that they are computed from.
   struct {
     std::shared_ptr<const Armature> armature;
     std::vector<std::string> bones;
@@ -67,31 +69,33 @@ struct SkinDisplay {
   } swatches;
 };
 
-// What is painted, or else the document's; null without a volume and a rig.
+// Returns the weights of the running stroke, or else the document's weights; null without a volume and a rig.
 std::shared_ptr<const SkinWeights> seen_weights(const Editor& editor);
-int weights_bone(const SkinWeights& weights, const std::string& name);  // -1: none of that name
-// As lists show it: the active bone's is orange.
+// Returns the bone's index in the weights; -1: no bone has that name.
+int weights_bone(const SkinWeights& weights, const std::string& name);
+// Returns the bone's colour in lists; the active bone is orange.
 Colour swatch_of(Editor& editor, int bone);
 
-// Puts weights, regions and the Skin workspace's bones into the scene of this frame.
+// Puts the weights and the volume without hidden regions into this frame's scene. Shows the bones as sticks and marks
+// the active one.
 void show_weights(Editor& editor);
 
-// Whether the voxels of the scene are the document's, whole or in part.
+// Returns whether this volume is the document's volume, either whole or without the hidden regions.
 bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume);
 
-// mm from the middle of a tissue voxel to where air begins.
+// Returns the distance from the centre of a tissue voxel to the nearest air, mm.
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel);
 
 bool is_locked(const Document& document, const std::string& bone);
-// An edit; none where nothing changes.
+// Sets the locked bones as one edit; if nothing changes, makes no edit.
 void set_locks(Editor& editor, const std::string& label, std::set<std::string> bones);
 void toggle_lock(Editor& editor, int bone);
-// All bones but this one; where that is so already, none.
+// Locks all bones except this one; if exactly these bones are already locked, unlocks all.
 void lock_all_but(Editor& editor, int bone);
 
-// The region of a bone is where it has the largest weight.
+// Hides or shows a bone's region, which is the tissue where the bone has the largest weight.
 void hide_region(Editor& editor, const std::string& bone, bool hidden);
-// Only these; a second time shows all again.
+// Shows only the regions of these bones; a second call shows all regions again.
 void isolate_regions(Editor& editor, const std::set<std::string>& bones);
 
 const char* name_of(const std::optional<render::WeightDisplay>& display);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How skin weights are shown and which bones they are about: displays, regions, locks.
+// Operators of the weight display: switch the colouring, pick bones in the views, hide regions and lock bones.
 #include "editor/skin/weight_display.h"
 
 #include "editor/context/operator.h"
@@ -14,14 +14,14 @@ namespace {
 using render::WeightDisplay;
 
 std::string needs_skin_weights(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   if (!editor.document().volume) return "Open a volume first";
   if (!editor.document().armature) return "Import a rig first";
   return seen_weights(editor) ? "" : "Compute the weights first";
 }
 
 std::string needs_skin_bone(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   return skin_bone(editor) ? "" : "Import a rig first";
 }
 
@@ -51,7 +51,7 @@ Operator shows(const char* id, const char* label, const char* description, std::
           [display](const Editor& e) { return e.skin->display == display; }};
 }
 
-// The chosen bones, or else the one that the workspace is about.
+// Returns the names of the selected bones, or else the workspace's active bone.
 std::set<std::string> chosen_names(const Editor& editor) {
   std::set<std::string> names;
   const auto& bones = editor.document().armature->bones;
@@ -65,7 +65,8 @@ void pick_bone(Editor& editor, bool added) {
   const std::string& name = editor.views->hover.weights[0].bone;
   const auto bone = editor.document().armature->find(name);
   if (!bone) return editor.messages.warn("Pick bone", name + " is not a bone of this rig");
-  if (!added) editor.selection.bones.clear();  // chosen tissues stay: brushes may be kept to them
+  // The selected tissues stay selected, because brushes may be limited to them.
+  if (!added) editor.selection.bones.clear();
   editor.selection.bone = *bone;
   editor.selection.bones.insert(*bone);
 }
@@ -109,58 +110,60 @@ void search_bones(Editor& editor) {
 std::vector<Operator> skin_display_operators() {
   return {
       shows("skin.show_active", "Active bone",
-            "Shows the weight of the active bone as a ramp: exact 0 grey, exact 1 white.", WeightDisplay::Active),
-      shows("skin.show_dominant", "Dominant bones", "Shows each place in the colour of the bone that has most of it.",
+            "Show the active bone's weight as a colour ramp: exactly 0 is grey, exactly 1 is white.",
+            WeightDisplay::Active),
+      shows("skin.show_dominant", "Dominant bones", "Colour each voxel by the bone with the largest weight.",
             WeightDisplay::Dominant),
       shows("skin.show_mixed", "All influences",
-            "Mixes the colours of all bones that a place follows; darker where many share it.", WeightDisplay::Mixed),
-      shows("skin.show_count", "Number of influences", "Shows by colour how many bones a place follows, one to four.",
-            WeightDisplay::Count),
-      shows("skin.show_tissues", "Tissues", "Shows the tissues as elsewhere, without weights.", std::nullopt),
+            "Mix the colours of all bones that a voxel follows. Voxels that many bones share are darker.",
+            WeightDisplay::Mixed),
+      shows("skin.show_count", "Number of influences",
+            "Colour each voxel by the number of bones that it follows, one to four.", WeightDisplay::Count),
+      shows("skin.show_tissues", "Tissues", "Show the tissue colours instead of weights.", std::nullopt),
       {"skin.contours", "Contours", "", "Weights",
-       "Draws lines where the active bone's weight is a quarter, a half, three quarters; else between bones' regions.",
+       "Draw lines where the active bone's weight is 0.25, 0.5 and 0.75, or between the regions of bones.",
        [](Editor& e) { e.skin->contours = !e.skin->contours; }, needs_skin_weights,
        [](const Editor& e) { return e.skin->contours; }},
-      {"skin.display_pie", "Weight display", icon::kVisible, "Weights", "Lists the displays of weights at the pointer.",
-       [](Editor& e) { e.open_popup = "Weight display"; }, needs_skin_weights},
+      {"skin.display_pie", "Weight display", icon::kVisible, "Weights",
+       "Open a menu of the weight displays at the pointer.", [](Editor& e) { e.open_popup = "Weight display"; },
+       needs_skin_weights},
       {"skin.pick_bone", "Pick bone", icon::kPick, "Weights",
-       "The bone that has most of the place under the pointer becomes active.", [](Editor& e) { pick_bone(e, false); },
+       "Make active the bone with the largest weight under the pointer.", [](Editor& e) { pick_bone(e, false); },
        needs_weights_below},
       {"skin.add_bone", "Pick bone too", "", "Weights",
-       "Adds the bone that has most of the place under the pointer to the chosen ones.",
+       "Add to the selection the bone with the largest weight under the pointer.",
        [](Editor& e) { pick_bone(e, true); }, needs_weights_below},
-      {"skin.find_bone", "Search bones", icon::kSearch, "Weights", "Finds a bone in the list of weights.", search_bones,
+      {"skin.find_bone", "Search bones", icon::kSearch, "Weights", "Search the list of bones by name.", search_bones,
        needs_skin_bone},
       {"skin.isolate_region", "Isolate region", icon::kVisible, "Weights",
-       "Shows only where the chosen bones have most of the weight; once more shows all.",
+       "Show only the tissue where the selected bones have the largest weight. Repeat to show all tissue.",
        [](Editor& e) { isolate_regions(e, chosen_names(e)); }, needs_skin_weights,
        [](const Editor& e) { return !e.skin->hidden.empty(); }},
       {"skin.hide_region", "Hide region", icon::kHidden, "Weights",
-       "Hides where the chosen bones have most of the weight.",
+       "Hide the tissue where the selected bones have the largest weight.",
        [](Editor& e) {
          for (const std::string& name : chosen_names(e)) hide_region(e, name, true);
        },
        needs_skin_weights},
-      {"skin.reveal_regions", "Reveal regions", icon::kVisible, "Weights", "Shows the regions of all bones again.",
+      {"skin.reveal_regions", "Reveal regions", icon::kVisible, "Weights", "Show the regions of all bones again.",
        [](Editor& e) { e.skin->hidden.clear(); }, needs_hidden},
-      {"skin.lock", "Lock bone", icon::kLock, "Weights", "The chosen bones' weights cannot change, or can again.",
-       lock_chosen, needs_skin_bone,
+      {"skin.lock", "Lock bone", icon::kLock, "Weights",
+       "Lock the weights of the selected bones against changes, or unlock them.", lock_chosen, needs_skin_bone,
        [](const Editor& e) {
          return needs_skin_bone(e).empty() &&
                 is_locked(e.document(), e.document().armature->bones[static_cast<std::size_t>(*skin_bone(e))].name);
        }},
       {"skin.lock_others", "Lock all but active", icon::kLock, "Weights",
-       "The weights of the active bone alone can change; once more unlocks all.",
+       "Lock the weights of all bones except the active one. Repeat to unlock all bones.",
        [](Editor& e) { lock_all_but(e, *skin_bone(e)); }, needs_skin_bone},
-      {"skin.lock_all", "Lock all bones", icon::kLock, "Weights", "No bone's weights can change.", lock_all,
-       needs_skin_bone},
-      {"skin.unlock_all", "Unlock all bones", icon::kUnlocked, "Weights", "Every bone's weights can change.",
+      {"skin.lock_all", "Lock all bones", icon::kLock, "Weights", "Lock the weights of all bones against changes.",
+       lock_all, needs_skin_bone},
+      {"skin.unlock_all", "Unlock all bones", icon::kUnlocked, "Weights", "Unlock the weights of all bones.",
        [](Editor& e) { set_locks(e, "Unlock all bones", {}); }, needs_locks},
       {"skin.invert_locks", "Invert locks", "", "Weights",
-       "Locks the bones that are not locked, and unlocks those that are.", invert_locks, needs_skin_bone},
-      {"skin.lock_pie", "Locks", icon::kLock, "Weights",
-       "Lists what can be done with the locks of bones, at the pointer.", [](Editor& e) { e.open_popup = "Locks"; },
-       needs_skin_bone},
+       "Lock the bones that are not locked, and unlock those that are.", invert_locks, needs_skin_bone},
+      {"skin.lock_pie", "Locks", icon::kLock, "Weights", "Open a menu of the commands that lock bones, at the pointer.",
+       [](Editor& e) { e.open_popup = "Locks"; }, needs_skin_bone},
   };
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 using Fields = std::vector<FormField>;
 
-// Where a reach and an operation's own place let it edit; empty for everywhere.
+// Returns the voxels that the operation may change: those that the brush's filters and the operation's own `where`
+// allow. Empty: all voxels.
 TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operation) {
   TissueRegion own;
   if (operation.where) own = operation.where(what);
@@ -39,7 +40,7 @@ TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operati
 
 struct Done {
   EditedWeights edited;
-  std::optional<EditedLayers> made;  // where something changed
+  std::optional<EditedLayers> made;  // none: nothing changed
 };
 
 Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {
@@ -56,32 +57,32 @@ Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress&
   return result;
 }
 
-// What came of it, in words; true when it became an edit.
+// Reports the result to the user and commits it; returns true if there was an edit to commit.
 bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
   EditedWeights& outcome = result.edited;
   const WeightEdit& edit = outcome.edit;
   const Document& now = editor.document();
   const bool others = now.layers != what.layer.layers || now.weights != what.layer.came_out;
   if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
-    editor.messages.warn(operation.label, "The weights were changed meanwhile: it was dropped");
+    editor.messages.warn(operation.label, "The weights were changed meanwhile, so nothing was applied: run it again");
     return false;
   }
   const std::string lock = edit.blocked > 0 && edit.blocked_by >= 0 ? lock_message(*now.armature, edit.blocked_by) : "";
   editor.skin->painting->unmatched = std::move(outcome.unmatched);
   if (edit.changed == 0) {
     if (!lock.empty())
-      editor.messages.toast_error(lock, "Nothing else can take or give the weight here", "skin.unlock_all");
+      editor.messages.toast_error(lock, "No unlocked bone can give or take weight here", "skin.unlock_all");
     else if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
-    else editor.messages.info(operation.label, "All is so already");
+    else editor.messages.info(operation.label, "No weight needed to change");
     return false;
   }
   commit_weights(editor, operation.label, what.layer, *result.made);
   const bool was_off = what.settings.normalize == Normalize::WhenComposed;
   const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels") +
-                              (was_off ? ", normalized: only strokes leave that to the layers" : "");
+                              (was_off ? ", normalized, although Normalize is off: that applies only to strokes" : "");
   if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
   else if (!lock.empty())
-    editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " kept: " + lock);
+    editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " unchanged: " + lock);
   else editor.messages.ok(operation.label, changed);
   return true;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the weights of the whole body or of a part of it, as the user asks for them: under the locks and within the
-// clip, the chosen tissues and the region of the document of the moment; each is one edit, whose numbers can be changed
-// afterwards (redo_last_operator.h). On a large body the work is a job: its edit comes when it is done, unless the
-// weights were changed meanwhile.
+// Edits the weights of the whole body or of a part of it. An edit respects locked bones, the clip plane and box, the
+// brush's tissues and the region. It is one undo step, whose numbers can be adjusted afterwards (redo_last_operator.h).
+// On a large body the work runs in a job, which commits its edit at the end unless the weights changed meanwhile.
 #pragma once
 
 #include <functional>
@@ -17,11 +16,11 @@
 
 namespace limber::editor {
 
-// All that the work reads, so that it can go on beside the editor.
+// All inputs of a weight edit, copied so that it can run in a job.
 struct WeightsToEdit {
-  Document document;  // its weights are what is edited: those of the active layer, where there are any
+  Document document;  // `document.weights`: with layers, those of the active layer
   std::shared_ptr<const TissueVoxels> tissue;
-  StrokeSettings settings;  // as of a brush: the painted bones, locks, filter
+  StrokeSettings settings;  // as for a brush: the painted bones, locks, filter
   LayerToEdit layer;
 
   WeightedBody body() const { return {*document.volume, *tissue, *document.tissues, *document.armature}; }
@@ -31,33 +30,35 @@ WeightsToEdit weights_to_edit(Editor& editor);
 
 struct EditedWeights {
   WeightEdit edit;
-  std::string warning;                       // what the user should know of a work that was done; "" for nothing
-  std::vector<std::int64_t> unmatched = {};  // places that a mirror found nothing for
+  std::string warning;                       // a warning for the user about a completed edit; "": none
+  std::vector<std::int64_t> unmatched = {};  // indices of the tissue voxels that a mirror found no match for
 };
 
-// How far an edit reaches: as the brush may, or in all tissues (what is named by itself need not be among the brush's).
+// The tissues that an edit may change: those that the brush may paint, or all. AllTissues is for edits in which the
+// user selects the tissue directly.
 enum class EditReach { AsBrush, AllTissues };
 
 struct WeightOperation {
-  std::string label;  // of the edit: "Flood Forearm"
+  std::string label;  // name of the edit, "Flood Forearm"
   EditReach reach = EditReach::AsBrush;
-  bool edits_bone_tissue = false;  // else it stays as it is
-  bool reads_file = false;         // so it is a job whatever the body
-  // Where: empty for all that the reach allows.
+  bool edits_bone_tissue = false;  // false: weights of bone tissue stay as they are
+  bool reads_file = false;         // true: runs in a job even on a small body
+  // Function that returns the voxels to edit; null: edit all voxels that `reach` allows.
   std::function<TissueRegion(const WeightsToEdit&)> where = {};
   std::function<EditedWeights(const WeightsToEdit&, const EditScope&)> work;
 };
-// Throws Error for what cannot be done.
+// Makes an operation from the field values of its form. Throws Error for values that cannot be applied.
 using MakeWeightOperation = std::function<WeightOperation(const Editor&, const std::vector<FormField>&)>;
 
-// Does it, or begins to; its fields can be adjusted afterwards. An edit of weights that is still at work is cancelled.
+// Performs the operation, or starts a job for it; the user can adjust its fields afterwards. Cancels a weight edit that
+// is still running.
 void edit_weights(Editor& editor, const std::vector<FormField>& fields, const MakeWeightOperation& make);
-// For a form, which makes its act adjustable itself.
+// Returns a form's action that performs the operation. The form itself lets the user adjust the fields afterwards.
 ActWith weight_act(const MakeWeightOperation& make);
 
-// "Forearm", or "3 bones": what is painted.
+// Returns the painted bone's name, or the number of painted bones: "Forearm" or "3 bones".
 std::string painted_name(const Editor& editor);
-// The bones of the weights that are painted.
+// Returns the painted bones as indices into the weights' bones.
 std::vector<int> painted_bones(const Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the weights of a whole body, or of a part of it, at once.
+// Operators that edit the weights of the whole body or of a part of it: flood, fill, mirror, smooth, limit, copy,
+// transfer.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +26,7 @@ namespace {
 using Fields = std::vector<FormField>;
 
 std::string needs_paint(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   return why_not_paint(editor);
 }
 
@@ -51,7 +52,7 @@ WeightOperation smoothing(const std::string& label, int passes, double amount) {
           }};
 }
 
-// Flood
+// ---- flood
 
 constexpr int kSmoothFlood = 4;
 
@@ -70,49 +71,51 @@ std::string needs_flood(const Editor& editor) {
   const std::string why = needs_reach(editor);
   if (!why.empty() || flood_of(editor.skin->painting->kind)) return why;
   return std::string(name_of(editor.skin->painting->kind)) +
-         " is a brush alone: flood with add, subtract, set, multiply or smooth";
+         " cannot flood: select the add, subtract, set, multiply or smooth brush";
 }
 
-// What one dab of the brush does in its middle, everywhere.
+// Applies the effect that a dab of the brush has at its centre to all tissue that the brush may paint.
 void flood(Editor& editor) {
   const Painting& painting = *editor.skin->painting;
   const int kind = *flood_of(painting.kind);
   const bool by_strength = kind < 2;
-  edit_weights(editor,
-               {choice_of("Brush", "What is done with the weight of the chosen bones.",
-                          {"Add", "Subtract", "Set", "Multiply", "Smooth"}, kind),
-                number_of("Value", "What is added or taken, set, or multiplied by.",
-                          by_strength ? painting.strength : painting.value, 0, 1, "%.2f"),
-                number_of("Amount", "How much of it is done; smooth goes on for as many steps.",
-                          by_strength || kind == kSmoothFlood ? 1 : painting.strength, 0, 1, "%.2f")},
-               [](const Editor& e, const Fields& fields) {
-                 const double value = fields[1].value, amount = fields[2].value;
-                 if (fields[0].chosen == kSmoothFlood) return smoothing("Smooth all", 1, amount);
-                 return flooding("Flood " + painted_name(e), static_cast<Flood>(fields[0].chosen), value, amount);
-               });
+  edit_weights(
+      editor,
+      {choice_of("Brush", "What happens to the weight of the selected bones.",
+                 {"Add", "Subtract", "Set", "Multiply", "Smooth"}, kind),
+       number_of("Value", "The weight to add, subtract or set, or the factor to multiply by. Smooth does not use it.",
+                 by_strength ? painting.strength : painting.value, 0, 1, "%.2f"),
+       number_of("Amount", "How much of the change is applied. 0 = none, 1 = all.",
+                 by_strength || kind == kSmoothFlood ? 1 : painting.strength, 0, 1, "%.2f")},
+      [](const Editor& e, const Fields& fields) {
+        const double value = fields[1].value, amount = fields[2].value;
+        if (fields[0].chosen == kSmoothFlood) return smoothing("Smooth all", 1, amount);
+        return flooding("Flood " + painted_name(e), static_cast<Flood>(fields[0].chosen), value, amount);
+      });
 }
 
-// A part, a tissue
+// ---- fill connected tissue, assign a tissue
 
 void fill_part(Editor& editor) {
   const glm::ivec3 voxel = editor.views->hover.voxel;
-  edit_weights(editor,
-               {choice_of("Part", "Of the tissue under the pointer, or of all tissue: what hangs together with it.",
-                          {"Tissue", "All"}),
-                number_of("Value", "The weight that the chosen bones get there.", 1, 0, 1, "%.2f")},
-               [voxel](const Editor& e, const Fields& fields) {
-                 WeightOperation operation = flooding("Fill part with " + painted_name(e), Flood::Set, fields[1].value);
-                 operation.reach = EditReach::AllTissues;
-                 operation.edits_bone_tissue = true;
-                 operation.where = [voxel, part = fields[0].chosen == 0 ? Part::Label
-                                                                        : Part::Tissue](const WeightsToEdit& what) {
-                   return connected_part(*what.document.volume, *what.tissue, voxel, part);
-                 };
-                 return operation;
-               });
+  edit_weights(
+      editor,
+      {choice_of("Part", "Tissue: fill the connected part of the tissue under the pointer. All: fill across tissues.",
+                 {"Tissue", "All"}),
+       number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
+      [voxel](const Editor& e, const Fields& fields) {
+        WeightOperation operation = flooding("Fill part with " + painted_name(e), Flood::Set, fields[1].value);
+        operation.reach = EditReach::AllTissues;
+        operation.edits_bone_tissue = true;
+        operation.where = [voxel,
+                           part = fields[0].chosen == 0 ? Part::Label : Part::Tissue](const WeightsToEdit& what) {
+          return connected_part(*what.document.volume, *what.tissue, voxel, part);
+        };
+        return operation;
+      });
 }
 
-// The chosen tissues, else the one under the pointer.
+// Returns the selected tissues, or else the tissue under the pointer.
 std::set<Label> named_tissues(const Editor& editor) {
   if (!editor.selection.tissues.empty()) return editor.selection.tissues;
   return editor.views->hover.inside ? std::set<Label>{editor.views->hover.label} : std::set<Label>{};
@@ -120,7 +123,7 @@ std::set<Label> named_tissues(const Editor& editor) {
 
 std::string needs_named_tissue(const Editor& editor) {
   if (const std::string why = needs_paint(editor); !why.empty()) return why;
-  return named_tissues(editor).empty() ? "Choose a tissue, or point at one" : "";
+  return named_tissues(editor).empty() ? "Select a tissue, or point at one" : "";
 }
 
 void assign_tissue(Editor& editor) {
@@ -130,7 +133,7 @@ void assign_tissue(Editor& editor) {
                            : tissue          ? shown_name(*tissue)
                                              : "Label " + std::to_string(*labels.begin());
   edit_weights(
-      editor, {number_of("Value", "The weight that the chosen bones get in all of the tissue.", 1, 0, 1, "%.2f")},
+      editor, {number_of("Value", "The weight that the selected bones get in all of the tissue.", 1, 0, 1, "%.2f")},
       [labels, name](const Editor& e, const Fields& fields) {
         WeightOperation operation = flooding("Assign " + name + " to " + painted_name(e), Flood::Set, fields[0].value);
         operation.reach = EditReach::AllTissues;
@@ -144,9 +147,10 @@ void assign_tissue(Editor& editor) {
       });
 }
 
-// Mirror
+// ---- mirror
 
-// Named "Left", but without a partner: their weights come from and go to themselves.
+// Returns a message that names the bones whose counterpart on the other side is missing; "" if there are none. The
+// weights of such a bone are mirrored to the bone itself.
 std::string without_partner(const Armature& armature) {
   std::string names;
   int count = 0;
@@ -164,15 +168,16 @@ std::string without_partner(const Armature& armature) {
 void mirror(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const MirrorPlane plane = mirror_plane(armature);
-  // From the side of the active bone; x grows to the left.
+  // By default the side of the active bone is the source. The world's x axis points to the body's left.
   const Bone& active = armature.bones[static_cast<std::size_t>(*skin_bone(editor))];
   const double left = plane.normal.x < 0 ? -1 : 1,
                side = left * glm::dot((active.head + active.tail) / 2.0 - plane.point, plane.normal);
   edit_weights(
       editor,
-      {choice_of("From", "The side whose weights the other one takes over.", {"Left", "Right"}, side >= 0 ? 0 : 1),
-       number_of("Within", "Each voxel takes the weights nearest to its mirror image, at most so far away.", 10, 0.5,
-                 100, "%.1f", "mm")},
+      {choice_of("From", "The side whose weights are copied to the other side.", {"Left", "Right"}, side >= 0 ? 0 : 1),
+       number_of("Within",
+                 "A voxel gets the weights of the tissue nearest to its mirrored position, within this distance.", 10,
+                 0.5, 100, "%.1f", "mm")},
       [left](const Editor&, const Fields& fields) {
         WeightOperation operation{
             .label = fields[0].chosen == 0 ? "Mirror weights to the right" : "Mirror weights to the left",
@@ -186,7 +191,7 @@ void mirror(Editor& editor) {
           std::string words = edit.unmatched.empty()
                                   ? ""
                                   : grouped(std::ssize(edit.unmatched)) + " voxels have no match within " +
-                                        text_of_number("%.1f", reach) + " mm and stay";
+                                        text_of_number("%.1f", reach) + " mm and stay unchanged";
           if (const std::string loose = without_partner(rig); !loose.empty())
             words += (words.empty() ? "" : "; ") + loose;
           return {static_cast<WeightEdit&>(edit), words, std::move(edit.unmatched)};
@@ -195,19 +200,21 @@ void mirror(Editor& editor) {
       });
 }
 
-// All bones at once
+// ---- edits of all bones at once
 
 void smooth_all(Editor& editor) {
-  edit_weights(editor,
-               {number_of("Steps", "How often; each step draws weights to those of the neighbours.", 3, 1, 100, "%.0f"),
-                number_of("Amount", "How far each step goes.", 1, 0, 1, "%.2f")},
-               [](const Editor&, const Fields& fields) {
-                 return smoothing("Smooth all", static_cast<int>(std::lround(fields[0].value)), fields[1].value);
-               });
+  edit_weights(
+      editor,
+      {number_of("Steps", "Number of steps. Each step moves weights towards those of the neighbouring voxels.", 3, 1,
+                 100, "%.0f"),
+       number_of("Amount", "How far each step moves the weights. 1 = fully to the neighbours' mean.", 1, 0, 1, "%.2f")},
+      [](const Editor&, const Fields& fields) {
+        return smoothing("Smooth all", static_cast<int>(std::lround(fields[0].value)), fields[1].value);
+      });
 }
 
-// Changes that are made voxel by voxel, of all bones; each leaves a voxel nearer to one bone alone, so bone tissue may
-// have it.
+// Returns an operation that changes the weights of each voxel independently of its neighbours. Such operations bring a
+// voxel closer to following one bone, so they may change bone tissue too.
 WeightOperation voxel_edit(
     const std::string& label,
     const std::function<WeightEdit(const WeightedBody&, const SkinWeights&, const EditScope&)>& edit) {
@@ -220,7 +227,8 @@ WeightOperation voxel_edit(
 
 void limit(Editor& editor) {
   edit_weights(editor,
-               {number_of("Bones", "A voxel follows at most so many; the smallest weights go.", 2, 1, 4, "%.0f")},
+               {number_of("Bones", "Largest number of bones that a voxel follows. Smaller weights are removed.", 2, 1,
+                          4, "%.0f")},
                [](const Editor&, const Fields& fields) {
                  const int most = static_cast<int>(std::lround(fields[0].value));
                  return voxel_edit("Limit influences to " + std::to_string(most),
@@ -231,7 +239,8 @@ void limit(Editor& editor) {
 
 void prune(Editor& editor) {
   edit_weights(editor,
-               {number_of("Below", "Smaller weights go; the voxel's other bones take them.", 0.02, 0, 0.5, "%.3f")},
+               {number_of("Below", "Remove weights below this value. The voxel's other bones get the removed weight.",
+                          0.02, 0, 0.5, "%.3f")},
                [](const Editor&, const Fields& fields) {
                  return voxel_edit(
                      "Clean small weights",
@@ -241,7 +250,8 @@ void prune(Editor& editor) {
 }
 
 void quantize(Editor& editor) {
-  edit_weights(editor, {number_of("Steps", "Every weight becomes a whole number of such parts.", 10, 1, 1000, "%.0f")},
+  edit_weights(editor,
+               {number_of("Steps", "Round every weight to a multiple of 1 / this number.", 10, 1, 1000, "%.0f")},
                [](const Editor&, const Fields& fields) {
                  const int steps = static_cast<int>(std::lround(fields[0].value));
                  return voxel_edit("Quantize to " + std::to_string(steps) + " steps",
@@ -253,9 +263,9 @@ void quantize(Editor& editor) {
 void set_levels(Editor& editor) {
   edit_weights(
       editor,
-      {number_of("Low", "What becomes 0.", 0, 0, 0.99, "%.2f"),
-       number_of("High", "What becomes 1.", 1, 0.01, 1, "%.2f"),
-       number_of("Gamma", "Over 1 lifts what is between, under 1 lowers it.", 1.5, 0.1, 10, "%.2f")},
+      {number_of("Low", "The weight that becomes 0.", 0, 0, 0.99, "%.2f"),
+       number_of("High", "The weight that becomes 1.", 1, 0.01, 1, "%.2f"),
+       number_of("Gamma", "Above 1 raises the weights in between, below 1 lowers them.", 1.5, 0.1, 10, "%.2f")},
       [](const Editor& e, const Fields& fields) {
         WeightRules::Levels levels;
         levels.in_low = fields[0].value;
@@ -277,7 +287,8 @@ void ask_copy(Editor& editor) {
   const MakeWeightOperation make = [names](const Editor&, const Fields& fields) {
     const int source = fields[0].chosen, target = fields[1].chosen;
     if (source == target)
-      throw Error("a bone cannot be copied to itself", names[static_cast<std::size_t>(source)], "choose another one");
+      throw Error("a bone cannot be copied to itself", names[static_cast<std::size_t>(source)],
+                  "select two different bones");
     constexpr const char* kVerbs[] = {"Copy", "Add", "Move", "Swap"};
     const Copy kind = static_cast<Copy>(fields[2].chosen);
     return WeightOperation{.label = std::string(kVerbs[fields[2].chosen]) + " weights of " +
@@ -291,32 +302,32 @@ void ask_copy(Editor& editor) {
   const auto outcome = [names](const Editor&, const Fields& fields) {
     const std::string &source = names[static_cast<std::size_t>(fields[0].chosen)],
                       &target = names[static_cast<std::size_t>(fields[1].chosen)];
-    if (source == target) throw Error("a bone cannot be copied to itself", source, "choose another one");
-    const std::string results[] = {target + " gets the weight that " + source + " has, from all unlocked bones.",
-                                   target + " gets the weight that " + source + " has on top of its own.",
-                                   target + " takes over the weight of " + source + ", which has none then.",
-                                   source + " and " + target + " change places."};
+    if (source == target) throw Error("a bone cannot be copied to itself", source, "select two different bones");
+    const std::string results[] = {target + " gets the same weight as " + source + ", taken from all unlocked bones.",
+                                   target + " gets the weight that " + source + " has, in addition to its own.",
+                                   target + " takes over the weight of " + source + ", which then has none.",
+                                   source + " and " + target + " exchange their weights."};
     return results[fields[2].chosen];
   };
-  editor.open_dialog(make_form(
-      {"Copy weights",
-       "Weights of one bone for another.",
-       "Copy",
-       {choice_of("Bone", "Whose weights are taken.", names, from),
-        choice_of("to", "The bone that gets them.", names, to),
-        choice_of("How", "What becomes of the weights that are there.", {"Replace", "Add", "Move", "Swap"}, 2)},
-       outcome,
-       weight_act(make)}));
+  editor.open_dialog(make_form({"Copy weights",
+                                "Give the weights of one bone to another.",
+                                "Copy",
+                                {choice_of("Bone", "The bone whose weights are copied.", names, from),
+                                 choice_of("to", "The bone that gets them.", names, to),
+                                 choice_of("How", "How the copied weights combine with the existing ones.",
+                                           {"Replace", "Add", "Move", "Swap"}, 2)},
+                                outcome,
+                                weight_act(make)}));
 }
 
-// From another project
+// ---- transfer from another project
 
 EditedWeights transfer(const Path& path, const WeightsToEdit& what, const EditScope& scope) {
   const Project project = read_project(path, *scope.progress);
   const Document& from = project.document;
   const std::string name = path.filename().string();
   if (!from.volume || !from.armature || !from.weights)
-    throw Error("the project has no weights", name, "choose one with a volume, a rig and weights");
+    throw Error("the project has no weights", name, "select a project with a volume, a rig and weights");
   const TissueVoxels tissue(*from.volume);
   TransferEdit edit = transferred(what.body(), *what.document.weights,
                                   {*from.volume, tissue, *from.armature, *from.weights}, scope, *scope.progress);
@@ -325,7 +336,7 @@ EditedWeights transfer(const Path& path, const WeightsToEdit& what, const EditSc
   if (edit.missing.size() > 3) words += " and " + std::to_string(edit.missing.size() - 3) + " more";
   if (!words.empty())
     words +=
-        std::string(edit.missing.size() == 1 ? " is" : " are") + " not in this rig: what the bone hangs on took over";
+        std::string(edit.missing.size() == 1 ? " is" : " are") + " not in this rig: the bone's parent got the weight";
   return {static_cast<WeightEdit&>(edit), words};
 }
 
@@ -349,7 +360,7 @@ void ask_transfer(Editor& editor) {
 
 std::string needs_two_bones(const Editor& editor) {
   if (const std::string why = needs_reach(editor); !why.empty()) return why;
-  return editor.document().weights->bones().size() > 1 ? "" : "The rig has one bone alone";
+  return editor.document().weights->bones().size() > 1 ? "" : "The rig has only one bone";
 }
 
 }  // namespace
@@ -357,46 +368,46 @@ std::string needs_two_bones(const Editor& editor) {
 std::vector<Operator> weight_edit_operators() {
   return {
       {"skin.flood", "Flood", icon::kBrushSet, "Weights",
-       "Does what the brush does, with its value and strength, in all that it may reach: tissues, clip, region and "
-       "locks hold.",
+       "Apply the brush's effect to all tissue that it may paint. The tissue filter, the clip box and plane, the "
+       "region "
+       "and the locks limit it.",
        flood, needs_flood},
       {"skin.gradient", "Gradient", icon::kGradient, "Weights",
-       "The chosen bones' weight goes from full to none along a line that is drawn, or around its beginning.",
+       "Draw a line along which the weight of the selected bones fades from full to none. Press R to fade it in all "
+       "directions from the line's start.",
        [](Editor& e) {
          e.modal = begin_gradient(e);
          e.modal_wrap = {};
        },
        [](const Editor& e) {
          return needs_reach(e).empty() && e.views->scene.pose
-                    ? std::string("Bring the body to rest first: the line is drawn on it there")
+                    ? std::string("Show the body at rest first: the line is drawn on the rest pose")
                     : needs_reach(e);
        }},
       {"skin.fill_part", "Fill part", icon::kBrushSet, "Weights",
-       "The piece of tissue under the pointer follows the chosen bone, as far as it hangs together.", fill_part,
+       "Let the connected part of the tissue under the pointer follow the selected bone.", fill_part,
        needs_tissue_below},
       {"skin.assign_tissue", "Assign tissue to bone", icon::kTissues, "Weights",
-       "All of the chosen tissues, or of the one under the pointer, follows the chosen bone.", assign_tissue,
+       "Let the selected tissues, or the one under the pointer, follow the selected bone.", assign_tissue,
        needs_named_tissue},
       {"skin.mirror_weights", "Mirror weights", icon::kMirror, "Weights",
-       "One side takes over the weights of the other, each bone those of the bone on the other side; voxels without a "
-       "match are told.",
+       "Copy the weights of one side of the body to the other, from each bone to its mirrored bone. Reports voxels "
+       "without a match.",
        mirror, needs_reach},
       {"skin.smooth_all", "Smooth all", icon::kBrushSmooth, "Weights",
-       "Draws the weights of all bones to those of the neighbours, step by step.", smooth_all, needs_reach},
-      {"skin.limit", "Limit influences", "", "Weights", "Each voxel follows at most so many bones.", limit,
+       "Smooth the weights of all bones over neighbouring voxels, in several steps.", smooth_all, needs_reach},
+      {"skin.limit", "Limit influences", "", "Weights", "Limit the number of bones that each voxel follows.", limit,
        needs_reach},
       {"skin.prune", "Clean small weights", "", "Weights",
-       "Weights below a share go, so that few bones are left at a voxel.", prune, needs_reach},
+       "Remove weights below a limit, so that each voxel follows few bones.", prune, needs_reach},
       {"skin.levels", "Levels", "", "Weights",
-       "Stretches the active bone's weights between two values, and lifts or lowers what lies between.", set_levels,
+       "Stretch the active bone's weights between two values, and raise or lower those in between.", set_levels,
        needs_reach},
-      {"skin.quantize", "Quantize", "", "Weights", "Weights become whole numbers of equal steps.", quantize,
-       needs_reach},
+      {"skin.quantize", "Quantize", "", "Weights", "Round all weights to multiples of a step.", quantize, needs_reach},
       {"skin.copy_weights", "Copy weights...", icon::kCopy, "Weights",
-       "A bone gets the weights of another, adds them, takes them over, or changes with it.", ask_copy,
-       needs_two_bones},
+       "Copy, add or move the weights of one bone to another, or swap them.", ask_copy, needs_two_bones},
       {"skin.transfer_weights", "Transfer weights...", icon::kImport, "Weights",
-       "Takes the weights of another project where its body lies, whatever its voxels; bones go by their names.",
+       "Copy weights from another project of any voxel size. Voxels are matched by position, bones by name.",
        ask_transfer, needs_reach},
   };
 }

@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kComposedAtOnce = 300'000;  // voxels: some 20 ms
+constexpr std::int64_t kComposedAtOnce = 300'000;  // largest body, in voxels, composed without a job (some 20 ms)
 
 bool of_one_body(const SkinWeights& a, const SkinWeights& b) {
   bool same = a.bones() == b.bones() && a.size() == b.size() && a.chunk_count() == b.chunk_count();
@@ -26,7 +26,7 @@ std::shared_ptr<const T> shared(T value) {
   return std::make_shared<const T>(std::move(value));
 }
 
-// Both parts of the document at once.
+// Sets the document's layers and its weights. came_out: the weights that the layers compose to.
 void set_layers(Document& document, WeightLayers layers, std::shared_ptr<const SkinWeights> came_out) {
   if (layers.layers.empty()) {
     document.weights = layers.base;
@@ -67,8 +67,8 @@ std::string why_not_paint_layer(const Editor& editor) {
   const auto layer = active_layer(editor);
   if (!layer) return "";
   const WeightLayer& active = *editor.document().layers->layers[*layer];
-  if (!active.visible) return "The layer " + active.name + " is hidden: show it, or choose another";
-  if (active.opacity == 0) return "The layer " + active.name + " has no opacity: raise it, or choose another";
+  if (!active.visible) return "The layer " + active.name + " is hidden: show it, or select another";
+  if (active.opacity == 0) return "The layer " + active.name + " has no opacity: raise it, or select another";
   return "";
 }
 
@@ -99,7 +99,7 @@ EditedLayers edited_layers(const LayerToEdit& edited, std::shared_ptr<const Skin
 
 Document with_edited(const Document& now, const LayerToEdit& edited, const EditedLayers& made) {
   if (now.layers != edited.layers || now.weights != edited.came_out)
-    throw Error("the weights were changed meanwhile", "changing weights", "do it again");
+    throw Error("the weights were changed meanwhile", "changing weights", "repeat the edit");
   Document next = now;
   next.layers = made.layers;
   next.weights = made.weights;
@@ -108,7 +108,7 @@ Document with_edited(const Document& now, const LayerToEdit& edited, const Edite
 
 void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
   commit(editor, label, with_edited(editor.document(), edited, made));
-  // The canvas shows it: the next stroke need not put it together.
+  // Caches the layer's canvas, so that the next stroke need not compute it.
   if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, made.after};
 }
 
@@ -129,7 +129,7 @@ void commit_layers(Editor& editor, const std::string& label, WeightLayers next) 
         auto made = shared(recomposed(next, before, *came_out));
         return [label, next, of, came_out, made](const Document& now) {
           if (now.layers != of || now.weights != came_out)
-            throw Error("the layers were changed meanwhile", label, "do it again");
+            throw Error("the layers were changed meanwhile", label, "repeat the edit");
           Document changed = now;
           set_layers(changed, next, made);
           return changed;

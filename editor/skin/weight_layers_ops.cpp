@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Layers of weights: added, ordered, masked, merged down, removed.
+// Operators of weight layers: add, remove, rename, reorder, mask, merge.
 #include <algorithm>
 
 #include "editor/context/operator.h"
@@ -14,13 +14,13 @@ namespace limber::editor {
 namespace {
 
 std::string needs_weights(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   return seen_weights(editor) ? "" : "Compute the weights first";
 }
 
 std::string needs_layer(const Editor& editor) {
   if (std::string why = needs_weights(editor); !why.empty()) return why;
-  return active_layer(editor) ? "" : "Choose a layer above the base first";
+  return active_layer(editor) ? "" : "Select a layer above the base first";
 }
 
 WeightLayers layers_of(const Editor& editor) {
@@ -40,7 +40,7 @@ void add(Editor& editor) {
        ++number)
     name = "Layer " + std::to_string(number);
   next = with_new_layer(next, name);
-  // Above the active one, or at the top.
+  // Move the new layer above the active one; without an active layer the new one stays on top.
   const std::size_t at = active_layer(editor) ? *active_layer(editor) + 1 : next.layers.size() - 1;
   std::rotate(next.layers.begin() + static_cast<std::ptrdiff_t>(at), next.layers.end() - 1, next.layers.end());
   commit_layers(editor, "Add " + name, std::move(next));
@@ -83,47 +83,49 @@ void cover(Editor& editor, double share, const char* label) {
 std::vector<Operator> layer_operators() {
   return {
       {"skin.layer_add", "New layer", icon::kAdd, "Layers",
-       "Puts an empty layer of weights above the active one: what is painted on it changes nothing below.", add,
+       "Add an empty layer of weights above the active one. Painting on it changes no layer below.", add,
        needs_weights},
       {"skin.layer_remove", "Remove layer", icon::kTrash, "Layers",
-       "Takes the active layer away, with what was painted on it.", remove, needs_layer},
-      {"skin.layer_rename", "Rename layer", icon::kRename, "Layers", "Gives the active layer another name.",
+       "Remove the active layer with everything painted on it.", remove, needs_layer},
+      {"skin.layer_rename", "Rename layer", icon::kRename, "Layers", "Give the active layer another name.",
        [](Editor& e) {
          e.arrangement().sidebar = e.open_sections["Layers"] = true;
          e.wanted_section = "Layers";
          begin_renaming(e, "layers" + std::to_string(*active_layer(e)), name_of_active(e));
        },
        needs_layer},
-      {"skin.layer_show", "Show layer", icon::kVisible, "Layers", "Shows or hides what the active layer changes.",
+      {"skin.layer_show", "Show layer", icon::kVisible, "Layers",
+       "Show or hide the active layer's changes of the weights.",
        [](Editor& e) { show_layer(e, *active_layer(e), !e.document().layers->layers[*active_layer(e)]->visible); },
        needs_layer,
        [](const Editor& e) { return active_layer(e) && e.document().layers->layers[*active_layer(e)]->visible; }},
-      {"skin.layer_up", "Raise layer", icon::kUp, "Layers", "Puts the active layer above the next one.",
+      {"skin.layer_up", "Raise layer", icon::kUp, "Layers", "Move the active layer up by one.",
        [](Editor& e) { move(e, 1); },
        [](const Editor& e) {
          const std::string why = needs_layer(e);
          return !why.empty()                                                 ? why
-                : *active_layer(e) + 1 == e.document().layers->layers.size() ? "It is the uppermost layer"
+                : *active_layer(e) + 1 == e.document().layers->layers.size() ? "This is already the top layer"
                                                                              : "";
        }},
-      {"skin.layer_down", "Lower layer", icon::kDown, "Layers", "Puts the active layer below the next one.",
+      {"skin.layer_down", "Lower layer", icon::kDown, "Layers", "Move the active layer down by one.",
        [](Editor& e) { move(e, -1); },
        [](const Editor& e) {
          const std::string why = needs_layer(e);
-         return !why.empty() ? why : *active_layer(e) == 0 ? "It is the lowest layer" : "";
+         return !why.empty() ? why : *active_layer(e) == 0 ? "This is already the lowest layer" : "";
        }},
       {"skin.layer_merge", "Merge down", icon::kMergeDown, "Layers",
-       "Joins the active layer with the one below it, or with the base; what is seen stays.", merge_down, needs_layer},
+       "Merge the active layer into the one below it, or into the base; the resulting weights stay.", merge_down,
+       needs_layer},
       {"skin.layer_mask", "Paint mask", icon::kMask, "Layers",
-       "Strokes change where the active layer covers, in place of weights: add lets it cover, subtract lets through "
-       "what is below.",
+       "Paint the active layer's mask instead of weights. The Add brush covers the layers below, Subtract reveals "
+       "them.",
        [](Editor& e) { e.skin->painting->mask = !e.skin->painting->mask; }, needs_layer,
        [](const Editor& e) { return e.skin->painting->mask && active_layer(e).has_value(); }},
       {"skin.layer_cover", "Cover everywhere", "", "Layers",
-       "The active layer covers the whole body with what is seen there.",
+       "Let the active layer cover the whole body. It gets the weights that are shown now.",
        [](Editor& e) { cover(e, 1, "Cover all by "); }, needs_layer},
       {"skin.layer_uncover", "Clear mask", "", "Layers",
-       "The active layer covers nothing; what was painted on it is gone.",
+       "Let the active layer cover nothing; this erases what was painted on it.",
        [](Editor& e) { cover(e, 0, "Clear mask of "); }, needs_layer},
   };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The layers of weights in rows, the uppermost first: eye, mask, name, opacity. The base stands below them and stays.
+// Draws the list of weight layers, the topmost first. A row has an eye, a mask, a name and an opacity. The base is the
+// last row and cannot be removed.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/skin/painting.h"
@@ -22,12 +23,11 @@ void draw_eye(Editor& editor, const Rect& rect, std::size_t index, bool visible)
   put_icon(look.fonts.regular, visible ? look.theme.text2 : look.theme.text3, rect,
            visible ? icon::kVisible : icon::kHidden);
   if (pressed.hovered)
-    tooltip(editor, rect, visible ? "Hide layer" : "Show layer",
-            "What the layer changes is seen and used only while it is shown.");
+    tooltip(editor, rect, visible ? "Hide layer" : "Show layer", "A layer affects the weights only while it is shown.");
   if (pressed.clicked) show_layer(editor, index, !visible);
 }
 
-// Half covered, as masks are drawn; framed while strokes go to it.
+// Draws the mask icon, a half-filled square, with a frame while strokes paint the layer's mask.
 void draw_mask(Editor& editor, const Rect& rect, std::size_t index, bool painted) {
   const Look& look = editor.look;
   const Pressed pressed = press_area(editor, "mask", rect);
@@ -59,7 +59,7 @@ void draw_layer(Editor& editor, Column& column, int row, std::size_t index, cons
   const Rect name{{rect.low.x + look.px(54), rect.low.y}, {rect.high.x - look.px(kOpacity + 14), rect.high.y}};
   const Rect field{{rect.high.x - look.px(kOpacity + 8), rect.low.y + look.px(1)},
                    {rect.high.x - look.px(8), rect.high.y - look.px(1)}};
-  // Both may commit, after which the layer is another.
+  // These are copies, because the fields below may commit an edit that replaces the layer.
   const std::string layer_name = layer.name;
   const double before = layer.opacity;
   double percent = 100 * before;
@@ -127,7 +127,7 @@ void draw_foot(Editor& editor, Column& column) {
 }  // namespace
 
 void draw_layers(Editor& editor, Column& column) {
-  const auto layers = editor.document().layers;  // kept, since a row may commit
+  const auto layers = editor.document().layers;  // a copy, because a row may commit an edit that replaces it
   const int count = layers ? static_cast<int>(layers->layers.size()) : 0;
   if (column.begin_section("Layers", count ? std::to_string(count) : "")) {
     take_key(editor, count);

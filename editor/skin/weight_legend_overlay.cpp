@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Over the views of the Skin workspace: what the colours of weights mean, and the weights under the pointer.
+// Draws over the views of the Skin workspace: the legend of the weight colours, and a readout of the weights under the
+// pointer.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,11 +17,11 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8,
-                kNeeded = 460;  // narrow: a ramp in a small view
+                kNeeded = 460;  // px at scale 1; a view narrower than kNeeded has no legend
 
 Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 
-// Exact 0, the ramp, exact 1.
+// Draws the colour ramp between two boxes with the colours of the weights 0 (left) and 1 (right).
 void draw_ramp(Editor& editor, const Rect& box) {
   const Look& look = editor.look;
   const float top = box.low.y + look.px(26), bottom = top + look.px(12), cap = look.px(22), gap = look.px(4);
@@ -48,7 +49,7 @@ void draw_ramp(Editor& editor, const Rect& box) {
   put_text(editor, look.fonts.small, look.theme.view_text2, labels, "exact 1", Align::Right);
 }
 
-// Swatches with words, as many as fit.
+// Draws labelled colour swatches, as many as fit.
 void draw_chips(Editor& editor, const Rect& box, const std::vector<std::pair<Colour, std::string>>& chips) {
   const Look& look = editor.look;
   float x = box.low.x + look.px(10);
@@ -64,7 +65,7 @@ void draw_chips(Editor& editor, const Rect& box, const std::vector<std::pair<Col
   }
 }
 
-// Those with the largest shares first.
+// Returns the bones with their colours, the largest share of weight first.
 std::vector<std::pair<Colour, std::string>> bones_by_share(Editor& editor, const SkinWeights& weights) {
   const auto& bones = editor.document().armature->bones;
   std::vector<std::pair<double, int>> order;
@@ -118,7 +119,7 @@ bool draw_weight_legend(Editor& editor, const Rect& view) {
   const std::string title =
       display == render::WeightDisplay::Active
           ? "Weight of " + editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name
-      : display == render::WeightDisplay::Count ? std::string("Bones that a place follows")
+      : display == render::WeightDisplay::Count ? std::string("Bones that a voxel follows")
                                                 : std::string(name_of(editor.skin->display));
   put_text(editor, look.fonts.regular, look.theme.view_text,
            Rect{{box.low.x + look.px(10), box.low.y + look.px(3)}, {box.high.x - look.px(10), box.low.y + look.px(23)}},
@@ -147,7 +148,7 @@ void draw_weights_at_pointer(Editor& editor) {
               height = row * static_cast<float>(hover.weights.size()) + look.px(8 + 6 + 20 + 20);
   const float off = look.px(22) + editor.skin->ring;
   glm::vec2 low{input.pointer.x + off, input.pointer.y - look.px(20)};
-  // Beside the pointer within its view, or where that is narrow within all views.
+  // The readout stands beside the pointer within its view, or within all views if its view is narrow.
   const Rect& all = editor.layout.views;
   const float edge = look.px(4);
   if (low.x + width > place->rect.high.x - edge && input.pointer.x - off - width >= place->rect.low.x)

@@ -46,7 +46,7 @@ void start_finding_problems(Editor& editor) {
       e.skin->painting->problems = found;
       e.skin->painting->problem = -1;
       const auto count = found->problems.size();
-      e.messages.ok(kFinding, count == 0 ? "Nothing is wrong with the weights"
+      e.messages.ok(kFinding, count == 0 ? "The weights have no problems"
                                          : std::to_string(count) + (count == 1 ? " problem" : " problems"));
       e.touch();
     };
@@ -101,12 +101,12 @@ void repair_problem(Editor& editor, int index) {
                return [=](Editor& e) {
                  if (!made && lock >= 0)
                    return e.messages.toast_error(lock_message(*of.armature, lock),
-                                                 "Nothing else can take or give the weight here", "skin.unlock_all");
-                 if (!made) return e.messages.info(label, "Nothing is different there");
+                                                 "No unlocked bone can give or take weight here", "skin.unlock_all");
+                 if (!made) return e.messages.info(label, "No weight needed to change");
                  const bool fresh = !problems_stale(e);
                  commit_weights(e, label, edited, *made);
                  if (e.skin->painting->problems != found) return;
-                 // The others are where they were.
+                 // Marks this problem as repaired. The problems keep their indices, so the list stays valid.
                  auto next = std::make_shared<FoundProblems>(*found);
                  next->repaired[static_cast<std::size_t>(index)] = true;
                  if (fresh) next->in = e.document().weights;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is wrong with the document's weights: looked for beside the editor, listed, gone to, repaired one by one.
+// Finds problems of the document's weights in a job, lists them, moves the views to a selected problem, and repairs
+// problems one at a time.
 #pragma once
 
 #include <memory>
@@ -12,23 +13,23 @@
 namespace limber::editor {
 
 struct FoundProblems {
-  std::shared_ptr<const SkinWeights> in;  // the weights that were looked through; others: the list is stale
+  std::shared_ptr<const SkinWeights> in;  // the weights searched; the list is stale when the document has others
   std::shared_ptr<const Armature> armature;
   std::vector<WeightProblem> problems;
-  std::vector<bool> repaired;  // by an edit that was made from here
+  std::vector<bool> repaired;  // #problems, true once repaired from the list
 };
 
-// As a job; what it finds is shown in the sidebar. Needs weights of the rig.
+// Starts a job that searches for problems; the sidebar lists them. Needs weights of the rig.
 void start_finding_problems(Editor& editor);
 bool finds_problems(const Editor& editor);
-// Edits were made since, other than repairs from the list.
+// Whether the weights or the rig changed since the search, other than by repairs from the list.
 bool problems_stale(const Editor& editor);
 
-// The list with the problem chosen: its bone is active, the view and the cross-hair go to its place.
+// Selects the problem in the list, makes its bone active, and moves the view and the crosshair to its position.
 void go_to_problem(Editor& editor, int problem);
-// One edit, beside the editor; says which lock was in the way where nothing changed.
+// Repairs the problem in a job, as one edit. If locked bones prevent the repair, tells the user so.
 void repair_problem(Editor& editor, int problem);
 
-const char* name_of(WeightProblem::Kind kind);  // "Islands"
+const char* name_of(WeightProblem::Kind kind);  // heading of a kind in the list: "Islands"
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is wrong with weights is found, gone to and repaired.
+// Operators that find weight problems, step through them and repair them.
 #include "editor/skin/weight_problems.h"
 
 #include <algorithm>
@@ -14,24 +14,26 @@ namespace limber::editor {
 namespace {
 
 std::string needs_weights(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Works in the Skin workspace";
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
   if (!seen_weights(editor)) return "Compute the weights first";
   const auto& bones = editor.document().armature->bones;
   const auto& names = editor.document().weights->bones();
   if (!std::equal(bones.begin(), bones.end(), names.begin(), names.end(),
                   [](const Bone& bone, const std::string& name) { return bone.name == name; }))
-    return "The weights belong to another rig";
-  return finds_problems(editor) ? "They are being looked for" : "";
+    return "The weights belong to another rig: compute them again";
+  return finds_problems(editor) ? "The search for problems is running" : "";
 }
 
 std::string needs_problem(const Editor& editor) {
   if (std::string why = needs_weights(editor); !why.empty()) return why;
   const Painting& painting = *editor.skin->painting;
-  if (!painting.problems || painting.problem < 0) return "Go to a problem first";
-  return painting.problems->repaired[static_cast<std::size_t>(painting.problem)] ? "It is repaired" : "";
+  if (!painting.problems || painting.problem < 0) return "Select a problem first";
+  return painting.problems->repaired[static_cast<std::size_t>(painting.problem)] ? "This problem is already repaired"
+                                                                                 : "";
 }
 
-// Those that are repaired are passed over; without a list it is made first.
+// Goes to the next (by = 1) or previous (by = -1) problem that is not repaired. If problems were not searched yet,
+// starts the search.
 void step(Editor& editor, int by) {
   const Painting& painting = *editor.skin->painting;
   if (!painting.problems) return start_finding_problems(editor);
@@ -42,7 +44,7 @@ void step(Editor& editor, int by) {
     if (!painting.problems->repaired[static_cast<std::size_t>(at)]) return go_to_problem(editor, at);
   }
   if (problems_stale(editor)) return start_finding_problems(editor);
-  editor.messages.info("Next problem", "Nothing is left to repair");
+  editor.messages.info("Next problem", "All problems are repaired");
 }
 
 }  // namespace
@@ -50,16 +52,17 @@ void step(Editor& editor, int by) {
 std::vector<Operator> weight_problem_operators() {
   return {
       {"skin.find_problems", "Find problems", icon::kSearch, "Weights",
-       "Looks for tissue that no bone reaches, islands, bones that are far apart, bone tissue that bends, abrupt "
-       "changes.",
+       "Find tissue that no bone reaches, isolated islands of weight, mixes of distant bones, bone tissue that bends, "
+       "and abrupt changes.",
        start_finding_problems, needs_weights},
       {"skin.next_problem", "Next problem", icon::kWarning, "Weights",
-       "Goes to the next place where something is wrong with the weights; looks for them first.",
+       "Select the next problem of the weights and move the views to it. Searches for problems first if needed.",
        [](Editor& e) { step(e, 1); }, needs_weights},
-      {"skin.previous_problem", "Previous problem", "", "Weights", "Goes to the place before.",
-       [](Editor& e) { step(e, -1); }, needs_weights},
+      {"skin.previous_problem", "Previous problem", "", "Weights",
+       "Select the previous problem of the weights and move the views to it.", [](Editor& e) { step(e, -1); },
+       needs_weights},
       {"skin.repair_problem", "Repair problem", icon::kTick, "Weights",
-       "Repairs the place that was gone to; other weights stay.",
+       "Repair the problem selected in the list. Other weights do not change.",
        [](Editor& e) { repair_problem(e, e.skin->painting->problem); }, needs_problem},
   };
 }

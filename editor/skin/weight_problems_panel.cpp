@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is wrong with the weights, by kind with counts: a click goes there, one more repairs.
+// Draws the list of weight problems by kind, with counts. A click on a row selects the problem and moves the views to
+// it; the row's button repairs it.
 #include "editor/skin/weight_problems.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace limber::editor {
 namespace {
 
 constexpr char kList[] = "problems";
-constexpr int kMostRows = 8;  // seen at once
+constexpr int kMostRows = 8;  // rows visible without scrolling
 constexpr float kRow = 24, kButton = 62, kCount = 36;
 
 void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::size_t count) {
@@ -29,7 +30,8 @@ void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::si
            std::to_string(count), Align::Right);
 }
 
-// "Humerus, Forearm": the heading over the row says what is wrong with them, the tip says all.
+// Returns the names of the problem's bones, "Humerus, Forearm". The heading above the row names the kind of problem,
+// the tooltip describes it in full.
 std::string bones_of(const WeightProblem& problem, const Armature& armature) {
   std::string names;
   for (const int bone : {problem.bone, problem.other})
@@ -54,7 +56,7 @@ void draw_problem(Editor& editor, Column& column, const FoundProblems& found, in
   put_text(editor, look.fonts.small, look.theme.text2, count, std::to_string(problem.voxels.size()), Align::Right);
   put_text(editor, look.fonts.regular, repaired ? look.theme.text2 : look.theme.text,
            Rect{{count.high.x + look.px(6), name.low.y}, name.high}, bones_of(problem, *found.armature));
-  if (pressed.hovered) tooltip(editor, name, words, "Click to go there.");
+  if (pressed.hovered) tooltip(editor, name, words, "Click to go to this problem.");
   const Rect press{{rect.high.x - look.px(kButton + 8), rect.low.y + look.px(2)},
                    {rect.high.x - look.px(8), rect.high.y - look.px(2)}};
   if (!repaired && button(editor, "Repair", press, {"", "Repair"})) {
@@ -98,13 +100,13 @@ void draw_foot(Editor& editor, Column& column, bool stale) {
   if (!stale) return;
   put_icon(look.fonts.regular, look.theme.warn, {{x, y}, {x + look.px(20), y + look.px(26)}}, icon::kWaiting);
   put_text(editor, look.fonts.small, look.theme.warn,
-           Rect{{x + look.px(22), y}, {rect.high.x - look.px(8), y + look.px(26)}}, "Edited since");
+           Rect{{x + look.px(22), y}, {rect.high.x - look.px(8), y + look.px(26)}}, "Out of date");
 }
 
 }  // namespace
 
 void draw_weight_problems(Editor& editor, Column& column) {
-  const auto found = editor.skin->painting->problems;  // kept, since a row may replace it
+  const auto found = editor.skin->painting->problems;  // a copy, because a repair may replace the list
   const bool stale = problems_stale(editor);
   const auto left = found ? std::count(found->repaired.begin(), found->repaired.end(), false) : 0;
   if (column.begin_section("Problems",
@@ -114,7 +116,7 @@ void draw_weight_problems(Editor& editor, Column& column) {
                                        : std::to_string(left),
                            false)) {
     if (!found) {
-      if (empty_state(editor, column.row(72), finds_problems(editor) ? "Looking for problems" : "Not looked for yet",
+      if (empty_state(editor, column.row(72), finds_problems(editor) ? "Searching for problems" : "Not searched yet",
                       find_operator(editor, "skin.find_problems")->label))
         run(editor, "skin.find_problems");
     } else {

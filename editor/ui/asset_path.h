@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The program's own files, by name.
+// Brings asset(), which finds the program's own files by name, into the editor's namespace.
 #pragma once
 
 #include "core/base/asset.h"

@@ -9,7 +9,8 @@ namespace {
 
 ImDrawList& canvas() { return *ImGui::GetWindowDrawList(); }
 
-// The longest beginning that fits with "..." behind it, cut between characters.
+// Shortens a text to `width` pixels: returns the longest beginning that fits together with "...", and the "...". Cuts
+// between UTF-8 characters. Returns "" if not even one character fits.
 std::string cut_to(ImFont* font, std::string_view text, float width) {
   std::size_t length = text.size();
   const auto inside_character = [&] {
@@ -24,7 +25,7 @@ std::string cut_to(ImFont* font, std::string_view text, float width) {
   return "";
 }
 
-// The longest beginning that takes so many lines.
+// Shortens a text to `lines` wrapped lines: returns the whole text if it fits, else its beginning and "...".
 std::string cut_to_lines(ImFont* font, const std::string& text, float width, int lines) {
   const char *at = text.c_str(), *end = at + text.size();
   for (int line = 1; line < lines && at < end; ++line) {

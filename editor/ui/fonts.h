@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The typefaces, rasterized by FreeType for one scale: Inter for words, JetBrains Mono for digits and keys, Font
-// Awesome for icons (merged into Inter). Another scale means other fonts, never stretched ones.
+// Rasterizes the editor's fonts by FreeType: Inter for words, JetBrains Mono for digits and keys, Font Awesome for
+// icons (merged into Inter). The fonts are built for one scale, and again when the scale changes, because stretched
+// characters look blurred.
 #pragma once
 
 struct ImFont;
@@ -8,16 +9,17 @@ struct ImFont;
 namespace limber::editor {
 
 struct Fonts {
-  ImFont* regular = nullptr;     // 16, icons at 14
-  ImFont* semibold = nullptr;    // 16, icons at 14
-  ImFont* small = nullptr;       // 14, icons at 12
-  ImFont* title = nullptr;       // 32, the start screen's name
-  ImFont* mono = nullptr;        // 16
-  ImFont* small_mono = nullptr;  // 14, key caps
-  ImFont* icons = nullptr;       // 16, icons only: the tool strip
+  ImFont* regular = nullptr;     // 16 px at scale 1, its icons 14 px
+  ImFont* semibold = nullptr;    // 16 px at scale 1, its icons 14 px
+  ImFont* small = nullptr;       // 14 px at scale 1, its icons 12 px
+  ImFont* title = nullptr;       // 32 px at scale 1: the program's name on the start screen
+  ImFont* mono = nullptr;        // 16 px at scale 1
+  ImFont* small_mono = nullptr;  // 14 px at scale 1: key caps
+  ImFont* icons = nullptr;       // 16 px at scale 1, icons only: the tool strip
 };
 
-// Fills the current ImGui context's atlas anew. Throws Error naming a font file that is not installed.
+// Builds the fonts into the current ImGui context's atlas, which is cleared first. Throws Error when a font file is not
+// installed, and names it.
 Fonts build_fonts(double scale);
 
 }  // namespace limber::editor

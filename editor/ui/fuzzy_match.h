@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finding names by a few of their letters. Every word of the query must be found, each by itself, ignoring case: its
-// first letter begins a word of the text, and every further one follows the one before or begins a later word. So "fa"
-// and "fr all" find "Frame all", "rame" does not, nor do letters picked from the middles of words.
+// Finds names by a few of their letters, ignoring case. Every word of the query must match on its own. Its first letter
+// must begin a word of the name; each further letter must directly follow the letter matched before it, or begin a
+// later word. So "fa" and "fr all" find "Frame all". "rame" does not, since words matched in their middle would find
+// too many names.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +13,16 @@
 namespace limber::editor {
 
 struct FuzzyMatch {
-  int score = 0;                     // higher is better; of equal ones the shorter text should win
-  std::vector<std::size_t> letters;  // bytes of the text that were matched, ascending
+  int score = 0;                     // higher is better; if scores are equal, prefer the shorter text
+  std::vector<std::size_t> letters;  // byte positions of the matched letters in the text, ascending
 };
 
-// Better: at the text's beginning before a later word's, letters in a row before scattered ones.
-// An empty query matches everything with score 0.
+// Returns the best match of the query in the text, or nothing if it does not match. A match at the text's beginning
+// scores higher than one at a later word, and adjacent letters score higher than scattered ones. An empty query matches
+// every text with score 0.
 std::optional<FuzzyMatch> fuzzy_match(std::string_view query, std::string_view text);
 
-// For the search in lists of anything: the part as it stands, ignoring case.
+// Returns whether `text` contains `part` as one uninterrupted substring, ignoring case.
 bool contains_ignoring_case(std::string_view text, std::string_view part);
 
 }  // namespace limber::editor

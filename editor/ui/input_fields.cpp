@@ -14,15 +14,16 @@
 namespace limber::editor {
 
 namespace {
-// For the field that is drawn next.
+// Requests the keyboard for the text or number field that is drawn next.
 void ask_for_keyboard(Ui& ui, const std::string& id) {
   ImGui::SetKeyboardFocusHere();
   await_field(ui, ImGui::GetID(id.c_str()));
 }
 
-constexpr double kFastest = 1;  // of a number for a pixel's drag, however far its ends are
+constexpr double kFastest = 1;  // largest change of a number per pixel of a drag, also if its range is wide
 
-// Beside a field's text. Where several fields share a row their digits need the room.
+// Returns the margin at the left and right of a field's text, pixels. It is smaller in a narrow field, so that there is
+// more room for digits.
 float margin_of(const Look& look, const Rect& field) { return look.px(field.width() < look.px(64) ? 4 : 7); }
 }  // namespace
 
@@ -50,7 +51,8 @@ bool any_number_field(Ui& ui, const std::string& name, const Rect& rect, double&
                       const char* format, const char* unit, bool filled, bool& committed, ImGuiSliderFlags flags) {
   const Look& look = ui.look;
   committed = false;
-  // The text stands at the right with its unit; ImGui's own field appears while a number is typed, without its label.
+  // The number and its unit are drawn by the code below, aligned to the right. ImGui's own text of the number is
+  // therefore transparent, except while a number is typed.
   const std::string id = "##" + name;
   ImGui::SetCursorScreenPos(im(rect.low));
   ImGui::SetNextItemWidth(rect.width());
@@ -69,7 +71,7 @@ bool any_number_field(Ui& ui, const std::string& name, const Rect& rect, double&
   committed = ImGui::IsItemDeactivatedAfterEdit();
   register_widget(ui, name, rect);
   if (typing) {
-    // All of it is chosen by a double click, also where typing had begun.
+    // A double click selects the whole number, also while the number is being typed.
     if (ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetItemID());
         state && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
       state->SelectAll();

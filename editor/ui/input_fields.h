@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Things that hold a value: check boxes, numbers, texts.
+// Widgets that hold a value: check boxes, number fields, drop-down lists, text fields.
 #pragma once
 
 #include <string>
@@ -11,16 +11,19 @@ namespace limber::editor {
 
 void checkbox_mark(Ui& ui, const Rect& rect, bool on, bool hovered);
 bool checkbox(Ui& ui, const std::string& name, const Rect& rect, const std::string& label, bool& on);
-// A number that is dragged sideways, or typed after a double click; `fraction` < 0: no fill. True while it changes;
-// `committed` when the drag or typing ended.
+// Draws a field for a number, which the user drags sideways or types; it is clamped to [low, high]. If `filled`, a bar
+// in the field shows the number's position in that range. Returns true in each frame in which the number changes.
+// `committed` is true in the frame in which the drag or typing ends.
 bool number_field(Ui& ui, const std::string& name, const Rect& rect, double& value, double low, double high,
                   const char* format, const char* unit, bool filled, bool& committed);
-// The same where a typed number is taken as it is, to be judged by the caller; `focus`: it waits for typing.
+// Draws a number field that does not clamp a typed number: the caller checks the number. `focus` gives the field the
+// keyboard.
 bool judged_number_field(Ui& ui, const std::string& name, const Rect& rect, double& value, double low, double high,
                          const char* format, const char* unit, bool focus);
-// One of a list, which opens below; its names stand in the caller's path. True when another was chosen.
+// Draws a drop-down list. Its widgets have fixed names, so the caller must push a path (push_path()) that is unique to
+// the field. Returns true when the user selected another choice.
 bool choice_field(Ui& ui, const Rect& rect, const std::vector<std::string>& choices, int& chosen);
-// True when Return or leaving the field accepted a changed text.
+// Draws a text field. Returns true when the user has changed the text and pressed Return or left the field.
 bool text_field(Ui& ui, const std::string& name, const Rect& rect, std::string& text, const char* hint = "",
                 bool focus = false);
 

@@ -9,8 +9,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kTurnsToAppear = 2;  // of a field that something asks for
-constexpr int kTurnsToFocus = 4;   // until ImGui has given it the keyboard
+constexpr int kTurnsToAppear =
+    2;  // draws of the panels after which keys no longer wait for a field that did not appear
+constexpr int kTurnsToFocus =
+    4;  // draws of the panels after which keys no longer wait for ImGui to give a field the keyboard
 
 bool active_item_is_text() {
   const ImGuiContext& imgui = *ImGui::GetCurrentContext();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which text field has the keyboard. A field that was asked for gets it once the panels have been drawn a few times;
-// keys that were pressed meanwhile wait in the queue, so that none of them becomes a command.
+// Tracks whether a text field has the keyboard. A field that requests the keyboard gets it only after the panels have
+// been drawn a few times. Keys pressed meanwhile wait in the event queue, so that none of them runs a command.
 #pragma once
 
 #include "editor/ui/keyboard.h"
@@ -8,13 +8,14 @@
 
 namespace limber::editor {
 
-// Call after something that brings a text field in this frame or the next.
+// Makes pressed keys wait in the event queue for a text field that will appear in this frame or the next.
 void await_field(Ui& ui);
-// Call between ImGui::SetKeyboardFocusHere and the field's end, with its id.
+// Makes pressed keys wait in the event queue for the text field with this ImGui id. Call it after
+// ImGui::SetKeyboardFocusHere and before the field is drawn.
 void await_field(Ui& ui, unsigned id);
-// Once after the panels have been drawn.
+// Updates Ui::keyboard. Call it after the panels have been drawn, each time they are drawn.
 void follow_keyboard(Ui& ui);
-// Whether a text field has the keyboard now: exact between ImGui::NewFrame and the next.
+// Returns whether a text field has the keyboard now. The answer holds until the next ImGui::NewFrame.
 bool is_typing(const Ui& ui);
 
 }  // namespace limber::editor

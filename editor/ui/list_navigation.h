@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lists by keyboard. The list that was clicked last has the keyboard until Escape, a press elsewhere, or the pointer's
-// way through a view: then arrows, Home, End, PageUp and PageDown move through its rows, Return does what a click does,
-// Space shows or hides, F2 renames, Left and Right fold. A row can be renamed in its place.
+// Moves through lists by keyboard, and renames their rows in place. The list that was clicked last has the keyboard
+// until the user presses Escape, presses a button elsewhere, or moves the pointer into a view. Until then Up, Down,
+// Home, End, PageUp and PageDown move through its rows, Return does what a click does, Space shows or hides, F2
+// renames, Left folds and Right unfolds.
 #pragma once
 
 #include <string>
@@ -14,15 +15,17 @@ namespace limber::editor {
 enum class ListKey { None, Moved, Activate, Toggle, Rename, Fold, Unfold };
 
 void focus_list(Ui& ui, const std::string& list, int row);
-// Once a frame, before the list draws its rows: what a key asks of the row that has the focus.
+// Handles the keys pressed in this frame: moves the list's focused row, or returns what to do with that row. Call it
+// once a frame, before the list draws its rows.
 ListKey list_key(Ui& ui, const std::string& list, int rows);
 bool has_focus(const Ui& ui, const std::string& list, int row);
-// Whether the focused list has a use for the key, so that it is no command.
+// Returns whether the focused list handles the key; such a key runs no command.
 bool list_takes(const Ui& ui, const Chord& chord);
 
 void begin_renaming(Ui& ui, const std::string& what, const std::string& name);
 bool is_renaming(const Ui& ui, const std::string& what);
-// The field in place of the name. True when another name was accepted: it is in `name`.
+// Draws the text field in place of the row's name. Once the user has confirmed another name, sets `name` to it and
+// returns true.
 bool rename_field(Ui& ui, const Rect& rect, std::string& name);
 
 }  // namespace limber::editor

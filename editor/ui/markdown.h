@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the few things of Markdown that the program's own documents use: headings, paragraphs, lists, **strong**,
-// *names* and `code`. "{view.xray}" is the key of that operator, as the reader of the document has it.
+// Parses the subset of Markdown that the program's own documents use: headings, paragraphs, lists, **strong**, *names*
+// and `code`. "{view.xray}" is replaced by the key that the user's key map gives to that operator.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ struct Block {
   bool operator==(const Block&) const = default;
 };
 
-// `key_of` gives the text of an operator's key.
+// Splits a Markdown text into blocks. `key_of` returns the key of an operator as text, such as "Ctrl+Z".
 std::vector<Block> parse_markdown(std::string_view text,
                                   const std::function<std::string(const std::string& operator_id)>& key_of);
 std::string plain_text(const Block& block);

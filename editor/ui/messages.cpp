@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kLongestLog = 5000;  // lines
 
-// Errors begin with a small letter, as they follow a program's name on the command line.
+// Returns the text with a capital letter at its beginning. Texts of Errors begin with a small letter, as the command
+// line prints them after the program's name.
 std::string description(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rectangle of the window: pixels, y down, `high` outside.
+// A rectangle of the window in pixels, y down. It contains its top left corner `low` and excludes its bottom right
+// corner `high`.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,8 @@ namespace limber::editor {
 
 namespace {
 
-// Where a section's head stands, seen or not, is kept by the sidebar's window: what lies under the pointer there stays.
+// Stores the y of a section's head in the sidebar window's storage, even if the head is scrolled out of sight.
+// screen/steady.cpp reads it to keep the widget under the pointer from moving.
 void note_section(const char* title, float y) {
   ImGuiWindow* root = ImGui::GetCurrentWindow()->RootWindow;
   if (std::string_view(root->Name) == "##sidebar") root->StateStorage.SetFloat(ImHashStr(title), y);
@@ -28,7 +29,7 @@ Column::Column(Ui& ui, const std::string& name, const Rect& area) : ui_(ui), are
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::BeginChild("column", im(area.size()), false, ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar();
-  // Nothing becomes narrower when a scroll bar comes.
+  // The column always leaves room for the scroll bar, so that the rows keep their width when the scroll bar appears.
   width_ = std::min(ImGui::GetContentRegionAvail().x, area.width() - ImGui::GetStyle().ScrollbarSize);
   y_ = top_ = ImGui::GetCursorScreenPos().y;
 }
@@ -57,7 +58,7 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
     ui_.touch();
   }
   push_path(ui_, title);
-  // The end of the head is left to buttons that a panel puts there.
+  // The right end of the head, 90 pixels at scale 1, does not fold the section: panels put buttons there.
   const Pressed pressed = press_area(ui_, "fold", {rect.low, {rect.high.x - look.px(90), rect.high.y}});
   fill(rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
@@ -66,7 +67,7 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
            open ? icon::kOpened : icon::kClosed);
   put_text(ui_, look.fonts.semibold, look.theme.text,
            Rect{{rect.low.x + look.px(34), rect.low.y}, {rect.high.x - look.px(100), rect.high.y}}, title);
-  // The word has what the title leaves.
+  // The text at the right gets the width that remains beside the title.
   const float words = rect.low.x + look.px(34 + 12) + text_size(look.fonts.semibold, title).x;
   if (!right.empty())
     put_text(ui_, look.fonts.small, look.theme.text2,
@@ -98,7 +99,7 @@ bool Column::list_row(Rect& rect, int index, bool chosen, const std::string& lis
     if (rect.high.y > area_.high.y) ImGui::SetScrollY(ImGui::GetScrollY() + rect.high.y - area_.high.y);
     ui_.touch();
   }
-  // A row whose name is typed has the keyboard, also out of sight.
+  // While the user types into a text field, every row is drawn, because a field that is not drawn loses the keyboard.
   const bool typed = ui_.renaming || ui_.keyboard.typed || ui_.keyboard.waits();
   if (!typed && !ImGui::IsRectVisible(im(rect.low), im(rect.high))) return false;
   if (chosen) fill(rect, look.theme.accent_soft);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A scrolling column of sections and rows: the sidebar, and the inside of dialogs.
+// A scrolling column of sections and rows, used by the sidebar and inside dialogs.
 #pragma once
 
 #include <string>
@@ -10,25 +10,27 @@ namespace limber::editor {
 
 class Column {
  public:
-  // Fills the rectangle; ends with its life.
+  // Begins a column that fills the rectangle; the destructor ends it.
   Column(Ui& ui, const std::string& name, const Rect& area);
   ~Column();
   Column(const Column&) = delete;
   Column& operator=(const Column&) = delete;
 
-  // The next row over the whole width. Sizes at scale 1.
+  // Returns the rectangle of the next row, over the whole width. `height` is in pixels at scale 1.
   Rect row(float height);
   void space(float height) { y_ += ui_.look.px(height); }
-  // A section's head, 28 high; true when it is open. Its rows' names begin with the title. `right`: a word at its end.
+  // Draws a section's head, 28 pixels high at scale 1, with the text `right` at its right end. Returns whether the
+  // section is open. Adds the title to the path of the widgets in the section, until end_section().
   bool begin_section(const std::string& title, const std::string& right = "", bool open_at_first = true);
   void end_section();
-  // A row of 26 with the label at the left; returns the place of its field, 22 high.
+  // Draws a row, 26 pixels high at scale 1, with the label at the left. Returns the rectangle for the row's field,
+  // which is 22 pixels high at scale 1.
   Rect property(const std::string& label);
-  // Of a list: 24 high, every second one shaded, chosen ones in accent. Also for rows that lie outside what is seen:
-  // those return false and need not be drawn.
-  // `list`: the one that has the keyboard marks its row and brings it into sight.
+  // Draws the background of a list's row, 24 pixels high at scale 1: every second row is shaded, selected rows have the
+  // accent colour. Call it for every row. Returns false for a row that is scrolled out of sight and need not be drawn.
+  //   list  the list's name; if the list has the keyboard, its focused row is outlined and scrolled into sight
   bool list_row(Rect& rect, int index, bool chosen, const std::string& list = "");
-  const Rect& head() const { return head_; }  // of the section begun last
+  const Rect& head() const { return head_; }  // rectangle of the head that begin_section() drew last
 
  private:
   Ui& ui_;
@@ -36,7 +38,7 @@ class Column {
   float width_, top_, y_;
 };
 
-// One line and one button in the middle of an empty panel.
+// Draws one line of text and one button in the middle of an empty panel. Returns whether the button was clicked.
 bool empty_state(Ui& ui, const Rect& rect, const std::string& line, const std::string& button_label);
 
 }  // namespace limber::editor

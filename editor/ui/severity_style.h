@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a message's severity looks: always a shape and a colour.
+// Gives each severity of a message an icon and a colour. Colour alone would not do, since some users cannot tell
+// colours apart.
 #pragma once
 
 #include "editor/ui/messages.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the editor looks now: theme, typefaces and scale. Sizes in the code are pixels at scale 1; px() makes them the
-// window's.
+// The editor's current look: theme, typefaces and scale. Sizes in the code are pixels at scale 1; Look::px() converts
+// them to pixels of the window.
 #pragma once
 
 #include <cmath>
@@ -19,10 +19,10 @@ struct Look {
   float line() const { return std::fmax(1.0f, std::floor(scale)); }
 };
 
-// Theme and fonts for ImGui's own widgets, in the current context. Rebuilds what changed: the fonts only with the
-// scale.
-//   theme  "dark" or "light"
-// returns whether the fonts' texture must be made anew
+// Applies theme and scale to the look and to ImGui's own widgets in the current context. Rebuilds the fonts only when
+// the scale changed.
+//   theme    "dark" or "light"
+//   returns  whether the caller must upload the fonts' texture again
 bool apply_look(Look& look, const std::string& theme, float scale);
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small pictures as textures, each uploaded once and known by a name. Lives no longer than the context.
+// Keeps small pictures as OpenGL textures, each uploaded once and found by its name. Must be destroyed before the
+// OpenGL context is.
 #pragma once
 
 #include <functional>
@@ -17,8 +18,8 @@ class Pictures {
   Pictures(const Pictures&) = delete;
   Pictures& operator=(const Pictures&) = delete;
 
-  // The texture of that name; `read` gives its picture the first time. 0 when there is none: an empty picture, or
-  // Error.
+  // Returns the texture of that name. The first call for a name makes the texture from the picture that `read` returns.
+  // The texture is 0 if the picture is empty or `read` throws Error.
   unsigned texture(const std::string& name, const std::function<render::Image()>& read);
   void forget(const std::string& name);
   void clear();

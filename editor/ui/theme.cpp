@@ -74,7 +74,7 @@ double relative_luminance(Colour colour) {
 Theme read_theme(const Path& path) {
   const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-theme/1" || !json.contains("colours"))
-    throw Error("this is not a theme", path.string(), "choose another theme");
+    throw Error("this is not a theme", path.string(), "select another theme");
   Theme theme;
   theme.name =
       json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : path.stem().string();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tool tips: name, key, one sentence; beside the thing that is pointed at, never over it, after a moment of rest.
+// Shows tool tips, each with a name, a key and a description. After a short delay, the tool tip of the widget under the
+// pointer appears below the widget, or above it where there is no room below.
 #pragma once
 
 #include <optional>
@@ -9,7 +10,8 @@
 
 namespace limber::editor {
 
-// For the item just drawn, when it is pointed at.
+// Requests a tool tip above or below the widget's rectangle `rect`. Call it in each frame in which the pointer is over
+// the widget.
 void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& description,
              const std::optional<Chord>& chord = {});
 void draw_tooltip(Ui& ui);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What widgets draw with, and what they remember from frame to frame. Every widget gets it as its argument; the editor
-// is one.
+// The state that widgets share: the look, this frame's input, the keyboard focus, the tool tip. Every widget's function
+// gets a Ui as its argument; Editor derives from Ui.
 #pragma once
 
 #include <algorithm>
@@ -15,67 +15,67 @@
 
 namespace limber::editor {
 
-// Which text field has the keyboard (keyboard.h).
+// The text field that has the keyboard (keyboard.h).
 struct Keyboard {
-  bool typed = false;    // a text field had it when the panels were drawn last
-  unsigned awaited = 0;  // ImGui's id of the field that is to get it; 0: not drawn yet
-  int turns = 0;         // how many times more the panels may be drawn before keys stop waiting for it
+  bool typed = false;    // a text field had the keyboard when the panels were drawn last
+  unsigned awaited = 0;  // ImGui's id of the field that will get the keyboard; 0: not drawn yet
+  int turns = 0;         // draws of the panels after which keys no longer wait for that field; 0: none wait
 
   bool waits() const { return turns > 0; }
 };
 
-// Which list has the keyboard, and where in it (list_navigation.h).
+// The list that has the keyboard, and its focused row (list_navigation.h).
 struct ListFocus {
-  std::string list;  // empty: none has it
+  std::string list;  // empty: no list has the keyboard
   int row = 0;
-  bool reveal = false;  // bring the row into sight
+  bool reveal = false;  // whether to scroll the row into sight in the next frame
 };
 
-// The thing that is being renamed, under a name that no other has.
+// A row of a list that is being renamed. `what` identifies the row, `text` is the name as typed so far.
 struct Renaming {
   std::string what, text;
-  bool shown = false;  // its field stands
+  bool shown = false;  // whether the row's text field has been drawn
 };
 
 struct Ui {
-  // Draws again, after something changed that no event tells of.
+  // Requests the next few frames, for a change that no input event caused.
   void touch() { frames_wanted_ = 3; }
-  // Draws again at that time, in seconds, though nothing happens until then.
+  // Requests a frame at that time (seconds on the clock of `now`), even if no input arrives until then.
   void wake_at(double time) { wake_at_ = std::min(wake_at_, std::max(time, now)); }
 
   Look look;
   WidgetRegistry widgets;
   InputState input;
   Keyboard keyboard;
-  double now = 0;            // s, of this frame
+  double now = 0;            // time of this frame, s
   Rect window;               // pixels
   double tooltip_delay = 0;  // s
-  bool dialog_open = false;  // lists leave the keyboard to it
+  bool dialog_open = false;  // if true, the dialog gets the keys instead of lists
 
   ListFocus list_focus;
   std::optional<Renaming> renaming;
-  std::map<std::string, bool> open_sections;  // of columns, by title
-  std::string wanted_section;                 // comes into sight in the next frame; empty: none
+  std::map<std::string, bool> open_sections;  // whether a column's section is open, by the section's title
+  std::string wanted_section;                 // the section to scroll to in the next frame; empty: none
 
-  // Where the panel that is being drawn stands: the beginning of its widgets' names.
+  // The region of the window that is being drawn, and the path that the names of its widgets begin with.
   struct {
     Region region = Region::Views;
     std::vector<std::string> steps;
-    std::vector<std::string> windows;  // of the regions of this frame, back to front
+    std::vector<std::string> windows;  // names of the ImGui windows of this frame's regions, back to front
   } place;
 
-  // The tool tip to come: which widget is pointed at, since when.
+  // The tool tip of the widget under the pointer. `since` is the time at which the pointer entered the widget, s.
   struct {
     std::string widget, title, description;
     std::optional<Chord> chord;
     Rect rect;
     double since = 0;
-    bool asked = false;  // in this frame
+    bool asked = false;  // whether tooltip() was called in this frame
   } tip;
 
  protected:
-  int frames_wanted_ = 3;   // ImGui settles a change within that many
-  double wake_at_ = 1e300;  // s
+  int frames_wanted_ = 3;   // frames still to draw: ImGui needs up to 3 to show a change
+  double wake_at_ = 1e300;  // earliest time for which wake_at() has requested a frame, s
 };
 
 }  // namespace limber::editor

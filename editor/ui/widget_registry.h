@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where each named widget of the last frame lies, and each text that was shown: what scripts click and tests measure.
-// A name is a path from its region ("sidebar/Tissues/Muscle/eye"); any ending of the path finds it when it is the only
-// one.
+// Records the rectangle of each named widget and each text of a frame, so that scripts can click the widgets and tests
+// can measure them. A widget's name is a path that begins with its region ("sidebar/Tissues/Muscle/eye"). A widget is
+// found by its path, or by the last steps of its path if no other widget's path ends in them.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ enum class Region { TopBar, ToolHeader, ToolStrip, Views, Sidebar, Bottom, Statu
 struct Widget {
   std::string name;
   Region region = Region::Views;
-  Rect rect;  // the visible part
+  Rect rect;  // the visible part, pixels of the window
   bool enabled = true;
 };
 
@@ -28,7 +28,8 @@ class WidgetRegistry {
   void add_text(std::string text) { building_texts_.push_back(std::move(text)); }
   void end_frame();
 
-  // Of the last complete frame; nullptr for none. Throws Error when two different widgets end in `name`.
+  // Returns the widget of the last complete frame whose path is `name` or ends in `name`; nullptr if there is none.
+  // Throws Error when the paths of several widgets end in `name`.
   const Widget* find(std::string_view name) const;
   const std::vector<Widget>& widgets() const { return shown_; }
   const std::vector<std::string>& texts() const { return shown_texts_; }

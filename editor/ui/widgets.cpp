@@ -56,12 +56,13 @@ void begin_region(Ui& ui, Region region, const std::string& name, const Rect& re
   ImGui::SetNextWindowSize(im(rect.size()));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
-  // What appears takes no keyboard and closes no menu, but for a dialog.
+  // A region that appears must not take the keyboard focus or close a menu. Only a dialog may.
   ImGui::Begin(("##" + name).c_str(), nullptr,
                kRegionFlags | (region == Region::Dialog ? 0 : ImGuiWindowFlags_NoFocusOnAppearing));
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
-  // A new window goes behind the others; a dialog stands before them, and what it opens before itself.
+  // ImGui opens this window behind the others, so a dialog is moved to the front in the frame in which it appears.
+  // Menus that the dialog opens later lie in front of it.
   if (region == Region::Dialog && ImGui::IsWindowAppearing())
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
   push_path(ui, name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The editor's own widgets, on ImGui's items and draw lists: they know the theme's colours and the grid of sizes, give
-// their rectangle a name for scripts, and show a tool tip with name, key and sentence. Sizes are pixels of the window.
+// The editor's own widgets, built on ImGui's items and draw lists. They use the theme's colours, and register their
+// rectangles under names by which scripts find them. Sizes are pixels of the window.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@
 namespace limber::editor {
 
 // --- Regions ---
-// A window of ImGui that fills the rectangle; the name begins every widget's path.
+// Begins an ImGui window that fills the rectangle. The paths of all widgets in the window begin with its name.
 void begin_region(Ui& ui, Region region, const std::string& name, const Rect& rect, Colour background);
 void end_region(Ui& ui);
-// Inside another region: the same path with one more step.
+// Adds a step to the path that the names of all following widgets begin with, until pop_path() removes it.
 void push_path(Ui& ui, const std::string& step);
 void pop_path(Ui& ui);
 struct PathScope {
@@ -24,15 +24,21 @@ struct PathScope {
   Ui& ui_;
 };
 
-// --- Things to press ---
+// --- Buttons and other areas to press ---
 struct Pressed {
   bool hovered = false, held = false, clicked = false, double_clicked = false, right_clicked = false, activated = false;
 };
-// An invisible item; what is drawn for it is the caller's.
+// Adds an invisible item that can be pressed; the caller draws what it looks like.
 Pressed press_area(Ui& ui, const std::string& name, const Rect& rect, bool enabled = true);
 void register_widget(Ui& ui, const std::string& name, const Rect& rect, bool enabled = true);
 
-enum class ButtonStyle { Plain, Flat, Primary, Chosen, Soft };  // Chosen: accent fill; Soft: on, with an accent edge
+enum class ButtonStyle {
+  Plain,
+  Flat,
+  Primary,
+  Chosen,
+  Soft
+};  // Chosen: filled with the accent colour; Soft: for a switch that is on, with an edge in that colour
 struct ButtonLook {
   const char* icon = "";
   std::string label;

@@ -22,7 +22,8 @@ void AngleDrag::about(const glm::dvec3& axis, const glm::dvec2& start, const glm
 
 void AngleDrag::follow(const glm::dvec2& from, const glm::dvec2& to) {
   const glm::dvec2 a = from - centre_, b = to - centre_;
-  // Counter-clockwise as seen: y of the window points down.
+  // Angles that are counter-clockwise on the screen count as positive. Signs take into account that the window's y axis
+  // points down.
   swept_seen_ += std::atan2(a.y * b.x - a.x * b.y, glm::dot(a, b));
   if (const auto angle = ring_.angle_under(view_, to)) {
     if (last_) swept_ring_ += std::remainder(*angle - *last_, 2 * std::numbers::pi);
@@ -31,7 +32,7 @@ void AngleDrag::follow(const glm::dvec2& from, const glm::dvec2& to) {
 }
 
 double AngleDrag::degrees() const {
-  // The pointer goes round the way it sees the axis.
+  // About an axis that points away from the eye, a counter-clockwise sweep on the screen is a negative angle.
   const double facing = glm::dot(ring_.axis, view_.towards_eye) < 0 ? -1 : 1;
   return glm::degrees(on_ring_ ? swept_ring_ : swept_seen_ * facing);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pointer going round a point: by how much it turned about an axis, as a ring or as the point is seen.
+// Measures the angle by which the pointer turns about an axis during a drag. The angle is measured either in the plane
+// of a ring around the axis, or on the screen around the pixel of the pivot (the point to turn about).
 #pragma once
 
 #include "editor/viewport/gizmo_draw.h"
@@ -8,21 +9,22 @@ namespace limber::editor {
 
 class AngleDrag {
  public:
-  static constexpr double kRing = 86;  // pixels at scale 1
+  static constexpr double kRing = 86;  // radius of the ring, pixels at scale 1
 
-  // `on_ring`: measured round the ring as it is seen, not round the point.
+  // `on_ring`: true: measures the angle in the plane of the ring; false: on the screen around the pivot.
   AngleDrag(const ViewProjection& view, float scale, const glm::dvec3& pivot, bool on_ring);
 
-  // Another axis from now on; what was swept as the point is seen stays.
+  // Sets the axis to turn about. May be called during a drag: the angle measured on the screen so far is kept.
   void about(const glm::dvec3& axis, const glm::dvec2& start, const glm::dvec2& pointer);
   void leave_ring() { on_ring_ = false; }
   void follow(const glm::dvec2& from, const glm::dvec2& to);
   double degrees() const;
 
   const Ring& ring() const { return ring_; }
-  double start() const { return start_; }  // on the ring, radians
+  double start() const { return start_; }  // angle on the ring at which the drag began, radians
   bool on_ring() const { return on_ring_; }
-  // Sector, ring, both lines and the handle, turned by so many degrees.
+  // Draws a turn by so many degrees: the ring, the sector from the start to the end of the turn, its two radii and a
+  // handle at its end.
   void draw(const GizmoPainter& painter, const Theme& theme, double degrees) const;
 
  private:
@@ -33,7 +35,7 @@ class AngleDrag {
   glm::dvec2 centre_{0};
   double start_ = 0;
   std::optional<double> last_;
-  double swept_seen_ = 0, swept_ring_ = 0;  // radians
+  double swept_seen_ = 0, swept_ring_ = 0;  // angles measured on the screen and on the ring, radians
 };
 
 }  // namespace limber::editor

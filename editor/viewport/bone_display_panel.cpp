@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How bones are drawn, where bones are worked on.
+// Draws the section "Display" of the Rig and Pose workspaces, in which the user sets how bones are drawn.
 #include <array>
 
 #include "editor/context/operator_button.h"
@@ -12,7 +12,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.bones_stick",
-                                                "view.bones_cylinder"};  // as in BoneShape
+                                                "view.bones_cylinder"};  // in the order of BoneShape
 
 }  // namespace
 

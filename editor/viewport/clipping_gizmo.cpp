@@ -9,8 +9,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kThinnest = 1;  // voxels between two faces of the box
-constexpr double kSnap = 10;     // mm of the world that Ctrl goes by
+constexpr double kThinnest = 1;  // least distance between opposite faces of the clip box, voxels
+constexpr double kSnap = 10;     // step of handles while Ctrl is held, mm
 
 const Visibility& shown(const Editor& editor) {
   const auto& preview = editor.views->preview_visibility;
@@ -34,7 +34,7 @@ class Painter {
       ImGui::GetWindowDrawList()->AddLine(im(a), im(b), with_alpha(0xFFFFFFFF, 0.6f), editor_.look.line());
   }
 
-  // A square of 9 pixels; returns what the pointer does with it.
+  // Draws a handle, a square of 9 pixels at scale 1. Returns whether the pointer hovers over it or presses it.
   Pressed handle(const std::string& name, const glm::dvec3& world, Colour colour,
                  const std::string& description) const {
     glm::vec2 at;
@@ -49,7 +49,7 @@ class Painter {
     return pressed;
   }
 
-  // The change of the handle that is held, in multiples of `direction`, since it was pressed.
+  // Returns how far the dragged handle has moved since it was pressed, as a multiple of the vector `direction`.
   double dragged(const glm::dvec3& world, const glm::dvec3& direction) const {
     return along(editor_.views->body.camera, size_, world, direction,
                  glm::dvec2(editor_.input.pointer - editor_.views->handle_from));
@@ -66,7 +66,7 @@ void begin_preview(Editor& editor) {
   editor.views->handle_from = editor.input.pointer;
 }
 
-// The last preview becomes the document.
+// Puts the previewed clipping into the document, as an edit named `label`.
 void end_preview(Editor& editor, const std::string& label) {
   const auto preview = editor.views->preview_visibility;
   editor.views->preview_visibility.reset();
@@ -108,8 +108,8 @@ void draw_box(Editor& editor, const Painter& painter) {
       const int world_axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
       const std::string name = std::string("Clip face ") + "xyz"[axis] + (high ? "+" : "-");
       const Pressed pressed = painter.handle(name, face_centre(box), editor.look.theme.axis[world_axis],
-                                             "Drag to move this face of the clip box, with Ctrl by 10 mm. A double "
-                                             "click brings it back to the volume's end.");
+                                             "Drag to move this face of the clip box; hold Ctrl to snap to 10 mm. "
+                                             "Double-click to move it back to the volume's border.");
       if (pressed.double_clicked) {
         Visibility next = *editor.document().visibility;
         move_face(next.clip_box, grid, axis, high, high ? grid.size[axis] - 0.5 : -0.5);
@@ -123,7 +123,7 @@ void draw_box(Editor& editor, const Painter& painter) {
         double place =
             (high ? start.high : start.low)[axis] + std::round(painter.dragged(face_centre(start), world.linear[axis]));
         if (editor.input.modifiers().ctrl) {
-          // Whole centimetres of the world's axis that the face moves along.
+          // Snaps the face to a multiple of 10 mm on the world axis that is nearest to the face's normal.
           const double step = world.linear[axis][world_axis],
                        first = face_centre(start)[world_axis] - step * (high ? start.high : start.low)[axis];
           place = (snapped(first + step * place) - first) / step;
@@ -148,7 +148,8 @@ void draw_plane(Editor& editor, const Painter& painter) {
   painter.line(plane.point, plane.point + half * normal);
   const Pressed pressed = painter.handle(
       "Clip plane", plane.point + half * normal, kViewAccent,
-      "Drag to move the clip plane along its normal, with Ctrl by 10 mm. A double click brings it to the cross-hair.");
+      "Drag to move the clip plane along its normal; hold Ctrl for steps of 10 mm. Double-click to move it to the "
+      "cross-hair.");
   if (pressed.double_clicked) {
     Visibility next = *editor.document().visibility;
     next.clip_plane.point = editor.views->cross_hair;
@@ -177,7 +178,8 @@ void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction,
              const glm::dvec2& pixels) {
   glm::dvec2 from, to;
-  // A short step, since perspective bends long ones.
+  // How many pixels the direction vector covers on the screen is measured on a short part of it, because in perspective
+  // this number varies along the vector.
   const double step = camera.distance * 1e-3 / std::max(glm::length(direction), 1e-12);
   if (!render::project(camera, point, size, from) || !render::project(camera, point + direction * step, size, to))
     return 0;
@@ -187,7 +189,7 @@ double along(const render::Camera& camera, const glm::ivec2& size, const glm::dv
 }
 
 void draw_clip_handles(Editor& editor, const Rect& rect) {
-  const auto visibility = editor.document().visibility;  // kept, since a release commits
+  const auto visibility = editor.document().visibility;  // copied, since releasing a handle changes the document
   if (!editor.document().volume || !visibility) return;
   const Painter painter(editor, rect);
   if (visibility->clip_box.enabled) draw_box(editor, painter);

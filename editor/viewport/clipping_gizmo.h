@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The clip box and clip plane in the 3D view: edges, and squares that are dragged along their axis. While one is
-// dragged the picture follows a preview; the document changes once, when it is released.
+// Draws the clip box and the clip plane in the 3D view: their edges, and square handles that the user drags along an
+// axis. During a drag only a preview changes. The document changes once, when the handle is released.
 #pragma once
 
 #include "editor/context/editor.h"
 
 namespace limber::editor {
 
-// Into the current window, over the 3D view that fills `rect`.
+// Draws the clip box, the clip plane and their handles into the current ImGui window, over the 3D view that fills
+// `rect`.
 void draw_clip_handles(Editor& editor, const Rect& rect);
 
-// A face to that voxel coordinate, within the grid and off the opposite face.
+// Moves a face of the clip box to the voxel coordinate `voxel`. The face stays inside the grid and at least one voxel
+// away from the opposite face.
 void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel);
 
-// How far a point moves along `direction` (world, any length) when the pointer moves by `pixels`: multiples of it.
-// 0 where the direction points at the eye.
+// Returns how far a point that is dragged along `direction` (world, any length) moves when the pointer moves by
+// `pixels`. The distance is a multiple of `direction`. Returns 0 if the direction points at the eye.
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction,
              const glm::dvec2& pixels);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clip box and clip plane: edits of what is shown, undone like any other.
+// Operators for the clip box and the clip plane. Switching them on and off is an edit, which can be undone.
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/ui/icons.h"
@@ -27,7 +27,7 @@ void toggle_box(Editor& editor) {
   Visibility visibility = visibility_of(editor.document());
   ClipBox& box = visibility.clip_box;
   box.enabled = !box.enabled;
-  // The first time: the front half is cut away, so that the inside shows.
+  // When the box is switched on for the first time, it cuts away the body's front half to show the inside.
   if (box.low == box.high) {
     const glm::dvec3 size(editor.document().volume->grid.size);
     box.low = glm::dvec3(-0.5);
@@ -63,10 +63,12 @@ void reset_clips(Editor& editor) {
 std::vector<Operator> clip_operators() {
   return {
       {"view.clip_box", "Clip box", icon::kClip, "View",
-       "Cuts the volume open by a box; drag the squares on its faces.", toggle_box, needs_volume, box_on},
+       "Hide everything outside a box; drag the squares on its faces to move them.", toggle_box, needs_volume, box_on},
       {"view.clip_plane", "Clip plane", icon::kCut, "View",
-       "Cuts the volume open at the cross-hair, across the line of sight.", toggle_plane, needs_volume, plane_on},
-      {"view.reset_clipping", "Reset clipping", "", "View", "Shows the whole volume again.", reset_clips,
+       "Cut the volume open by a plane through the cross-hair that faces the viewer.", toggle_plane, needs_volume,
+       plane_on},
+      {"view.reset_clipping", "Reset clipping", "", "View",
+       "Remove the clip box and the clip plane, to show the whole volume.", reset_clips,
        [](const Editor& e) { return box_on(e) || plane_on(e) ? std::string() : std::string("Nothing is clipped"); }},
   };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the clip box and the clip plane lie, in millimetres: the same as dragging their handles.
+// Draws the section "Clipping": number fields for the positions of the clip box and the clip plane, in mm. Changing a
+// number does the same as dragging a handle in the 3D view.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,8 @@ namespace limber::editor {
 
 namespace {
 
-// One number; the views follow while it is dragged, and the document changes once, at the end.
+// Draws a number field. While the user drags the number, only a preview changes. The document changes once, when the
+// drag ends.
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, double value, double low, double high,
                  const char* edit, const std::function<void(Visibility&, double)>& set) {
   auto& edited = editor.edited_number;
@@ -38,7 +40,8 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, doub
   commit(editor, edit, std::move(document));
 }
 
-// The grid's axis that is nearest to the world's, so that the rows read left-right, front-back, feet-head.
+// Returns the grid's axis that is nearest to a world axis, so that the panel's rows mean left-right, front-back and
+// feet-head for every orientation of the grid.
 int grid_axis_near(const Grid& grid, int world_axis) {
   int nearest = 0;
   for (int axis = 1; axis < 3; ++axis)
@@ -51,7 +54,7 @@ void draw_box(Editor& editor, Column& column, const Grid& grid, const ClipBox& b
   const AffineTransform world = world_from_voxel(grid);
   for (int w = 0; w < 3; ++w) {
     const int axis = grid_axis_near(grid, w);
-    // Along the axis: place = first + step * voxel, in mm of the world.
+    // The world coordinate of a voxel on this grid axis is first + step * voxel, in mm.
     const double step = world.linear[axis][w],
                  first = (world * ((glm::dvec3(grid.size) - 1.0) * 0.5))[w] - step * (grid.size[axis] - 1) * 0.5;
     const auto place = [&](double voxel) { return first + step * voxel; };

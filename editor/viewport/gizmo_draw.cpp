@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kRingSteps = 96;
-constexpr double kBehind = 0.15;      // of the radius: so far behind its centre a ring is still shown
-constexpr float kUnderStroke = 1.6f;  // wider than the line above it
+constexpr double kBehind = 0.15;      // depth behind its centre to which a ring is drawn, as a fraction of its radius
+constexpr float kUnderStroke = 1.6f;  // excess width of the dark line that is drawn under each line, pixels
 constexpr Colour kUnder = 0x59000000;
 
 ImVec2 im(const glm::dvec2& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
@@ -67,7 +67,7 @@ void GizmoPainter::arc(const Ring& ring, double from, double to, Colour colour, 
   for (int i = 0; i <= steps; ++i)
     if (const auto pixel = view_.pixel_of(ring.at(from + (to - from) * i / steps))) run.push_back(*pixel);
   polyline(run, colour, width);
-  // A tick of 12 at both ends.
+  // A short line across the ring marks each end of the arc. It is 12 pixels long on a ring with a radius of 96 pixels.
   const double half = ring.radius * 6 / 96;
   for (const double end : {from, to}) {
     Ring inner = ring, outer = ring;
@@ -87,7 +87,7 @@ void GizmoPainter::sector(const Ring& ring, double from, double by, Colour colou
     const auto a = view_.pixel_of(ring.at(from + by * i / steps)),
                b = view_.pixel_of(ring.at(from + by * (i + 1) / steps));
     if (!a || !b) continue;
-    // Without the soft edges that would show between the pieces.
+    // Anti-aliasing is switched off, since soft edges of the triangles would be visible as lines between them.
     const ImDrawListFlags flags = canvas().Flags;
     canvas().Flags &= ~ImDrawListFlags_AntiAliasedFill;
     canvas().AddTriangleFilled(im(*centre), im(*a), im(*b), colour);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rings, arcs, arrows and read-outs over a view, of one size on the screen wherever they stand. Lengths are pixels at
-// scale 1 unless they are said to be mm.
+// Draws rings, arcs, arrows and read-outs (numbers) of tools over a view. Their size on the screen is the same at any
+// depth. Lengths are pixels at scale 1 unless marked as mm.
 #pragma once
 
 #include <cmath>
@@ -13,26 +13,27 @@
 
 namespace limber::editor {
 
-// A circle in the world: angles count from `from`, the right-handed way about `axis`.
+// A circle in the world. Angles on it are in radians, from the direction `from`, right-handed about `axis`.
 struct Ring {
-  glm::dvec3 centre{0}, axis{0, 0, 1}, from{1, 0, 0};  // unit
+  glm::dvec3 centre{0}, axis{0, 0, 1}, from{1, 0, 0};  // mm; unit vectors
   double radius = 0;                                   // mm
 
   glm::dvec3 at(double angle) const {
     return centre + radius * (std::cos(angle) * from + std::sin(angle) * glm::cross(axis, from));
   }
-  // Of the point that is under the pixel in the ring's plane.
+  // Returns the angle on the ring, radians, of the point where the pixel's line of sight meets the ring's plane.
+  // Nothing if the line of sight misses the plane.
   std::optional<double> angle_under(const ViewProjection& view, const glm::dvec2& pixel) const;
-  // The half that faces the eye, and a little more, so that a ring seen from above is whole: where it begins, how far
-  // it goes.
+  // Returns the part of the ring that faces the eye, as its first angle and its extent in radians. It is a little more
+  // than half of the ring, or the whole ring if the line of sight is nearly parallel to its axis.
   std::pair<double, double> front(const ViewProjection& view) const;
 };
 
-// `pixels` large on the screen.
+// Returns a ring that has a radius of `pixels` on the screen, in pixels at scale 1.
 Ring ring_of(const ViewProjection& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels);
 
-// Where a read-out stands: beside the point, at its other side near the view's edge, above or below it where neither
-// has room; inside the view, whatever the point.
+// Returns the rectangle in which to draw a read-out for a point of a view. It lies at the right of the point, or, where
+// there is no room, at the left, above or below. It is always inside the view.
 Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& point);
 
 class GizmoPainter {
@@ -47,12 +48,12 @@ class GizmoPainter {
   void dot(const glm::dvec3& at, Colour fill, Colour edge, float radius) const;
   void circle(const glm::dvec3& at, Colour colour, float radius, float width) const;
   void square(const glm::dvec3& middle, const glm::dvec3& half_a, const glm::dvec3& half_b,
-              Colour colour) const;  // halves in mm
+              Colour colour) const;  // half_a, half_b: vectors from the middle to the middles of two sides, mm
   void diamond(const glm::dvec3& at, Colour colour, float size) const;
   void arrow(const glm::dvec3& from, const glm::dvec3& direction, Colour colour, float begin, float end, float width,
              bool box) const;
-  void word(const glm::dvec3& at, const std::string& text, Colour colour) const;  // about the point
-  // A bold line and a quiet one.
+  void word(const glm::dvec3& at, const std::string& text, Colour colour) const;  // centred on the point `at`
+  // Draws a read-out of two lines of text: a bright number with the name of its axis, and the text `below`.
   void read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below,
                 Colour below_colour) const;
 
@@ -63,9 +64,10 @@ class GizmoPainter {
   const ViewProjection& view_;
 };
 
-constexpr Colour kGizmoActive = 0xFF8AE0FF;  // FFE08A, what is dragged
-// Views are dark in every theme, and so are these for it.
-constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4, kViewError = 0xFF807AFF;  // 5AD19A, F4BC52, FF7A80
-constexpr Colour kViewAccent = 0xFFFFBE8F;                                               // 8FBEFF
+constexpr Colour kGizmoActive = 0xFF8AE0FF;  // RRGGBB: FFE08A; colour of the part of a gizmo that is being dragged
+// Bright variants of the theme's colours, to draw over views: these are dark in every theme.
+constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4,
+                 kViewError = 0xFF807AFF;   // RRGGBB: 5AD19A, F4BC52, FF7A80
+constexpr Colour kViewAccent = 0xFFFFBE8F;  // RRGGBB: 8FBEFF
 
 }  // namespace limber::editor

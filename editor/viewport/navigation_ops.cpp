@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Turning, shifting and zooming the 3D view, with Blender's keys.
+// Operators that turn, shift and zoom the 3D view, as in Blender.
 #include <cmath>
 #include <numbers>
 
@@ -15,10 +15,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWheelStep = 1.2;                             // closer by that factor, as in Blender
-constexpr double kZoomPerPixel = 0.006;                        // e-folds
-constexpr double kKeyOrbit = 15 * std::numbers::pi / 180;      // radians for one press
-constexpr double kOrbitPixels = 180 / std::numbers::pi / 0.4;  // pixels for a radian: 0.4 degrees a pixel
+constexpr double kWheelStep = 1.2;                         // factor by which one wheel step zooms, as in Blender
+constexpr double kZoomPerPixel = 0.006;                    // a drag by n pixels zooms by the factor e^(n times this)
+constexpr double kKeyOrbit = 15 * std::numbers::pi / 180;  // angle by which a key turns the view, radians
+constexpr double kOrbitPixels = 180 / std::numbers::pi / 0.4;  // pixels of a drag that turn the view by 1 radian
 
 glm::ivec2 view_size(const Editor& editor) {
   const Rect* place = editor.layout.place_of(ViewId::Body);
@@ -30,7 +30,7 @@ PointerWrap wrap_in_view(const Editor& editor) {
   return place ? PointerWrap(*place, editor.look.px(2)) : PointerWrap();
 }
 
-// Escape brings the camera back.
+// Begins a drag that changes the 3D view's camera. Escape restores the camera.
 void start_drag(Editor& editor, MouseButton button, std::function<void(Editor&, const glm::vec2&)> moved) {
   BodyView& body = editor.views->body;
   body.move.reset();
@@ -41,7 +41,7 @@ void start_drag(Editor& editor, MouseButton button, std::function<void(Editor&, 
   editor.drag = Drag{button, std::move(moved), {}, back, wrap_in_view(editor)};
 }
 
-// The button that began it: middle, or left together with Alt.
+// Returns the mouse button that began the drag: the middle button, or the left button together with Alt.
 MouseButton pressed_button(const Editor& editor) {
   return editor.input.down(MouseButton::Middle) ? MouseButton::Middle : MouseButton::Left;
 }
@@ -65,7 +65,7 @@ void zoom(Editor& editor) {
   });
 }
 
-// What the pointer is on stays there.
+// Zooms the 3D view so that the point under the pointer stays under the pointer.
 void zoom_about_pointer(Editor& editor, double factor) {
   BodyView& body = editor.views->body;
   body.move.reset();
@@ -76,7 +76,7 @@ void zoom_about_pointer(Editor& editor, double factor) {
                     : render::zoomed(body.camera, factor);
 }
 
-// The view under the pointer, by the wheel or a pad.
+// Shifts the view under the pointer by steps of the wheel or of a touch pad.
 void pan_step(Editor& editor, const glm::vec2& steps) {
   constexpr float kStep = 40;
   const glm::vec2 pixels = steps * editor.look.px(kStep);
@@ -113,8 +113,8 @@ Operator standard_view(const char* id, const char* label, render::StandardView s
 }
 
 Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
-  return {id, label, "", "View", "Turns the view by 15 degrees.", [direction](Editor& e) {
-            // orbited() turns by pixels; as many as make the step.
+  return {id, label, "", "View", "Turn the 3D view by 15 degrees.", [direction](Editor& e) {
+            // orbited() takes the pixels of a drag, so the angle is converted to pixels.
             go_to(e, render::orbited(goal(e), direction * kKeyOrbit * kOrbitPixels));
             e.views->body.name.clear();
           }};
@@ -143,10 +143,10 @@ std::optional<Box> box_of_selection(Editor& editor) {
 std::string needs_aim(const Editor& editor) {
   if (!editor.document().volume) return "Open a volume first";
   const bool aim = !editor.selection.tissues.empty() || !editor.selection.bones.empty() || editor.views->hover.inside;
-  return aim ? "" : "Choose a tissue, or point at one";
+  return aim ? "" : "Select a tissue, or point at one";
 }
 
-// What is chosen fills the view; where nothing is, the point under the pointer becomes its middle.
+// Zooms the 3D view to the selection. If nothing is selected, centres it on the point under the pointer.
 void frame_selected(Editor& editor) {
   const auto chosen = box_of_selection(editor);
   if (!chosen) return run(editor, "view.centre_on_pick");
@@ -182,47 +182,48 @@ void centre_on_pick(Editor& editor) {
 std::vector<Operator> navigation_operators() {
   using render::StandardView;
   return {
-      {"view.orbit", "Turn view", "", "View", "Drag to turn the view about its centre.", orbit},
-      {"view.pan", "Shift view", "", "View", "Drag to shift the view.", pan},
-      {"view.zoom", "Zoom view", "", "View", "Drag up or down to come closer or go back.", zoom},
-      {"view.zoom_step", "Zoom by wheel", "", "View", "Comes closer or goes back by a step.",
+      {"view.orbit", "Turn view", "", "View", "Drag to turn the 3D view about its centre.", orbit},
+      {"view.pan", "Pan view", "", "View", "Drag to move the 3D view sideways, up or down.", pan},
+      {"view.zoom", "Zoom view", "", "View", "Drag up to zoom in, down to zoom out.", zoom},
+      {"view.zoom_step", "Zoom by wheel", "", "View", "Zoom in or out by one step.",
        [](Editor& e) {
          e.views->body.move.reset();
          zoom_about_pointer(e, std::pow(kWheelStep, -e.input.wheel));
        }},
-      {"view.zoom_in", "Zoom in", "", "View", "Comes closer.",
+      {"view.zoom_in", "Zoom in", "", "View", "Move the view closer by one step.",
        [](Editor& e) { zoom_about_pointer(e, 1 / kWheelStep); }},
-      {"view.zoom_out", "Zoom out", "", "View", "Goes back.", [](Editor& e) { zoom_about_pointer(e, kWheelStep); }},
-      {"view.pan_step", "Shift by wheel", "", "View", "Shifts the view up or down.",
+      {"view.zoom_out", "Zoom out", "", "View", "Move the view back by one step.",
+       [](Editor& e) { zoom_about_pointer(e, kWheelStep); }},
+      {"view.pan_step", "Pan by wheel", "", "View", "Move the view up or down.",
        [](Editor& e) {
          pan_step(e, {0, e.input.wheel});
        }},
-      {"view.pan_sideways_step", "Shift sideways by wheel", "", "View", "Shifts the view to the left or right.",
+      {"view.pan_sideways_step", "Pan sideways by wheel", "", "View", "Move the view to the left or right.",
        [](Editor& e) {
          pan_step(e, {e.input.wheel_sideways != 0 ? e.input.wheel_sideways : e.input.wheel, 0});
        }},
-      {"view.walk", "Walk", "", "View", "Goes through the view with W A S D; the mouse looks round.", walk,
+      {"view.walk", "Walk", "", "View", "Walk through the 3D view with W A S D; look around with the mouse.", walk,
        needs_volume},
       {"view.centre_on_pick", "Centre on point", icon::kCrossHair, "View",
-       "Turns about the point of the body under the pointer from now on.", centre_on_pick, needs_volume},
-      standard_view("view.front", "Front", StandardView::Front, "Looks at the body from the front."),
-      standard_view("view.back", "Back", StandardView::Back, "Looks at the body from the back."),
-      standard_view("view.left", "Left", StandardView::Left, "Looks at the body's left side."),
-      standard_view("view.right", "Right", StandardView::Right, "Looks at the body's right side."),
-      standard_view("view.top", "Top", StandardView::Top, "Looks at the body from above."),
-      standard_view("view.bottom", "Bottom", StandardView::Bottom, "Looks at the body from below."),
-      {"view.ortho", "Perspective", icon::kCamera, "View", "Changes between perspective and parallel projection.",
-       toggle_projection, nullptr,
+       "Centre the view on the body's point under the pointer, and turn about it from now on.", centre_on_pick,
+       needs_volume},
+      standard_view("view.front", "Front", StandardView::Front, "Look at the body from the front."),
+      standard_view("view.back", "Back", StandardView::Back, "Look at the body from the back."),
+      standard_view("view.left", "Left", StandardView::Left, "Look at the body's left side."),
+      standard_view("view.right", "Right", StandardView::Right, "Look at the body's right side."),
+      standard_view("view.top", "Top", StandardView::Top, "Look at the body from above."),
+      standard_view("view.bottom", "Bottom", StandardView::Bottom, "Look at the body from below."),
+      {"view.ortho", "Perspective", icon::kCamera, "View",
+       "Switch the 3D view between perspective and parallel projection.", toggle_projection, nullptr,
        [](const Editor& e) { return e.views->body.camera.projection == render::Projection::Perspective; }},
       orbit_step("view.orbit_down", "Turn down", {0, -1}),
       orbit_step("view.orbit_up", "Turn up", {0, 1}),
       orbit_step("view.orbit_left", "Turn left", {1, 0}),
       orbit_step("view.orbit_right", "Turn right", {-1, 0}),
-      {"view.opposite", "Opposite side", icon::kCamera, "View", "Looks from the other side.", opposite},
+      {"view.opposite", "Opposite side", icon::kCamera, "View", "Look at the body from the opposite side.", opposite},
       {"view.frame_selected", "Frame selected", icon::kExpand, "View",
-       "Brings what is chosen to fill the view, or the point under the pointer to its middle.", frame_selected,
-       needs_aim},
-      {"view.frame_all", "Frame all", icon::kExpand, "View", "Brings all that is visible to fill the views.",
+       "Zoom the view to the selection, or centre it on the point under the pointer.", frame_selected, needs_aim},
+      {"view.frame_all", "Frame all", icon::kExpand, "View", "Zoom the views to everything that is visible.",
        [](Editor& e) { frame_all(e, true); }},
   };
 }

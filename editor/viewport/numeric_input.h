@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A number typed during a transform: digits, a sign and a point.
+// A number that the user types while a transform tool is active: digits, a sign and a decimal point.
 #pragma once
 
 #include <cstdlib>
@@ -12,7 +12,8 @@ namespace limber::editor {
 
 class TypedNumber {
  public:
-  // Whether the key is a part of a number.
+  // Adds the character of a pressed key to the number; Backspace removes the last one. Returns false if the key is no
+  // part of a number.
   bool key(Key key) {
     if (const char digit = digit_of(key)) {
       if (std::ssize(text_) < kDigits) text_ += digit;
@@ -32,7 +33,7 @@ class TypedNumber {
     typed_ = true;
     return true;
   }
-  // As if just that had been typed.
+  // Sets the number to a value, as if the user had typed it.
   void set(double value) {
     exact_ = value;
     typed_ = true;

@@ -10,10 +10,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kShortest = 10;  // corners of a line that is more than a speck
-constexpr int kSmoothings = 4;         // of a line's steps; each takes a mean over three corners
+constexpr std::size_t kShortest = 10;  // least number of corners of an outline; shorter ones are specks and are dropped
+constexpr int kSmoothings = 4;         // smoothing passes over an outline; each averages three adjacent corners
 
-// Cells with an empty border of one.
+// A grid of cells over the picture, with a border of empty cells, one cell wide. `filled` is 1 for cells that triangles
+// cover.
 struct Mask {
   Mask(const Rect& picture, float cell)
       : size(glm::ivec2(glm::ceil(picture.size() / cell)) + 2),
@@ -24,7 +25,8 @@ struct Mask {
   std::vector<std::uint8_t> filled;
 };
 
-// Every cell whose middle the triangle covers, and those of its corners, so that thin parts do not break.
+// Fills all cells whose middle lies in the triangle, and the cells of its three corners. The latter keep thin parts
+// connected.
 void fill(Mask& mask, const std::array<glm::vec2, 3>& p) {
   const glm::vec2 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]);
   const glm::vec2 last(mask.size - 2);
@@ -46,8 +48,8 @@ void fill(Mask& mask, const std::array<glm::vec2, 3>& p) {
     }
 }
 
-// The borders of the filled cells, from corner to corner of cells; where two meet in a corner each turns to its own
-// side.
+// The borders of the filled cells, as steps from one cell corner to the next. Where two filled cells touch only in a
+// corner, each border follows its own cell.
 class Borders {
  public:
   explicit Borders(Mask& mask)
@@ -88,7 +90,8 @@ class Borders {
   }
   int take(int at, int before) {
     auto& next = next_[at];
-    // Of two ways the one that turns towards the filled side: two cells that touch in a corner stay apart.
+    // Of two possible steps, takes the one that turns towards the filled cell. So two cells that touch only in a corner
+    // get separate outlines.
     const auto turns_inwards = [&](int to) {
       const glm::ivec2 in(at % width_ - before % width_, at / width_ - before / width_),
           out(to % width_ - at % width_, to / width_ - at / width_);

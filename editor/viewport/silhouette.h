@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The outline of what triangles cover of a picture: they are filled into cells, the border of the filled ones is
-// followed around and smoothed.
+// Computes the outline of the area that triangles cover in a picture. It fills the triangles into a grid of cells,
+// follows the border of the filled cells, and smooths this border.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,12 @@
 
 namespace limber::editor {
 
-// Closed lines in pixels, with what is covered on the left where y points up; holes the other way.
-//   points   pixels; a NaN is behind the eye, and its triangles are left out
-//   corners  of triangles
-//   picture  beyond which nothing counts; what is cut off by its border is closed along it
-//   cell     pixels
+// Returns the outlines as closed polylines, pixels. If y points up, the covered area lies to the left of each line,
+// also around holes.
+//   points   #P positions, pixels; NaN for a point behind the eye, whose triangles are left out
+//   corners  #T by 3 indices of points: the triangles
+//   picture  triangles are clipped to this rectangle, and their outline follows its border there
+//   cell     edge of a cell, pixels
 std::vector<std::vector<glm::vec2>> silhouette(const std::vector<glm::vec2>& points,
                                                const std::vector<glm::u32vec3>& corners, const Rect& picture,
                                                float cell);

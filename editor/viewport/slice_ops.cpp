@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Stepping, shifting and zooming the slices, and the cross-hair that links them.
+// Operators that step through, shift and zoom the slices, and that move the cross-hair, in which the slices meet.
 #include <cmath>
 
 #include "editor/context/operator_polls.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWheelStep = 1.2;
 
-// The slice under the pointer, else the one used last.
+// Returns the slice view under the pointer. Otherwise returns the view used last, if it is a slice view and shown.
 std::optional<ViewId> slice_here(const Editor& editor) {
   if (const ViewPlace* view = hovered_view(editor); view && view->id != ViewId::Body) return view->id;
   if (editor.views->active != ViewId::Body && editor.layout.place_of(editor.views->active)) return editor.views->active;
@@ -22,7 +22,7 @@ std::optional<ViewId> slice_here(const Editor& editor) {
 
 std::string needs_slice(const Editor& editor) {
   if (!editor.document().volume) return "Open a volume first";
-  return slice_here(editor) ? "" : "Point at a slice";
+  return slice_here(editor) ? "" : "Point at a slice view first";
 }
 
 void step(Editor& editor, double slices) {
@@ -31,7 +31,8 @@ void step(Editor& editor, double slices) {
   const auto volume = shown_volume(editor);
   const Grid& grid = volume->grid;
   const glm::dvec3 normal = render::frame_of(axis_of(*view)).normal;
-  // Up is towards the head, the front, the left: along the axis nearest to the normal.
+  // Steps along the grid's axis that is nearest to the slice's normal. A positive step goes towards the head, the back
+  // or the left of the body.
   const AffineTransform world = world_from_voxel(grid);
   int nearest = 0;
   for (int axis = 1; axis < 3; ++axis)
@@ -43,7 +44,8 @@ void step(Editor& editor, double slices) {
   editor.views->cross_hair = world * voxel;
 }
 
-// A wheel makes whole steps, a pad parts of them.
+// Returns the number of whole wheel steps and keeps the remaining fraction for the next call, since a touch pad sends
+// fractions of a step.
 double whole_steps(Editor& editor) {
   if (editor.wheel_rest * editor.input.wheel < 0) editor.wheel_rest = 0;
   editor.wheel_rest += editor.input.wheel;
@@ -56,7 +58,7 @@ void zoom(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || place->id == ViewId::Body) return;
   render::SliceCamera& camera = slice_of(*editor.views, place->id).camera;
-  // The point under the pointer stays there.
+  // Zooms so that the point under the pointer stays under the pointer.
   const glm::vec2 pixel = editor.input.pointer - place->rect.low, size = place->rect.size();
   const glm::dvec3 before = world_of(camera, pixel, size);
   camera.millimetres_per_pixel =
@@ -76,7 +78,8 @@ void drag_slice(Editor& editor) {
            PointerWrap(place->rect, editor.look.px(2))};
 }
 
-// Where the pointer is in the body, or in a slice's plane.
+// Moves the cross-hair to the pointer: in the 3D view to the body's point under it, in a slice view to the point of the
+// slice's plane under it.
 void put_cross_hair(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place) return;
@@ -112,24 +115,25 @@ Operator display_operator(const char* id, const char* label, const char* descrip
 
 std::vector<Operator> slice_operators() {
   return {
-      {"slice.step", "Step slice by wheel", "", "View", "Goes one slice further or back.",
+      {"slice.step", "Step slice by wheel", "", "View", "Move to the next or the previous slice.",
        [](Editor& e) { step(e, whole_steps(e)); }, needs_slice},
-      {"slice.step_five", "Step five slices by wheel", "", "View", "Goes five slices further or back.",
+      {"slice.step_five", "Step five slices by wheel", "", "View", "Move forward or back by five slices.",
        [](Editor& e) { step(e, 5 * whole_steps(e)); }, needs_slice},
-      {"slice.next", "Next slice", "", "View", "Goes one slice further.", [](Editor& e) { step(e, 1); }, needs_slice},
-      {"slice.previous", "Previous slice", "", "View", "Goes one slice back.", [](Editor& e) { step(e, -1); },
+      {"slice.next", "Next slice", "", "View", "Move to the next slice.", [](Editor& e) { step(e, 1); }, needs_slice},
+      {"slice.previous", "Previous slice", "", "View", "Move to the previous slice.", [](Editor& e) { step(e, -1); },
        needs_slice},
-      {"slice.zoom", "Zoom slice by wheel", "", "View", "Enlarges the slice about the pointer.", zoom, needs_slice},
-      {"slice.pan", "Shift slice", "", "View", "Drag to shift the slice.", drag_slice, needs_slice},
-      {"slice.outline", "Toggle outlines", "", "View", "Changes the slices between filled labels and their outlines.",
+      {"slice.zoom", "Zoom slice by wheel", "", "View", "Zoom the slice in or out about the pointer.", zoom,
+       needs_slice},
+      {"slice.pan", "Pan slice", "", "View", "Drag to move the slice within its view.", drag_slice, needs_slice},
+      {"slice.outline", "Toggle outlines", "", "View", "Switch the slices between filled tissues and their outlines.",
        toggle_outline, nullptr,
        [](const Editor& e) { return e.views->slice_display == render::SliceDisplay::Outline; }},
-      display_operator("slice.show_labels", "Labels", "Slices show tissues as filled areas.",
+      display_operator("slice.show_labels", "Labels", "Show tissues in the slices as filled areas.",
                        render::SliceDisplay::Labels),
-      display_operator("slice.show_outlines", "Outline", "Slices show the outlines of tissues.",
+      display_operator("slice.show_outlines", "Outline", "Show tissues in the slices as outlines.",
                        render::SliceDisplay::Outline),
       {"view.place_cross_hair", "Place cross-hair", icon::kCrossHair, "View",
-       "Moves the point where the slices meet under the pointer.", place_cross_hair, needs_volume},
+       "Move the cross-hair, the point where the slices meet, to the pointer.", place_cross_hair, needs_volume},
   };
 }
 

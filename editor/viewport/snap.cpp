@@ -7,9 +7,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kRounds = 4;  // right and up by turns: the middle of a round cross-section is found by the second
+// How often the middle is searched along `right` and then along `up`. Two rounds suffice for a round cross-section.
+constexpr int kRounds = 4;
 
-// Bone in the document's volume, felt along lines by half a voxel.
+// Samples the bone tissue of the document's volume along lines, in steps of half a voxel.
 class BoneTissue {
  public:
   explicit BoneTissue(const Document& document)
@@ -28,7 +29,8 @@ class BoneTissue {
     return tissue && is_bone(tissue->kind);
   }
 
-  // The middle of the run of bone through a point.
+  // Follows a line from a point in bone tissue in both directions up to the end of the bone tissue. Returns the middle
+  // between both ends.
   glm::dvec3 middle_of_run(const glm::dvec3& point, const glm::dvec3& direction) const {
     double low = 0, high = 0;
     while (low > -reach_ && at(point + direction * (low - step_))) low -= step_;
@@ -66,7 +68,8 @@ std::optional<glm::dvec3> middle_of_bone(const Document& document, const ViewPro
   const double depth = glm::dot(middle - sight.origin, sight.direction);
   for (double t = std::max(0.0, depth - bone.reach()); t < depth + bone.reach(); t += bone.step())
     if (bone.at(sight.origin + t * sight.direction)) {
-      // From the first hit through to the other side; then across, so that the pointer need not be quite in the middle.
+      // First finds the bone's middle along the line of sight, then the middle across it. So the pointer need not point
+      // at the middle of the bone.
       glm::dvec3 point = bone.middle_of_run(sight.origin + t * sight.direction, sight.direction);
       if (!bone.at(point)) return point;
       for (int i = 0; i < 2; ++i) point = bone.middle_of_run(bone.middle_of_run(point, view.right), view.up);

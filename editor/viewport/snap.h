@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where a joint snaps to in the volume. Points of the world, mm.
+// Finds points of the volume to which a dragged joint of the rig snaps: the middle of bone tissue, or the centre of a
+// voxel. Points are world positions in mm.
 #pragma once
 
 #include <optional>
@@ -9,14 +10,15 @@
 
 namespace limber::editor {
 
-// The middle of the bone tissue under a pixel: along the line of sight in the 3D view, in its plane in a slice. Nothing
-// where there is none.
+// Returns the middle of the bone tissue under a pixel. In the 3D view, it is the middle of the first bone on the line
+// of sight; in a slice view, the middle of the bone's cross-section. Nothing if no bone tissue lies under the pixel.
 std::optional<glm::dvec3> middle_of_bone(const Document& document, const ViewProjection& view, const glm::dvec2& pixel);
-// The middle of the bone tissue that a point lies in, in the plane of two directions (unit).
+// Returns the middle of the bone tissue around a point, in the plane that the unit vectors `right` and `up` span.
+// Nothing if the point lies outside bone tissue.
 std::optional<glm::dvec3> middle_of_bone(const Document& document, const glm::dvec3& point, const glm::dvec3& right,
                                          const glm::dvec3& up);
 
-// The centre of the voxel nearest to a point, inside the volume; nothing without one.
+// Returns the centre of the voxel that is nearest to a point. Nothing without a volume.
 std::optional<glm::dvec3> nearest_voxel(const Document& document, const glm::dvec3& point);
 
 }  // namespace limber::editor

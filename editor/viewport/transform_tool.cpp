@@ -12,11 +12,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPrecise = 0.1;    // of the pointer's way, with Shift
-constexpr double kClickPixels = 4;  // at scale 1: a release within them is a click
+constexpr double kPrecise = 0.1;    // factor on the pointer's moves while Shift is held
+constexpr double kClickPixels = 4;  // largest move of the pointer in a click, pixels at scale 1
 
 constexpr const char* kAxisNames[] = {"X", "Y", "Z"};
-constexpr double kFarthest = 10'000;  // mm
+constexpr double kFarthest = 10'000;  // largest translation that can be entered in the form, mm
 
 int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key == Key::Z ? 2 : -1; }
 
@@ -51,7 +51,7 @@ bool TransformTool::moved(Editor& editor, const glm::vec2& pixels) {
   return true;
 }
 
-// The axis that runs most nearly as the pointer went.
+// Locks the tool to the axis that is nearest to the direction in which the pointer has moved.
 void TransformTool::lock_to_way(Editor& editor) {
   const Space space = editor.transform_settings->space;
   const glm::dmat3 all = axes(space);
@@ -93,7 +93,8 @@ bool TransformTool::key(Editor& editor, const KeyChanged& event) {
   if (event.key == Key::Escape) return drop(editor);
   if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
   if (const int axis = axis_of_key(event.key); axis >= 0) {
-    // The chosen space's, the other one's, none.
+    // The first press of X, Y or Z locks the axis of the selected space. The second locks that of the other space:
+    // local instead of global, global instead of any other. The third removes the lock.
     const bool plane = editor.input.down(Key::Shift);
     const Space first = editor.transform_settings->space,
                 second = first == Space::Global ? Space::Local : Space::Global;
@@ -122,10 +123,10 @@ std::vector<FormField> TransformTool::fields_of_way(const glm::dvec3& way) const
   const glm::dvec3 along = glm::transpose(axes(space)) * way;
   std::vector<FormField> fields;
   for (int axis = 0; axis < 3; ++axis)
-    fields.push_back(
-        number_of(kAxisNames[axis], "How far along this axis.", along[axis], -kFarthest, kFarthest, "%.2f", "mm"));
-  fields.push_back(
-      choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(space)));
+    fields.push_back(number_of(kAxisNames[axis], "The distance to move along this axis.", along[axis], -kFarthest,
+                               kFarthest, "%.2f", "mm"));
+  fields.push_back(choice_of("Axes", "The coordinate system of the axes.", {"Global", "Local", "Parent", "View"},
+                             static_cast<int>(space)));
   return fields;
 }
 
@@ -134,10 +135,12 @@ void TransformTool::set_way(const std::vector<FormField>& fields) {
 }
 
 std::vector<FormField> TransformTool::fields_of_axis() const {
-  return {
-      choice_of("Axis", "The axis that it goes by; none is the line of sight, or all.", {"None", "X", "Y", "Z"},
-                lock_.axis + 1),
-      choice_of("Axes", "Whose axes these are.", {"Global", "Local", "Parent", "View"}, static_cast<int>(lock_.space))};
+  return {choice_of(
+              "Axis",
+              "The axis to turn about or to scale along. None: turn about the line of sight, or scale along all axes.",
+              {"None", "X", "Y", "Z"}, lock_.axis + 1),
+          choice_of("Axes", "The coordinate system of the axes.", {"Global", "Local", "Parent", "View"},
+                    static_cast<int>(lock_.space))};
 }
 
 void TransformTool::set_axis(const std::vector<FormField>& fields, std::size_t first) {
@@ -166,12 +169,12 @@ std::string TransformTool::lock_text(const char* word) const {
 }
 
 std::vector<KeyHint> TransformTool::shared_hints() const {
-  return {{{"X", "Y", "Z"}, "Lock, again: local"},
-          {{"0-9"}, "Type"},
+  return {{{"X", "Y", "Z"}, "Lock axis, twice for local"},
+          {{"0-9"}, "Value"},
           {{"Ctrl"}, "Snap"},
-          {{"Shift"}, "Slowly"},
-          {{"Enter"}, "Keep"},
-          {{"Esc"}, "Back"}};
+          {{"Shift"}, "Precise"},
+          {{"Enter"}, "Confirm"},
+          {{"Esc"}, "Cancel"}};
 }
 
 glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const {
@@ -182,7 +185,8 @@ glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, 
     return from + number_.value() * (line ? axis : lock_.plane ? axes(lock_.space)[(lock_.axis + 1) % 3] : view_.right);
   const std::optional<glm::dvec2> seen = view_.pixel_of(from);
   if (!seen) return from;
-  // What was taken hold of stays under the pointer; else the point itself goes as the pointer does.
+  // If the user drags a handle along a locked axis or plane, the handle stays under the pointer. Otherwise the point
+  // moves on the screen by as much as the pointer.
   const glm::dvec2 begin = held_ && !free ? start_ : *seen, end = begin + (pointer_ - start_);
   if (line) {
     const auto first = view_.along_line(begin, from, axis), last = view_.along_line(end, from, axis);

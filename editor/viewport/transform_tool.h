@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What moving, turning and scaling share: the view they act in, the lock to an axis or plane, the number that is typed,
-// snapping, confirming and dropping. A tool that was confirmed lives on while its numbers may still be adjusted.
+// The base class of the tools that move, rotate and scale. It handles what they share: the view that the tool works in,
+// the lock to an axis or plane, the typed number, snapping, confirming and cancelling. A confirmed tool object is kept
+// as long as the user may still adjust its numbers.
 #pragma once
 
 #include <memory>
@@ -14,18 +15,19 @@
 
 namespace limber::editor {
 
-// What a tool is held to: along or about an axis of a space, or in the plane across it.
+// The constraint of a transform tool: to one axis of a coordinate space, or to the plane perpendicular to this axis.
 struct AxisLock {
-  int axis = -1;  // 0 .. 2; -1: none
+  int axis = -1;  // 0 to 2: x, y, z; -1: no constraint
   Space space = Space::Global;
   bool plane = false;
 };
 
-// How a tool begins.
+// The options with which a transform tool starts.
 struct Grip {
   AxisLock lock = {};
-  std::optional<MouseButton> held =
-      {};  // the button whose release ends it; a release in place picks what lies below instead
+  // The mouse button that began a drag. Its release confirms the tool. If the pointer has not moved, the release counts
+  // as a click and selects what lies under the pointer. No value: the tool was started in another way.
+  std::optional<MouseButton> held = {};
   bool trackball = false;
 };
 
@@ -40,13 +42,15 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   const ViewProjection& view() const { return view_; }
 
  protected:
-  virtual void follow(Editor&, const glm::dvec2& /*from*/, const glm::dvec2& /*to*/) {}  // the pointer, slowed
+  // Handles a move of the pointer, pixels; with Shift held, only a tenth of the move counts.
+  virtual void follow(Editor&, const glm::dvec2& /*from*/, const glm::dvec2& /*to*/) {}
   virtual void show(Editor& editor) = 0;
   virtual void keep(Editor& editor) = 0;
   virtual glm::dmat3 axes(Space space) const = 0;
-  virtual void locked(Editor&) {}  // by a key
+  virtual void locked(Editor&) {}  // called after the user changed the lock
   virtual bool own_key(Editor&, Key) { return false; }
-  // What it did, in numbers, and what it is to do: keep() follows.
+  // Convert what the tool does to form fields and back, to let the user adjust it afterwards. keep() is called after
+  // set().
   virtual std::vector<FormField> parameters() const { return {}; }
   virtual void set(const std::vector<FormField>&) {}
 
@@ -54,14 +58,16 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   bool confirm(Editor& editor);
   bool drop(Editor& editor);
   double snapped(const Editor& editor, double value, double step, double fine) const;
-  // Of the lock, in the world; zero where there is none.
+  // Returns the axis that the tool is locked to, as a unit vector in the world. Zero without a lock.
   glm::dvec3 lock_axis() const;
-  std::string lock_text(const char* word) const;  // " about local X"
+  std::string lock_text(const char* word) const;  // the lock in words: " about local X"
   std::vector<KeyHint> shared_hints() const;
-  // Where a point goes that the pointer takes along from `from`, held by the lock; `step`, `fine` in mm, 0 for none.
+  // Returns the position to which the pointer has dragged a point that was at `from`, constrained by the lock. The
+  // dragged distance snaps to multiples of `step`, or of `fine` while Shift is held, mm; 0: no snapping.
   glm::dvec3 dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const;
 
-  // Of a way in the world, mm; and of the axis that is turned about or scaled along. The latter's begin at `first`.
+  // Convert a translation (`way`, world, mm) to form fields and back, and the locked axis to form fields and back.
+  // `first` is the index of the axis's first field.
   std::vector<FormField> fields_of_way(const glm::dvec3& way) const;
   void set_way(const std::vector<FormField>& fields);
   std::vector<FormField> fields_of_axis() const;
@@ -71,15 +77,16 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   AxisLock lock_;
   std::optional<MouseButton> held_;
   TypedNumber number_;
-  glm::dvec2 pointer_, start_;     // of the window, as if nothing stopped or slowed it
-  double travelled_ = 0;           // pixels, the furthest from the start
-  std::optional<glm::dvec3> way_;  // mm, in place of the pointer's
+  glm::dvec2 pointer_, start_;     // pixels of the window; with Shift, moves count a tenth
+  double travelled_ = 0;           // largest distance of the pointer from its start, pixels
+  std::optional<glm::dvec3> way_;  // entered translation, used instead of the pointer's, world, mm
 };
 
-// The view under the pointer, else the 3D view, else any.
+// Returns the view that a tool works in: the view under the pointer, else the 3D view, else the first view.
 ViewPlace place_of_tool(const Editor& editor);
 
-// Takes the input; the pointer that leaves the tool's view comes in again at its other side.
+// Makes the tool the editor's modal tool. When the pointer leaves the tool's view, it is moved to the view's opposite
+// side.
 void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool);
 
 std::string text_of_number(const char* format, double value);

@@ -11,11 +11,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kSpeed = 0.4;                    // of the way to the centre, for a second
-constexpr double kFasterPerStep = 1.25;           // of the wheel
-constexpr double kSlowest = 0.1, kFastest = 1e5;  // mm/s
+// The walking speed at first, per second, as a fraction of the eye's distance from the view's centre
+constexpr double kSpeed = 0.4;
+constexpr double kFasterPerStep = 1.25;           // factor by which a wheel step changes the speed
+constexpr double kSlowest = 0.1, kFastest = 1e5;  // limits of the speed, mm/s
 constexpr double kHurry = 5, kCreep = 0.2;
-constexpr double kLookPerPixel = 0.35;  // of orbiting's: turning oneself goes faster than turning a thing
+constexpr double kLookPerPixel = 0.35;  // angle per pixel relative to orbiting; small, as looking around seems faster
 
 class Walk final : public Modal {
  public:
@@ -23,7 +24,8 @@ class Walk final : public Modal {
       : before_(editor.views->body.camera),
         speed_(std::clamp(kSpeed * before_.distance, kSlowest, kFastest)) {
     editor.views->body.move.reset();
-    editor.views->body.camera.projection = render::Projection::Perspective;  // going forward shows in no other
+    editor.views->body.camera.projection =
+        render::Projection::Perspective;  // in parallel projection, moving forward changes nothing in the picture
     editor.views->body.name.clear();
   }
 
@@ -46,7 +48,7 @@ class Walk final : public Modal {
 
   bool key(Editor& editor, const KeyChanged& event) override {
     if (const Way* way = way_of(event.key)) {
-      // A press within a frame counts as one frame's going.
+      // A key that is pressed and released within one frame moves the eye for that frame.
       if (event.down && !event.repeated) pressed_ += way->direction;
       going_ = direction(editor) != glm::dvec3(0);
       return true;
@@ -75,8 +77,8 @@ class Walk final : public Modal {
   void cancel(Editor& editor) override { editor.views->body.camera = before_; }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{"W", "A", "S", "D"}, "Go"}, {{"E", "Q"}, "Rise, sink"}, {{"Wheel"}, "Speed"},
-            {{"Shift"}, "Hurry"},         {{"Enter"}, "Stay here"},   {{"Esc"}, "Return"}};
+    return {{{"W", "A", "S", "D"}, "Move"}, {{"E", "Q"}, "Up, down"}, {{"Wheel"}, "Speed"},
+            {{"Shift"}, "Faster"},          {{"Enter"}, "Confirm"},   {{"Esc"}, "Cancel"}};
   }
 
   std::string title() const override {
@@ -88,7 +90,7 @@ class Walk final : public Modal {
  private:
   struct Way {
     Key key;
-    glm::dvec3 direction;  // right, up in the world, back
+    glm::dvec3 direction;  // x: right in the view, y: up in the world, z: backward in the view
   };
 
   static const Way* way_of(Key key) {
@@ -109,7 +111,7 @@ class Walk final : public Modal {
   }
 
   render::Camera before_;
-  double speed_;  // mm/s
+  double speed_;  // without Shift and Alt, mm/s
   bool going_ = false;
   glm::dvec3 pressed_{0};
 };

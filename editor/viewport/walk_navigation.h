@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Walking through the view, as in Blender: W A S D go, E and Q rise and sink, the mouse looks round, the wheel changes
-// the speed, Shift hurries and Alt slows. Enter or a click stays there, Escape or the right button returns.
+// A modal tool that moves the eye through the 3D view, as in Blender. W, A, S and D move, E and Q go up and down, the
+// mouse looks around, the wheel changes the speed; Shift is faster, Alt slower. Enter or a left click keeps the new
+// view. Escape or the right mouse button restores the old view.
 #pragma once
 
 #include <memory>

@@ -13,20 +13,20 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kTurn = 0.7;     // radians from the front, so that what is in front of the body is seen
-constexpr double kTilt = 0.12;    // radians from above
-constexpr double kMargin = 0.06;  // of the picture
-constexpr int kSamples = 2;       // each way in a pixel
-constexpr double kShadow = 0.3;   // the light that falls everywhere
+constexpr double kTurn = 0.7;     // turn of the view to the body's side, radians; shows limbs in front of the body
+constexpr double kTilt = 0.12;    // angle by which the view looks down, radians
+constexpr double kMargin = 0.06;  // free margin on each side of the picture, as a fraction of the body's extent
+constexpr int kSamples = 2;       // number of samples per pixel in x and in y
+constexpr double kShadow = 0.3;   // brightness of surfaces that the light does not reach, [0, 1]
 const glm::dvec3 kColour(0.86, 0.68, 0.55), kLight = glm::normalize(glm::dvec3(-0.4, 0.5, 0.8));
 
-// A rounded cylinder. In the picture's axes: x right, y up, z towards the eye.
+// A cylinder with round ends from a to b, mm. The axes are those of the picture: x right, y up, z towards the eye.
 struct Solid {
   glm::dvec3 a, b;
   double radius;
 };
 
-// As a part of the body's height.
+// Returns the radius of the cylinder that is drawn for a bone, as a fraction of the body's height. 0: it is not drawn.
 double radius_of(const std::optional<JointRole>& role) {
   if (!role) return 0;
   switch (role->part) {
@@ -62,7 +62,8 @@ std::vector<Solid> solids_of(const Armature& armature, const Pose& pose) {
   const double height = height_of(armature);
   const glm::dquat turn = glm::angleAxis(kTilt, glm::dvec3(1, 0, 0)) * glm::angleAxis(-kTurn, glm::dvec3(0, 1, 0));
   const glm::dmat3 upright = upright_axes(armature);
-  // Left, up and front of the body to the right, the top and the eye.
+  // Converts a world position to the picture's axes: the body's left becomes x (right), up becomes y (up), front
+  // becomes z (towards the eye). Then turns and tilts the view.
   const auto seen = [&](const glm::dvec3& place) {
     const glm::dvec3 p = glm::transpose(upright) * place;
     return turn * glm::dvec3(p.x, p.z, -p.y);
@@ -76,7 +77,7 @@ std::vector<Solid> solids_of(const Armature& armature, const Pose& pose) {
   return solids;
 }
 
-// The point of a solid that the eye sees at a place of the picture, and the surface's direction there.
+// What is visible of a solid at a position of the picture: the depth of the surface's point (z, mm) and its normal.
 struct Seen {
   double depth;
   glm::dvec3 normal;
@@ -96,7 +97,8 @@ std::optional<Seen> seen_at(const Solid& solid, const glm::dvec2& at) {
   };
   take(on_ball(solid.a, solid.radius, at));
   take(on_ball(solid.b, solid.radius, at));
-  // The round side: where the line of sight is one radius from the axis, and between the ends.
+  // Intersects the line of sight with the curved side of the cylinder: finds the point whose distance from the axis is
+  // the radius, and takes it if it lies between the cylinder's ends.
   const glm::dvec3 axis = solid.b - solid.a, from(at.x - solid.a.x, at.y - solid.a.y, -solid.a.z);
   const double length2 = glm::dot(axis, axis), ray = axis.z, start = glm::dot(from, axis);
   const double a = length2 - ray * ray, b = length2 * from.z - start * ray;
@@ -113,8 +115,8 @@ std::optional<Seen> seen_at(const Solid& solid, const glm::dvec2& at) {
 }
 
 struct Frame {
-  glm::dvec2 low;      // of the picture, mm
-  double millimetres;  // of a pixel
+  glm::dvec2 low;      // the picture's lower left corner, mm
+  double millimetres;  // edge of a pixel, mm
 };
 
 Frame frame_of(const std::vector<Solid>& solids, const glm::ivec2& size) {
@@ -127,7 +129,8 @@ Frame frame_of(const std::vector<Solid>& solids, const glm::ivec2& size) {
   return {(low + high) / 2.0 - glm::dvec2(size) * millimetres / 2.0, millimetres};
 }
 
-// The light of the nearest solid at each sample, rows from the top; none where there is nothing.
+// Renders the solids. Each sample holds the brightness of the nearest solid there, or -1 if there is none. Rows begin
+// at the top of the picture.
 class Samples {
  public:
   Samples(const Frame& frame, const glm::ivec2& size)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The seams of the body that is open: those that its document keeps, else those that are found, once for a volume, its
-// tissues and its rig, whoever asks: previews, live figures, weights. Any thread may ask; one that asks while another
-// searches waits for it.
+// Provides the seams of the open document: the surfaces between different limbs that touch at rest, such as hand and
+// thigh. They are the document's own seams, or are found once for a volume, its tissues and its rig. Previews, live
+// measurements and weights use them. Any thread may ask for them; while one thread searches for seams, the others wait
+// for its result.
 #pragma once
 
 #include <memory>
@@ -13,38 +14,40 @@
 
 namespace limber::editor {
 
-// What seams are found by. Equal pointers are equal contents.
+// The data that the seams depend on. Equal pointers mean equal contents.
 struct SeamSource {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const Armature> armature;
-  std::shared_ptr<const Seams> kept;        // null: they are found
-  std::shared_ptr<const BoneMap> bone_map;  // null: none
+  std::shared_ptr<const Seams> kept;        // the document's own seams; null: none, they must be found
+  std::shared_ptr<const BoneMap> bone_map;  // the document's bone map; null: none
 
   bool operator==(const SeamSource&) const = default;
 };
 SeamSource seam_source(const Document& document);
-// What of a document's bone map fits its tissues and its rig; empty where it has none.
+// Returns the entries of the document's bone map that fit its tissues and its rig. Empty if the document has no bone
+// map.
 BoneMap usable_bone_map(const SeamSource& source);
 
 class BodySeams {
  public:
-  // Null where there is no rig, or its bones' names mean no limbs, and the document keeps none.
+  // Returns the seams; finds them first if needed. Null if the document has no seams of its own and either has no rig
+  // or has a rig whose bone names do not tell which bones are limbs.
   std::shared_ptr<const Seams> of(const SeamSource& source, Progress& progress = no_progress());
-  // The same where it needs no search; nothing where it does.
+  // Returns the same as of() if the seams are known without a search. Nothing if they must be searched for.
   std::optional<std::shared_ptr<const Seams>> known(const SeamSource& source);
-  // Whether the rig's names mean arms, legs or fingers; asked once a rig.
+  // Returns whether the rig has bones whose names say that they belong to arms, legs or fingers. Computed once per rig.
   bool has_limbs(const std::shared_ptr<const Armature>& armature);
 
  private:
-  std::mutex searching_, known_;  // the second for the members below, held for a moment only
+  std::mutex searching_, known_;  // known_ guards the members below; it is locked only briefly
   std::shared_ptr<const Armature> asked_;
   bool has_limbs_ = false;
   SeamSource source_;
   std::shared_ptr<const Seams> seams_;
 };
 
-// Of the program: a document is open in one editor.
+// Returns the only instance: the program has one editor with one document.
 BodySeams& body_seams();
 
 }  // namespace limber::editor

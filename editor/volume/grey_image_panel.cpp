@@ -18,7 +18,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 980, kHeight = 690, kGap = 8;
-constexpr const char* kNames[] = {"Axial", "Coronal", "Sagittal", "Largest values, drag to turn"};
+constexpr const char* kNames[] = {"Axial", "Coronal", "Sagittal", "Maximum intensity, drag to turn"};
 constexpr int kProjection = 3;
 
 class GreyImageDialog final : public Dialog {
@@ -37,9 +37,9 @@ class GreyImageDialog final : public Dialog {
     const Look& look = editor.look;
     const Rect rect = begin_dialog(editor, shown_.name + " is a grey image", kWidth, kHeight);
     const std::string words = "A grey image, not labels: " + shown_.doubt +
-                              ". It can be looked at here, and nothing that is open changes. Rigs, weights and poses "
-                              "need the label volume that was drawn from it; limber resample --with moves the image "
-                              "along with a pose.";
+                              ". You can view it here; the open project does not change. Rigs, weights and poses need "
+                              "the label volume that was segmented from it; limber resample --with poses the image "
+                              "together with that volume.";
     const float text = put_wrapped(editor, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
     const float foot = rect.high.y - look.px(28), top = rect.low.y + text + look.px(10);
     const float gap = look.px(kGap);
@@ -53,7 +53,7 @@ class GreyImageDialog final : public Dialog {
   }
 
  private:
-  // What a pane's texture was made for.
+  // What the texture of a pane was made from, to find out whether it must be made again.
   struct Pane {
     PictureFrame frame;
     GreyWindow window;
@@ -71,7 +71,8 @@ class GreyImageDialog final : public Dialog {
       frame.right = axes.right;
       frame.down = axes.down;
     }
-    // Rays cost more than slices: half as many pixels either way.
+    // The projection casts one ray per pixel, which takes longer than a slice. So it is drawn with half as many pixels
+    // in x and in y.
     const int coarser = p == kProjection ? 2 : 1;
     frame.size = glm::max(glm::ivec2(size) / coarser, 1);
     const double wide = p == kProjection ? std::hypot(sides_.x, sides_.y) : glm::dot(glm::abs(frame.right), sides_);
@@ -123,7 +124,8 @@ class GreyImageDialog final : public Dialog {
     put_text(editor, look.fonts.small, 0xFFFFFFFF, rect.low + look.px(6), kNames[p]);
   }
 
-  // The pointer in a slice puts the cross, the wheel goes through the slices; a drag turns the projection.
+  // Handles the pointer over a pane. In a slice, a press moves the cross-hair and the wheel steps through the slices.
+  // In the projection, a drag turns it.
   void move(Editor& editor, int p, const Rect& rect, const PictureFrame& frame, const Pressed& pressed) {
     const ImGuiIO& io = ImGui::GetIO();
     if (p == kProjection) {
@@ -141,7 +143,7 @@ class GreyImageDialog final : public Dialog {
     }
   }
 
-  // Within the volume.
+  // Moves the cross-hair to a world point, or to the nearest point of the volume if the point lies outside.
   void put_cross(Editor& editor, const glm::dvec3& world) {
     const Grid& grid = shown_.image->grid;
     const glm::dvec3 voxel = voxel_from_world(grid) * world;
@@ -207,7 +209,7 @@ class GreyImageDialog final : public Dialog {
   ShownImage shown_;
   GreyWindow window_;
   glm::dvec3 middle_{0}, cross_{0};  // world, mm
-  glm::dvec3 sides_{0};              // of the volume's box in the world, mm
+  glm::dvec3 sides_{0};              // size of the image's bounding box in the world, mm
   double least_ = 0, most_ = 1, turn_ = 0;
   std::array<Pane, 4> panes_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A grey image (CT, MR) that was opened or imported: three linked slices and a projection that turns, in a window of
-// grey values. It is only looked at; the open project stays as it is.
+// A dialog that shows a grey image (CT, MR) that the user opened or imported. It shows three linked slices and a
+// maximum intensity projection that can be turned. Level and width of the grey values can be set. The open project does
+// not change.
 #pragma once
 
 #include <functional>
@@ -14,9 +15,9 @@ namespace limber::editor {
 
 struct ShownImage {
   std::shared_ptr<const GreyVolume> image;
-  std::string name;    // of its file
-  std::string doubt;   // why it is no label volume, "it has 300 values, and ..."
-  std::string answer;  // the button that takes it as labels all the same; "" where its values cannot be labels
+  std::string name;    // the file's name
+  std::string doubt;   // why it is no label volume: "it has 300 values, and ..."
+  std::string answer;  // label of the button that opens it as labels anyway; "": its values cannot be labels
   std::function<void(Editor&)> as_labels;
 };
 void show_grey_image(Editor& editor, ShownImage shown);

@@ -14,7 +14,8 @@ namespace limber::editor {
 
 namespace {
 
-// What the job counts; the dialog may be closed before it ends.
+// The table's contents. The dialog shares them with the job that counts the voxels, because the dialog may be closed
+// before the job ends.
 struct Counted {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
@@ -43,7 +44,7 @@ class StatisticsDialog final : public Dialog {
 
 constexpr float kSwatch = 14;
 
-// The table stays behind it, and is there again afterwards.
+// Opens the file browser to export the table. Afterwards, the dialog with the table opens again.
 void browse_csv(Editor& editor, const std::shared_ptr<Counted>& counted) {
   const auto back = [counted](Editor& e) { e.open_dialog(std::make_unique<StatisticsDialog>(counted, 0)); };
   browse(editor,
@@ -84,7 +85,7 @@ void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
   if (!counted_->done) {
     put_text(editor, look.fonts.regular, look.theme.text2,
              Rect{{rect.low.x, head.high.y}, {rect.high.x, head.high.y + look.px(80)}},
-             counted_->problem.empty() ? "Counting" : counted_->problem, Align::Centre);
+             counted_->problem.empty() ? "Counting voxels" : counted_->problem, Align::Centre);
     return;
   }
   Column column(editor, "table", {{rect.low.x, head.high.y}, rect.high});
@@ -115,10 +116,11 @@ void StatisticsDialog::draw_foot(Editor& editor, const Rect& rect) {
   const Rect write{{rect.high.x - export_width, rect.low.y}, rect.high},
       copy{{write.low.x - look.px(8) - copy_width, rect.low.y}, {write.low.x - look.px(8), rect.high.y}};
   if (button(editor, "Copy", copy, copy_face)) editor.host.set_clipboard(to_csv(counted_->rows, *counted_->tissues));
-  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Puts the table on the clipboard, as CSV.");
+  if (ImGui::IsItemHovered()) tooltip(editor, copy, "Copy", "Copy the table to the clipboard as CSV.");
   const bool pressed = button(editor, "Export CSV", write, export_face);
   if (ImGui::IsItemHovered())
-    tooltip(editor, write, "Export CSV", "Writes the table with mass, centre, box and surface of every tissue.");
+    tooltip(editor, write, "Export CSV",
+            "Write the table to a CSV file, with each tissue's mass, centre, bounding box and surface.");
   if (pressed) browse_csv(editor, counted_);
 }
 

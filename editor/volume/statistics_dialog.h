@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What each tissue of the volume amounts to, counted in a job.
+// A dialog with a table of the tissues: each tissue's number of voxels, its volume and its number of separate parts. A
+// background job counts them.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,8 @@
 
 namespace limber::editor {
 
-// Begins to count. Needs a volume and tissues.
+// Starts the job that counts, and returns the dialog that shows its result. The document must have a volume and
+// tissues.
 std::unique_ptr<Dialog> open_statistics(Editor& editor);
 
 }  // namespace limber::editor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of how tissues are shown, and of what they are: one commit each.
+// Edits of how tissues are shown, and of the tissue table's entries. Each edit is one step of the history.
 #pragma once
 
 #include <set>
@@ -8,24 +8,27 @@
 
 namespace limber::editor {
 
-// As lists show it: "muscle" begins with a capital, one without a name is "Label 17".
+// Returns a tissue's name as lists show it: with a capital letter, or "Label 17" if the tissue has no name.
 std::string shown_name(const Tissue& tissue);
 std::string capitalized(std::string name);  // "fat" -> "Fat"
 
 TissueLook look_of(const Document& document, Label label);
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look);
-// The same, shown but not yet an edit; set_look() or Escape ends it.
+// Show a change of a tissue in the views without changing the document. The preview ends when set_look() or
+// set_tissue() puts the change into the document, or when the user presses Escape.
 void preview_look(Editor& editor, Label tissue, const TissueLook& look);
 void preview_tissue(Editor& editor, const Tissue& tissue);
 void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible);
-void solo_tissues(Editor& editor, const std::set<Label>& tissues);  // a second time: shows all again
+// Shows only these tissues. If only these are shown already, shows all tissues.
+void solo_tissues(Editor& editor, const std::set<Label>& tissues);
 void reveal_tissues(Editor& editor);
-// Replaces the entry of that label. `what` names the edit: "Colour of Muscle".
+// Replaces the tissue table's entry that has the label tissue.label. `what` is the name of the edit, such as "Colour of
+// Muscle".
 void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue);
 
 void rename_tissue(Editor& editor, Label label, const std::string& name);
 
-// Chooses a tissue; extended, it is added to the chosen ones or taken out.
+// Selects only this tissue. If `extended`, adds the tissue to the selection instead, or removes it if it is selected.
 void select_tissue(Editor& editor, Label label, bool extended);
 
 }  // namespace limber::editor

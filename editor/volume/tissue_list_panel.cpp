@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Every tissue in a row: eye (Ctrl+click: only this one), colour, name (double click: another one), label, opacity bar.
+// Draws the list of tissues. Each row has an eye (a click shows or hides the tissue, Ctrl+click shows only this
+// tissue), a colour, a name (a double click renames), a label and an opacity bar.
 #include <algorithm>
 
 #include "editor/context/panels.h"
@@ -22,13 +23,13 @@ void draw_eye(Editor& editor, const Rect& rect, const Tissue& tissue, const Tiss
   const Pressed pressed = press_area(editor, "eye", rect);
   put_icon(look.fonts.regular, shown.visible ? look.theme.text2 : look.theme.text3, rect,
            shown.visible ? icon::kVisible : icon::kHidden);
-  if (pressed.hovered) tooltip(editor, rect, shown.visible ? "Hide" : "Show", "Ctrl+click shows only this tissue.");
+  if (pressed.hovered) tooltip(editor, rect, shown.visible ? "Hide" : "Show", "Ctrl+click to show only this tissue.");
   if (!pressed.clicked) return;
   if (editor.input.down(Key::Ctrl)) solo_tissues(editor, {tissue.label});
   else show_tissues(editor, {tissue.label}, !shown.visible);
 }
 
-// Dragged: the picture follows, one edit at the end.
+// Draws a tissue's opacity bar. While the user drags it, the views show a preview; the end of the drag makes one edit.
 void draw_opacity(Editor& editor, const Rect& rect, const Tissue& tissue, const TissueLook& shown) {
   const Look& look = editor.look;
   const Pressed pressed = press_area(editor, "opacity", rect);
@@ -40,7 +41,7 @@ void draw_opacity(Editor& editor, const Rect& rect, const Tissue& tissue, const 
   fill({bar.low, {bar.low.x + bar.width() * value, bar.high.y}}, look.theme.text3, look.px(3));
   if (pressed.hovered)
     tooltip(editor, rect, "Opacity",
-            std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %, in the X-ray and tissue displays.");
+            std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %. Used by the X-ray and tissue displays.");
   if (pressed.held) preview_look(editor, tissue.label, {shown.visible, share});
   if (released && editor.views->preview_visibility)
     set_look(editor, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, share});
@@ -99,7 +100,7 @@ void take_key(Editor& editor, const std::vector<const Tissue*>& rows) {
   if (key == ListKey::Toggle) show_tissues(editor, {tissue.label}, !look_of(editor.document(), tissue.label).visible);
 }
 
-// Those that the search finds, by name or by their very label.
+// Returns the tissues that match the search text: their name contains it, or their label is equal to it.
 std::vector<const Tissue*> found(const Editor& editor, const TissueTable& tissues) {
   std::vector<const Tissue*> rows;
   for (const Tissue& tissue : tissues.tissues)
@@ -113,7 +114,7 @@ std::vector<const Tissue*> found(const Editor& editor, const TissueTable& tissue
 
 void draw_tissues(Editor& editor, Column& column) {
   const Look& look = editor.look;
-  const auto tissues = editor.document().tissues;  // kept, since a row may commit
+  const auto tissues = editor.document().tissues;  // copied, since drawing a row may change the document
   const std::string count = tissues ? std::to_string(tissues->tissues.size()) : "";
   if (column.begin_section("Tissues", count)) {
     if (!tissues) {

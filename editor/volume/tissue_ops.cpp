@@ -15,7 +15,7 @@ bool any_hidden(const Editor& editor) {
   return false;
 }
 
-// The tissues an operator works on: those chosen, else the one under the pointer.
+// Returns the tissues that an operator works on: the selected ones, else the one under the pointer.
 std::set<Label> chosen(const Editor& editor) {
   if (!editor.selection.tissues.empty()) return editor.selection.tissues;
   if (editor.views->hover.inside) return {editor.views->hover.label};
@@ -24,10 +24,10 @@ std::set<Label> chosen(const Editor& editor) {
 
 std::string needs_chosen(const Editor& editor) {
   if (!editor.document().volume) return "Open a volume first";
-  return chosen(editor).empty() ? "Choose a tissue, or point at one" : "";
+  return chosen(editor).empty() ? "Select a tissue, or point at one" : "";
 }
 
-// Only the chosen tissues, filling the view; once more: all again.
+// Shows only the selected tissues and zooms the view to them. A second call shows all tissues again.
 void isolate(Editor& editor) {
   solo_tissues(editor, chosen(editor));
   run(editor, any_hidden(editor) ? "view.frame_selected" : "view.frame_all");
@@ -37,13 +37,13 @@ void isolate(Editor& editor) {
 
 std::vector<Operator> tissue_operators() {
   return {
-      {"view.hide", "Hide", icon::kHidden, "View", "Hides the chosen tissues.",
+      {"view.hide", "Hide", icon::kHidden, "View", "Hide the selected tissues.",
        [](Editor& e) { show_tissues(e, chosen(e), false); }, needs_chosen},
-      {"view.isolate_selected", "Show only", icon::kVisible, "View", "Hides every tissue but the chosen ones.",
+      {"view.isolate_selected", "Show only", icon::kVisible, "View", "Hide every tissue except the selected ones.",
        [](Editor& e) { solo_tissues(e, chosen(e)); }, needs_chosen},
       {"view.isolate", "Isolate", icon::kVisible, "View",
-       "Shows only the chosen tissues and brings them to fill the view, or brings all back.", isolate, needs_tissue},
-      {"view.reveal", "Reveal all", icon::kVisible, "View", "Shows every hidden tissue again.",
+       "Show only the selected tissues and zoom the view to them. Run again to show all.", isolate, needs_tissue},
+      {"view.reveal", "Reveal all", icon::kVisible, "View", "Show every hidden tissue again.",
        [](Editor& e) { reveal_tissues(e); },
        [](const Editor& e) { return any_hidden(e) ? std::string() : std::string("Nothing is hidden"); }},
   };

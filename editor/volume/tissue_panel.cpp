@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The chosen tissue: name, colour, opacity, material.
+// Draws the sections "Tissue" (the active tissue's name, colour, opacity and material) and "Under the cursor".
 #include <cstdio>
 
 #include "core/tissue/tissue_rows.h"
@@ -12,7 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-// Whether a number is the usual one of the tissue's kind, and where that comes from.
+// Returns a sentence for the user that says whether a tissue's number is the usual value for its kind. It names the
+// source of the usual value.
 std::string where_from(const Tissue& tissue, double Tissue::*member, const char* format, const char* unit,
                        std::string_view source) {
   Tissue usual;
@@ -21,13 +22,14 @@ std::string where_from(const Tissue& tissue, double Tissue::*member, const char*
   apply_kind_defaults(usual);
   const std::string kind(tissue.name.empty() ? to_string(tissue.kind) : tissue.name),
       from = " (" + std::string(source) + ").";
-  if (tissue.*member == usual.*member) return "As usual for " + kind + from;
+  if (tissue.*member == usual.*member) return "This is the usual value for " + kind + from;
   char number[40];
   std::snprintf(number, sizeof number, format, usual.*member);
-  return "From this body's table or by hand; usual for " + kind + " is " + number + (*unit ? " " : "") + unit + from;
+  return "Set by the tissue table or by hand. The usual value for " + kind + " is " + number + (*unit ? " " : "") +
+         unit + from;
 }
 
-// One number of the tissue. The document changes once, when the drag or typing ends.
+// Draws a field for one of the tissue's numbers. The document changes once, when the drag or the typing ends.
 void draw_number(Editor& editor, Column& column, const Tissue& tissue, const char* label, double Tissue::*member,
                  double low, double high, const char* format, const char* unit, std::string_view source) {
   const Rect rect = column.property(label);
@@ -88,7 +90,8 @@ void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
   }
 }
 
-// Four rows always, so that nothing below moves with the pointer.
+// Draws the skin weights of the voxel under the pointer. There are always four rows, so that what lies below keeps its
+// position when the pointer moves.
 void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>& weights) {
   const Look& look = editor.look;
   for (std::size_t i = 0; i < 4; ++i) {

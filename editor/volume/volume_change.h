@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a change of a volume reads in tables.
+// Formats a tissue's change of volume, in percent, for tables.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace limber::editor {
 
-std::string figure_of_change(double percent);             // "+1.25"; what rounds to nothing is "+0.00"
+std::string figure_of_change(double percent);             // "+1.25"; "+0.00" for what rounds to zero
 std::string percent(const std::optional<double>& value);  // "+1.25 %"; "-" for none
-constexpr double kSmallChange = 1;                        // percent: nothing to worry about
+constexpr double kSmallChange = 1;                        // largest change of volume that is shown as good, percent
 Colour colour_of_change(const Theme& theme, const std::optional<double>& percent);
 
 }  // namespace limber::editor

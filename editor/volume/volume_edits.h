@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Preparing the volume as jobs, each one edit. What was made for the old volume is kept only while it fits the new one:
-// weights while the grid and the tissue's voxels are the same, the rig unless the body was mirrored. What had to go is
-// said.
+// Prepares the volume, for example by cropping it. Each preparation runs as a job and makes one edit. Weights are kept
+// only if the grid and the set of tissue voxels stay the same; the rig is kept unless the body was mirrored. A message
+// tells the user what was removed.
 #pragma once
 
 #include <functional>
@@ -12,21 +12,22 @@
 namespace limber::editor {
 
 struct Preparation {
-  std::string label;  // of the job and the edit: "Re-grid to 2 mm"
+  std::string label;  // the name of the job and of the edit: "Re-grid to 2 mm"
   std::function<LabelVolume(const LabelVolume& volume, Progress& progress)> change;
   bool mirrors = false;
 };
-// Needs a volume.
+// Starts a job that prepares the volume. The document must have a volume.
 void start_preparation(Editor& editor, Preparation preparation);
 
-// The document with another volume in place of the one that is open. `note` tells what had to go, "" for nothing.
-//   same_tissue  the grid and which voxels are tissue are as before
+// Returns the document with another volume in place of its own. What does not fit the new volume is removed; `note`
+// says what that is, or is "" if nothing was removed.
+//   same_tissue  whether the new volume has the same grid and the same voxels are tissue
 Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> volume, bool same_tissue, bool mirrored,
                      std::string& note);
 
-// "152×50×240"
+// Returns a size as text such as 152x50x240, with multiplication signs in place of x.
 std::string size_text(const glm::ivec3& size);
-// "7 289 600"
+// Returns a number as text with its digits in groups of three, such as "7 289 600".
 std::string grouped(std::int64_t number);
 
 }  // namespace limber::editor

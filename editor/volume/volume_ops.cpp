@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volume preparation: each asks for what it needs, then runs as a job and is one edit.
+// Operators that prepare the volume, such as Crop. Those with settings open a form first. Each runs as a job and makes
+// one edit.
 #include "editor/volume/volume_edits.h"
 
 #include <cmath>
@@ -34,22 +35,23 @@ void ask_regrid(Editor& editor) {
     const glm::dvec3 size = glm::ceil(glm::dvec3(old.size) * old.spacing / fields[0].value - 1e-6);
     const double voxels = size.x * size.y * size.z;
     if (voxels > kMostVoxels)
-      throw Error("too many voxels", trimmed(voxels / 1e6) + " million", "choose a larger spacing");
+      throw Error("too many voxels", trimmed(voxels / 1e6) + " million", "enter a larger spacing");
     return "From " + size_text(old.size) + " to " + size_text(glm::ivec3(size)) + " voxels, " +
            grouped(static_cast<std::int64_t>(voxels * 2 / 1e6)) + " MB." +
-           (e.document().weights ? " The weights go; compute them again." : "");
+           (e.document().weights ? " The weights are lost; compute them again." : "");
   };
   const auto act = [](Editor& e, const Fields& fields) {
     const double spacing = fields[0].value;
     start_preparation(e, {"Re-grid to " + trimmed(spacing) + " mm",
                           [spacing](const LabelVolume& v, Progress& p) { return regrid(v, glm::dvec3(spacing), p); }});
   };
-  editor.open_dialog(make_form({"Re-grid",
-                                "Voxels of another size, equal in all directions. Thin layers stay closed.",
-                                "Re-grid",
-                                {number_of("Spacing", "Edge of a new voxel.", finest, 0.05, 50, "%.3g", "mm")},
-                                outcome,
-                                act}));
+  editor.open_dialog(
+      make_form({"Re-grid",
+                 "Resample the volume to cubic voxels of another size. Thin layers stay closed.",
+                 "Re-grid",
+                 {number_of("Spacing", "The edge length of a new voxel.", finest, 0.05, 50, "%.3g", "mm")},
+                 outcome,
+                 act}));
 }
 
 Operator flip_operator(const char* id, const char* label, int axis, const char* description) {
@@ -75,27 +77,29 @@ void ask_orient(Editor& editor) {
     if (fields[0].chosen / 2 == fields[1].chosen / 2 || fields[0].chosen / 2 == fields[2].chosen / 2 ||
         fields[1].chosen / 2 == fields[2].chosen / 2)
       throw Error("two axes point along one line", code_of(fields),
-                  "choose left or right, front or back, up or down once each");
-    return "Voxel axes " + code_of(fields) + ". No voxel is resampled, none moves.";
+                  "use left or right, front or back, and up or down once each");
+    return "Voxel axes " + code_of(fields) + ". The voxels are not resampled and stay where they are.";
   };
   const auto act = [code_of](Editor& e, const Fields& fields) {
     const std::string code = code_of(fields);
     start_preparation(e, {"Orient to " + code, [code](const LabelVolume& v, Progress&) { return reorient(v, code); }});
   };
-  editor.open_dialog(make_form({"Orient",
-                                "Turns the axes of the grid. Each points towards the side that is named.",
-                                "Orient",
-                                {choice_of("Columns (x)", "Where the first voxel axis points.", directions, 0),
-                                 choice_of("Rows (y)", "Where the second voxel axis points.", directions, 2),
-                                 choice_of("Slices (z)", "Where the third voxel axis points.", directions, 4)},
-                                outcome,
-                                act}));
+  editor.open_dialog(make_form(
+      {"Orient",
+       "Change the order and direction of the voxel axes. Select the side of the body that each axis points to.",
+       "Orient",
+       {choice_of("Columns (x)", "The side to which the first voxel axis points.", directions, 0),
+        choice_of("Rows (y)", "The side to which the second voxel axis points.", directions, 2),
+        choice_of("Slices (z)", "The side to which the third voxel axis points.", directions, 4)},
+       outcome,
+       act}));
 }
 
 std::string needs_clip_box(const Editor& editor) {
   if (!editor.document().volume) return "Open a volume first";
-  return editor.document().visibility && editor.document().visibility->clip_box.enabled ? ""
-                                                                                        : "Turn the clip box on first";
+  return editor.document().visibility && editor.document().visibility->clip_box.enabled
+             ? ""
+             : "Switch the clip box on first";
 }
 
 void crop_to_clip_box(Editor& editor) {
@@ -108,19 +112,21 @@ void crop_to_clip_box(Editor& editor) {
 void ask_pad(Editor& editor) {
   const auto outcome = [](const Editor& e, const Fields& fields) {
     const glm::ivec3 size = e.document().volume->grid.size + 2 * static_cast<int>(std::lround(fields[0].value));
-    return "To " + size_text(size) + " voxels." + (e.document().weights ? " The weights go; compute them again." : "");
+    return "To " + size_text(size) + " voxels." +
+           (e.document().weights ? " The weights are lost; compute them again." : "");
   };
   const auto act = [](Editor& e, const Fields& fields) {
     const int voxels = static_cast<int>(std::lround(fields[0].value));
     start_preparation(e, {"Pad by " + std::to_string(voxels) + " voxels",
                           [voxels](const LabelVolume& v, Progress&) { return pad(v, voxels); }});
   };
-  editor.open_dialog(make_form({"Pad",
-                                "Air on every side, so that a posed limb has room.",
-                                "Pad",
-                                {number_of("Margin", "On each of the six sides.", 8, 1, 500, "%.0f", "voxels")},
-                                outcome,
-                                act}));
+  editor.open_dialog(
+      make_form({"Pad",
+                 "Add air on every side, so that a posed limb has room.",
+                 "Pad",
+                 {number_of("Margin", "Voxels of air to add on each of the six sides.", 8, 1, 500, "%.0f", "voxels")},
+                 outcome,
+                 act}));
 }
 
 void ask_merge(Editor& editor) {
@@ -136,9 +142,9 @@ void ask_merge(Editor& editor) {
   labels.push_back(0);
   const auto outcome = [](const Editor&, const Fields& fields) {
     if (fields[0].chosen == fields[1].chosen)
-      throw Error("a tissue cannot become itself", fields[0].choices[fields[0].chosen], "choose another one");
+      throw Error("a tissue cannot become itself", fields[0].choices[fields[0].chosen], "select another one");
     if (fields[0].chosen + 1 == std::ssize(fields[0].choices))
-      throw Error("air cannot become tissue", "Merge", "choose a tissue to be merged");
+      throw Error("air cannot become tissue", "Merge", "select the tissue to merge");
     return "Every voxel of " + fields[0].choices[fields[0].chosen] + " becomes " + fields[1].choices[fields[1].chosen] +
            ".";
   };
@@ -147,13 +153,14 @@ void ask_merge(Editor& editor) {
     start_preparation(e, {"Merge " + fields[0].choices[fields[0].chosen],
                           [from, into](const LabelVolume& v, Progress&) { return merge_labels(v, from, into); }});
   };
-  editor.open_dialog(make_form({"Merge tissues",
-                                "One tissue takes the voxels of another.",
-                                "Merge",
-                                {choice_of("Tissue", "What goes.", names, chosen),
-                                 choice_of("becomes", "What takes its voxels.", names, chosen == 0 ? 1 : 0)},
-                                outcome,
-                                act}));
+  editor.open_dialog(
+      make_form({"Merge tissues",
+                 "Turn all voxels of one tissue into another tissue.",
+                 "Merge",
+                 {choice_of("Tissue", "The tissue whose voxels change.", names, chosen),
+                  choice_of("becomes", "The tissue that the voxels become.", names, chosen == 0 ? 1 : 0)},
+                 outcome,
+                 act}));
 }
 
 void ask_specks(Editor& editor) {
@@ -162,13 +169,13 @@ void ask_specks(Editor& editor) {
     start_preparation(e, {"Drop specks under " + std::to_string(voxels) + " voxels",
                           [voxels](const LabelVolume& v, Progress&) { return drop_specks(v, voxels); }});
   };
-  editor.open_dialog(
-      make_form({"Drop specks",
-                 "Small pieces apart from the rest of their tissue take the label around them.",
-                 "Drop",
-                 {number_of("Smaller than", "A piece of fewer voxels is a speck.", 10, 2, 100000, "%.0f", "voxels")},
-                 nullptr,
-                 act}));
+  editor.open_dialog(make_form(
+      {"Drop specks",
+       "Replace small pieces that are separate from the rest of their tissue by the label around them.",
+       "Drop",
+       {number_of("Smaller than", "Pieces with fewer voxels than this are replaced.", 10, 2, 100000, "%.0f", "voxels")},
+       nullptr,
+       act}));
 }
 
 std::string needs_tissues(const Editor& editor) {
@@ -180,26 +187,28 @@ std::string needs_tissues(const Editor& editor) {
 
 std::vector<Operator> prepare_operators() {
   return {
-      {"prepare.regrid", "Re-grid...", icon::kVolume, "Prepare", "Gives the volume voxels of another size.", ask_regrid,
-       needs_volume},
-      {"prepare.orient", "Orient...", icon::kRotate, "Prepare", "Turns the axes of the grid; no voxel moves.",
-       ask_orient, needs_volume},
-      flip_operator("prepare.flip_x", "Flip left and right", 0, "Mirrors the body from left to right."),
-      flip_operator("prepare.flip_y", "Flip front and back", 1, "Mirrors the body from front to back."),
-      flip_operator("prepare.flip_z", "Flip head and feet", 2, "Mirrors the body from head to feet."),
-      {"prepare.crop", "Crop to tissue", icon::kClip, "Prepare", "Takes away air around the tissue.",
+      {"prepare.regrid", "Re-grid...", icon::kVolume, "Prepare", "Resample the volume to voxels of another size.",
+       ask_regrid, needs_volume},
+      {"prepare.orient", "Orient...", icon::kRotate, "Prepare",
+       "Change the order and direction of the voxel axes; no voxel moves in space.", ask_orient, needs_volume},
+      flip_operator("prepare.flip_x", "Flip left and right", 0, "Mirror the body from left to right."),
+      flip_operator("prepare.flip_y", "Flip front and back", 1, "Mirror the body from front to back."),
+      flip_operator("prepare.flip_z", "Flip head and feet", 2, "Mirror the body from head to feet."),
+      {"prepare.crop", "Crop to tissue", icon::kClip, "Prepare", "Remove the air around the tissue from the volume.",
        [](Editor& e) {
          start_preparation(e, {"Crop to tissue", [](const LabelVolume& v, Progress&) { return crop_to_tissue(v); }});
        },
        needs_volume},
       {"prepare.crop_to_clip_box", "Crop to clip box", icon::kClip, "Prepare",
-       "Takes away what lies outside the clip box.", crop_to_clip_box, needs_clip_box},
-      {"prepare.pad", "Pad...", icon::kFullScreen, "Prepare", "Puts air on every side.", ask_pad, needs_volume},
-      {"prepare.merge", "Merge tissues...", icon::kTissues, "Prepare", "One tissue takes the voxels of another.",
-       ask_merge, needs_tissues},
-      {"prepare.specks", "Drop specks...", icon::kFilter, "Prepare", "Small stray pieces take the label around them.",
-       ask_specks, needs_volume},
-      {"prepare.statistics", "Statistics", icon::kTable, "Prepare", "Counts each tissue: voxels, volume, parts.",
+       "Remove everything outside the clip box from the volume.", crop_to_clip_box, needs_clip_box},
+      {"prepare.pad", "Pad...", icon::kFullScreen, "Prepare", "Add air on every side of the volume.", ask_pad,
+       needs_volume},
+      {"prepare.merge", "Merge tissues...", icon::kTissues, "Prepare",
+       "Turn all voxels of one tissue into another tissue.", ask_merge, needs_tissues},
+      {"prepare.specks", "Drop specks...", icon::kFilter, "Prepare",
+       "Replace small stray pieces of a tissue by the label around them.", ask_specks, needs_volume},
+      {"prepare.statistics", "Statistics", icon::kTable, "Prepare",
+       "Show each tissue's number of voxels, volume and number of separate parts.",
        [](Editor& e) { e.open_dialog(open_statistics(e)); }, needs_tissues},
   };
 }

@@ -18,7 +18,8 @@ namespace {
               "install a graphics driver with EGL (Debian: libegl1 and libgl1-mesa-dri)");
 }
 
-// EGL has one display for the whole process, and ends it under every context: only the last one of all threads may.
+// EGL has one display for the whole process, and terminating the display breaks all its contexts. So contexts are
+// counted, and the last one to be destroyed, on any thread, terminates the display.
 struct Users {
   std::mutex mutex;
   int count = 0;
@@ -46,7 +47,7 @@ EGLContext make_context(EGLDisplay display) {
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
-    config = nullptr;  // drivers with "no config" contexts
+    config = nullptr;  // for drivers that make contexts without an EGL config
   const EGLint version[] = {
       EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};

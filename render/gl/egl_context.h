@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An OpenGL 3.3 core context without window and display (EGL, surfaceless): for the command line and for tests.
+// Makes an OpenGL 3.3 core context without window and display (EGL, surfaceless), for the command line and for tests.
 #pragma once
 
 #include <memory>
 
 namespace limber::render {
 
-// Current on the thread that made it while it lives. One at a time for a thread; threads may have their own.
+// A context that is current on the thread that made it until the object is destroyed. Each thread may have one at a
+// time.
 class HeadlessContext {
  public:
   // Throws Error when this machine has no EGL, or an OpenGL older than 3.3.
@@ -20,7 +21,7 @@ class HeadlessContext {
   std::unique_ptr<Impl> impl_;
 };
 
-// Throws Error unless the current context is OpenGL 3.3 or newer; names what it is.
+// Throws Error, which names the found version, unless the current context is OpenGL 3.3 or newer.
 void require_opengl_3_3();
 
 }  // namespace limber::render

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// OpenGL objects as move-only values: made and destroyed with the context that made them current.
+// OpenGL objects as move-only values. An object's context must be current when the object is made and when it is
+// destroyed.
 #pragma once
 
 #include <utility>
@@ -8,13 +9,13 @@ namespace limber::render::gl {
 
 enum class Kind { Texture, Buffer, VertexArray, Framebuffer, Program };
 
-// Owns one name of that kind; empty (0) until created.
+// Owns one OpenGL object of this kind. It is empty (name 0) until an object is created.
 template <Kind kind>
 class Object {
  public:
   Object() = default;
   static Object create();
-  // Takes over a name that was made elsewhere.
+  // Takes ownership of an OpenGL object that was made elsewhere.
   static Object adopt(unsigned name);
   ~Object() { reset(); }
   Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0u)) {}
@@ -36,10 +37,11 @@ using Buffer = Object<Kind::Buffer>;
 using VertexArray = Object<Kind::VertexArray>;
 using Framebuffer = Object<Kind::Framebuffer>;
 
-// How many objects live now, of every kind: zero when all views and renderers are gone.
+// Returns the number of existing OpenGL objects of all kinds: zero when all views and renderers are destroyed.
 int live_objects();
 
-// Throws Error naming `where` when OpenGL has reported an error since the last call.
+// Throws Error if OpenGL has reported an error since the last call.
+//   where  what was done, for the message
 void check_gl(const char* where);
 
 }  // namespace limber::render::gl

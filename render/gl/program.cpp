@@ -13,7 +13,7 @@ namespace limber::render::gl {
 
 namespace {
 
-// Deleted with the program once it is linked.
+// Owns a shader object, which is needed only until the program is linked.
 class Shader {
  public:
   explicit Shader(GLenum type) : name_(glCreateShader(type)) {}

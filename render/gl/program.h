@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A linked shader program, made of files of render/shaders.
+// A linked shader program, compiled from files of render/shaders.
 #pragma once
 
 #include <string>
@@ -11,19 +11,19 @@
 
 namespace limber::render::gl {
 
-// A line that defines a name for the preprocessor of GLSL.
+// Return a line that defines a preprocessor name in GLSL.
 std::string define(const std::string& name);
 std::string define(const std::string& name, int value);
 std::string define(const std::string& name, const std::string& value);
 
 class Program {
  public:
-  // Compiles and links two files ("march.frag"). `defines`, lines made by define(), stand before both. Throws Error
-  // with the compiler's first lines.
+  // Compiles and links two files ("march.frag"). The lines of `defines`, made by define(), come before the text of both
+  // files. Throws Error with the first lines of the compiler's messages.
   Program(const std::string& vertex_file, const std::string& fragment_file, const std::string& defines = "");
 
   void use() const;
-  // Of the program in use. A uniform that the compiler dropped is ignored.
+  // Sets a uniform of this program, which must be in use. A uniform that the compiler removed is ignored.
   void set(const char* uniform, int value);
   void set(const char* uniform, unsigned value);
   void set(const char* uniform, float value);
@@ -34,7 +34,7 @@ class Program {
   void set(const char* uniform, const glm::vec4& value);
   void set(const char* uniform, const glm::mat3& value);
   void set(const char* uniform, const glm::mat4& value);
-  // A texture unit's texture, and the sampler that reads it.
+  // Binds a texture to a texture unit, and makes the sampler read this unit.
   void set_texture(const char* sampler, int unit, unsigned target, unsigned texture);
 
  private:
@@ -44,7 +44,7 @@ class Program {
   std::unordered_map<std::string, int> locations_;
 };
 
-// The vertex shader that covers the picture with one triangle (three vertices, no attributes).
+// The vertex shader that covers the whole picture with one triangle (three vertices, no attributes).
 inline const char* const kWholePicture = "whole_picture.vert";
 
 }  // namespace limber::render::gl

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones over the body: octahedra, cylinders or sticks with joints, smooth edges of even width in pixels (by the scene's
-// scale of lines) whatever the distance. What lies behind the body's surface shows at 45 %, unless bones are drawn in
-// front.
+// Draws bones over the body as octahedra, cylinders or sticks with joints. Their edges are antialiased and have the
+// same width in pixels at any distance (times the scene's line scale). Portions of bones behind the body's surface are
+// drawn at 45 % opacity, unless bones are drawn in front.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,9 @@ class ArmaturePass {
  public:
   ArmaturePass();
 
-  // Into the framebuffer that is bound, of `size` pixels.
-  //   body_depth  mm before the eye along the direction of view, of any resolution; nullptr: nothing hides bones
+  // Draws into the bound framebuffer of `size` pixels.
+  //   body_depth  depth of the body in mm from the eye along the viewing direction, at any resolution; nullptr: the
+  //               body hides no bones
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, const gl::Texture* body_depth);
 
  private:
@@ -28,10 +29,11 @@ class ArmaturePass {
   gl::Buffer vertices_;
 };
 
-// The bones whose drawn shapes lie within a few pixels of the pixel (from the top left corner), in their order.
+// Returns the bones whose drawn shapes are within a few pixels of `pixel` (counted from the top left corner), in the
+// rig's order.
 std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const glm::ivec2& size,
                               const glm::dvec2& pixel);
-// Of them the one that is meant: the least beside it.
+// Of the bones under the pixel, returns the one whose axis is nearest to the pixel, relative to the bone's drawn width.
 std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel);
 
 }  // namespace limber::render

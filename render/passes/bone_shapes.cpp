@@ -10,11 +10,13 @@ namespace limber::render {
 
 namespace {
 
-constexpr double kHalfWidth = 0.085, kWidestAt = 0.12;  // of an octahedron
-constexpr double kRadius = 0.05;                        // of a cylinder
-constexpr int kSides = 20;                              // of a cylinder: round at any size that bones are drawn in
+// Octahedron: half its width, and the position of its widest section, as shares of its length.
+constexpr double kHalfWidth = 0.085, kWidestAt = 0.12;
+constexpr double kRadius = 0.05;  // radius of a cylinder, as a share of its length
+// Number of sides of a cylinder, so that it looks round at any size in which bones are drawn.
+constexpr int kSides = 20;
 
-// Every edge once, with the two faces that meet there.
+// Adds every edge once, with the two faces that share it.
 void add_edges(BoneSolid& solid) {
   std::map<std::pair<int, int>, std::vector<int>> met;
   for (int f = 0; f < static_cast<int>(solid.faces.size()); ++f) {
@@ -52,7 +54,7 @@ BoneSolid cylinder() {
   solid.faces.push_back(low);
   solid.faces.push_back(high);
   add_edges(solid);
-  // Along the sides, from a point of the lower rim to the one above it.
+  // The smooth edges run along the round side, each from a point of the lower rim to the point above it.
   for (BoneSolid::Edge& edge : solid.edges) edge.smooth = edge.from % 2 == 0 && edge.to == edge.from + 1;
   return solid;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The solids that bones are drawn as, for a bone of length 1: x and z across, y along it from head to tail.
+// The solids that represent bones in pictures, for a bone of length 1. The y axis runs along the bone from head to
+// tail, the x and z axes across it.
 #pragma once
 
 #include <array>
@@ -15,17 +16,17 @@ struct BoneSolid {
   struct Edge {
     int from, to;
     std::array<int, 2> faces;
-    bool smooth;  // of a round side: seen only where it is the outline
+    bool smooth;  // true: an edge of a round side, drawn only where it is part of the outline
   };
   std::vector<glm::dvec3> points;       // the first two are head and tail
-  std::vector<std::vector<int>> faces;  // plane and convex, counter-clockwise from outside
+  std::vector<std::vector<int>> faces;  // planar and convex, counter-clockwise from outside
   std::vector<Edge> edges;
 };
 
-// Null for what is no solid: sticks, nothing.
+// Returns the solid of a shape; null for Stick and None, which have no solid.
 const BoneSolid* solid_of(BoneShape shape);
 
-// How far the shape reaches to either side, `t` of the way from head to tail.
+// Returns half the width of the shape at position `t` [0, 1] from head to tail, for a bone of length 1.
 double half_width_at(BoneShape shape, double t);
 
 }  // namespace limber::render

@@ -51,11 +51,11 @@ void ComposePass::background(Background background, const glm::ivec2& size) {
 
 void ComposePass::grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height,
                        double reach, float line_scale) {
-  constexpr double kStep = 100;  // mm
+  constexpr double kStep = 100;  // distance between grid lines, mm
   const glm::dvec3 ground(middle.x, middle.y, height);
   const glm::dmat4 clip =
       clip_from_view(camera, double(size.x) / size.y, ground, reach * 1.5) * view_from_world(camera);
-  glm::dmat4 moved = clip;  // the shader's coordinates count from the middle: floats are then exact enough
+  glm::dmat4 moved = clip;  // coordinates relative to `ground`, so that floats are precise enough
   moved[3] = clip * glm::dvec4(ground, 1);
   blend_premultiplied();
   glViewport(0, 0, size.x, size.y);

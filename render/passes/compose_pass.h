@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Puts a picture together: background, ground grid, the body at whatever resolution it has, the outline of a tissue.
+// Composes a picture from the background, the ground grid, the body (at any resolution) and the outline of a tissue.
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@ class ComposePass {
  public:
   ComposePass();
 
-  // All into the framebuffer that is bound, of `size` pixels.
+  // All functions draw into the bound framebuffer of `size` pixels.
   void background(Background background, const glm::ivec2& size);
-  // Lines every 100 mm on the plane z = height, fading out `reach` mm from the middle.
+  // Draws grid lines every 100 mm on the plane z = height. The lines fade out towards `reach` mm from `middle`.
   void grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach,
             float line_scale);
-  // `picture`, premultiplied, stretched over the framebuffer.
+  // Draws `picture`, which has premultiplied alpha, stretched over the framebuffer.
   void body(const gl::Texture& picture, const glm::ivec2& size, const PixelRect& rect);
-  // Two pixels, or line_scale times as many, about the places where `label` is shown.
+  // Draws an outline around the pixels that show `label`, two pixels times line_scale wide.
   void outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect, float line_scale);
-  // accumulated = mix(accumulated, picture, weight), into the framebuffer that is bound
+  // Adds a picture to the average in the framebuffer: accumulated = mix(accumulated, picture, weight).
   void accumulate(const gl::Texture& picture, const glm::ivec2& size, float weight, const PixelRect& rect);
 
  private:

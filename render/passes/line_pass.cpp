@@ -11,7 +11,7 @@ namespace {}  // namespace
 
 std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const Grid& grid) {
   struct Plane {
-    glm::dvec3 point, normal;  // towards what is hidden
+    glm::dvec3 point, normal;  // the normal points to the side that is cut away
   };
   std::vector<Plane> planes;
   if (clip.plane) planes.push_back({(*clip.plane)[0], (*clip.plane)[1]});
@@ -69,7 +69,7 @@ void LinePass::draw(const std::vector<Segment>& lines, const SliceCamera& camera
 void LinePass::draw(const std::vector<Segment>& lines, const View& view, const glm::ivec2& size,
                     const gl::Texture* body_depth, float off, const Ink& ink) {
   if (lines.empty()) return;
-  // From the eye: floats are then exact enough.
+  // Coordinates are relative to the eye, so that floats are precise enough.
   std::vector<glm::vec3> ends;
   ends.reserve(2 * lines.size());
   for (const Segment& line : lines)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Straight lines of one even width in pixels, with smooth rims, over a picture: the tets of a mesh where a cut shows
-// them.
+// Draws antialiased straight lines of constant width in pixels over a picture. They show a tet mesh where a clip plane,
+// the clip box or a slice cuts it: each line is the intersection of a face of a tet with the plane.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,9 @@
 
 namespace limber::render {
 
-// The lines by which each of the clip's faces cuts the mesh, as far as the others leave them.
-//   grid  of the volume that the clip's box is of
+// Returns the lines along which the clip plane and the faces of the clip box cut the mesh. Portions of lines that
+// another of these planes cuts away are left out.
+//   grid  grid of the volume to whose voxels the clip box refers
 std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const Grid& grid);
 
 class LinePass {
@@ -24,14 +25,14 @@ class LinePass {
 
   struct Ink {
     glm::vec3 colour;    // sRGB
-    float alpha, width;  // pixels
+    float alpha, width;  // opacity [0, 1], and width in pixels
   };
-  // Into the framebuffer that is bound, of `size` pixels: only where the body's surface is no further from a line than
-  // `off`.
-  //   body_depth  mm before the eye along the direction of view, of any resolution
+  // Draws the lines into the bound framebuffer of `size` pixels, but only where the body's surface is within `off` mm
+  // of a line.
+  //   body_depth  depth of the body in mm from the eye along the viewing direction, at any resolution
   void draw(const std::vector<Segment>& lines, const Camera& camera, const glm::ivec2& size,
             const gl::Texture& body_depth, float off, const Ink& ink);
-  // All of them, in the plane of a slice.
+  // Draws all lines; they must lie in the plane of the slice.
   void draw(const std::vector<Segment>& lines, const SliceCamera& camera, const glm::ivec2& size, const Ink& ink);
 
  private:

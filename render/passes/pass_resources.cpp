@@ -19,7 +19,7 @@ int texture_limit(int largest_texture) {
   return largest_texture > 0 ? std::min<int>(most, largest_texture) : most;
 }
 
-// Weak pointers tell whether they were made from the same owner even after it has gone.
+// Returns whether a weak pointer refers to this owner. The comparison works even after the owner is destroyed.
 template <class T, class Owner>
 bool same(const std::weak_ptr<T>& key, const Owner& owner) {
   return !key.owner_before(owner) && !owner.owner_before(key);

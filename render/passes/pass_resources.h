@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the views of one context share: programs, and the textures of the volumes and looks that are in use. A volume
-// that nobody holds any more loses its textures at the next picture.
+// The resources that the views of one OpenGL context share: shader programs, and the textures of the volumes and label
+// appearances in use. When a volume is destroyed, its textures are freed as soon as another volume is uploaded.
 #pragma once
 
 #include <map>
@@ -27,33 +27,34 @@
 namespace limber::render {
 
 struct PassResources {
-  //   largest  texels per axis of a 3D texture; 0: what the driver allows
+  //   largest  largest number of texels per axis of a 3D texture; 0: as many as the driver allows
   explicit PassResources(int largest);
 
-  // A volume on the card, with the layers that rays look for.
+  // A volume on the graphics card, with the fields of its visible layers, whose surfaces rays search for.
   struct Body {
     std::weak_ptr<const LabelVolume> key;
     std::unique_ptr<VolumeTexture> volume;
     std::vector<std::unique_ptr<VisibleField>> layers;
-    std::unique_ptr<PosedTexture> pose;  // the last one drawn, with the hull of each layer in it
+    std::unique_ptr<PosedTexture> pose;  // inverse map of the posed body that was drawn last
     std::vector<std::unique_ptr<PosedHull>> posed_hulls;
-    std::unique_ptr<WeightTexture> weights;  // what was shown of them last
+    std::unique_ptr<WeightTexture> weights;  // the weights that were shown last
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
-  // The field of that layer, computed where it is not yet or no longer right.
+  // Returns the field of a layer. Computes it if it is missing or out of date.
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
-  // The map on the card; null without one.
+  // Uploads the inverse map of the posed body if needed; returns null if `map` is null.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
-  // What is shown of weights on the card, all of it or what there was time for; null for nothing.
+  // Uploads the shown weights: all of them (Whole), or as many as the frame's time limit allows (InTime). Returns null
+  // if no weights are shown.
   enum class Extent { Whole, InTime };
   WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
-  // Where rays that look for a layer start in posed space; null without a map.
+  // Returns the hull of a layer in posed space, at which rays start; null if `map` is null.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;
-  int pictures_at_rest = 6;  // that are averaged
+  int pictures_at_rest = 6;  // number of pictures that are averaged when nothing moves
   ShadePass shade;
   ComposePass compose;
   ArmaturePass armature;
@@ -61,7 +62,7 @@ struct PassResources {
   WeightPass weigh;
   LinePass lines;
   std::string note;
-  std::optional<UploadTime> upload_time;  // of this frame; nothing: there are no frames
+  std::optional<UploadTime> upload_time;  // time limit of all uploads in this frame; empty: no limit
 
  private:
   struct Looks {
@@ -72,7 +73,8 @@ struct PassResources {
   };
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Looks> looks_;
-  std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;  // by number of atlases
+  // Keyed by the number of atlases and the space.
+  std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;
 };
 
 }  // namespace limber::render

@@ -9,7 +9,9 @@ namespace limber::render {
 
 namespace {
 
-constexpr float kJoined = 3, kSlant = 6;  // padded voxels, and pixels as they lie on a surface that is seen at a slant
+// Two adjacent pixels count as one surface if their rest positions are at most kJoined padded voxels plus kSlant pixel
+// sizes apart. The second term allows for surfaces seen at a slant.
+constexpr float kJoined = 3, kSlant = 6;
 
 }  // namespace
 
@@ -30,7 +32,8 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  // Drawn at the far plane: only where the hull lies in front.
+  // The triangle is drawn at the far plane. It passes the depth test only at pixels with the hull in front of the far
+  // plane.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
@@ -55,7 +58,7 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
                                                                     : 0);
     program.set("u_joined", glm::vec2(kJoined, kSlant * 2 / float(buffer.size().x)) / place_step(volume));
   }
-  // A normal of the view, in padded coordinates: one brick long whatever the spacing.
+  // Converts a unit normal in view axes to a vector in padded coordinates that is one brick long, whatever the spacing.
   const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);
   const double scale = kBrick / std::max({glm::length(to_view[0]), glm::length(to_view[1]), glm::length(to_view[2])});
   program.set("u_padded_from_view", glm::mat3(to_view * scale));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lights what the rays met: a soft key light over the viewer's left shoulder, sky from above, a thin rim, and shade
-// where the body closes in on itself (from its blurred occupancy). Light adds up linearly; colours are sRGB by a gamma
-// of two. Where skin weights are shown their colours take the place of the tissues', with contours upon them. In X-ray
-// the outer layer is a ghost: nearly clear where it faces the viewer, denser at its rim. Cut faces show plain tissue
-// colours.
+// Shades the surfaces that the rays hit: with a soft key light from over the viewer's left shoulder, light from the sky
+// above, a thin rim light, and darker creases (ambient occlusion from the body's blurred occupancy). Light is added in
+// linear space; sRGB is approximated by a gamma of two. Where skin weights are shown, their colours replace those of
+// the tissues, with contour lines on top. In X-ray the outer layer is a ghost: nearly transparent where it faces the
+// viewer, and denser where it is seen at a slant. Cut faces have plain tissue colours, without shading.
 #pragma once
 
 #include "render/passes/volume_pass.h"
@@ -14,18 +14,14 @@ class ShadePass {
  public:
   ShadePass();
 
-  // Blends one layer over the framebuffer that is bound, which has the buffer's size and the first layer's hull depth:
-  // premultiplied colours. Layers are drawn from the innermost outward.
-  //   ghost  as the outer layer of X-ray
-  //   layer  labels that belong to a deeper layer too are left to it
-  //   posed  of a posed body, or null
-  //   colours  of tissues, or of the weights that the buffer holds
-  enum class Colours {
-    Tissues,
-    Weights,
-    WeightsWithContours,
-    WeightsWithBorders
-  };  // contours between ranges, borders between colours
+  // The colours to draw: those of the tissues, or those of the weights in the buffer. The latter can have contour lines
+  // between ranges of the weight, or lines at the borders between different colours.
+  enum class Colours { Tissues, Weights, WeightsWithContours, WeightsWithBorders };
+  // Blends one layer, with premultiplied alpha, over the bound framebuffer. The framebuffer must have the buffer's size
+  // and the hull depth of the first layer. Layers must be drawn from the innermost outward.
+  //   ghost  draws the layer as the outer layer of X-ray
+  //   layer  index of the layer; labels that also belong to a deeper layer are not drawn here
+  //   posed  the inverse map of the posed body; null: the body is at rest
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost,
             Colours colours);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A plane through the labels, one pixel at a time, voxels as they are; or through a posed body, where its map leads.
-// Weights take the place of the tissues' colours, with the borders of tissues faintly upon them.
+// Draws a plane through the labels without smoothing voxels. A posed body is read through its inverse map, from posed
+// to rest positions. Where weights are shown, their colours replace those of the tissues, with faint lines at the
+// borders of tissues.
 #pragma once
 
 #include <map>
@@ -20,16 +21,16 @@ class SlicePass {
  public:
   SlicePass();
 
-  // Into the framebuffer that is bound: hidden tissue and air show the background.
-  //   posed    of a posed body, or null
-  //   weights  shown in the tissues' place, or null
+  // Draws into the bound framebuffer. Where tissue is hidden, or there is air, the background remains.
+  //   posed    the inverse map of the posed body; null: the body is at rest
+  //   weights  weights to show instead of tissue colours; null: tissue colours
   void draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks,
             const WeightTexture* weights, bool contours, const SliceCamera& camera, SliceDisplay display,
             std::optional<Label> outlined, const glm::ivec2& size);
 
  private:
-  std::map<std::tuple<int, bool, std::optional<WeightReading>>, std::unique_ptr<gl::Program>>
-      programs_;  // by number of atlases, for posed bodies, with weights
+  // Keyed by the number of atlases, whether the body is posed, and how the shader reads the weights.
+  std::map<std::tuple<int, bool, std::optional<WeightReading>>, std::unique_ptr<gl::Program>> programs_;
   gl::VertexArray nothing_;
 };
 

@@ -43,7 +43,7 @@ ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& siz
   const glm::dmat4 view = view_from_world(camera) * padded_to_world;
   const glm::dvec3 middle = glm::dvec3(low + high) / 2.0;
   const glm::dvec3 half = glm::dvec3(high - low) / 2.0;
-  double radius = 0;  // of the ball about the box
+  double radius = 0;  // radius of the sphere around the box, mm
   for (int corner = 0; corner < 4; ++corner)
     radius = std::max(radius, glm::length(to_world * glm::dvec3(half.x, corner & 1 ? half.y : -half.y,
                                                                 corner & 2 ? half.z : -half.z)));

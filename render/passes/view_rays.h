@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rays of a picture in a volume's padded coordinates (brick_atlas.h), as the shaders want them: the ray through
-// the picture's point `ndc` (-1 to 1) is  (base + ndc.x base_x + ndc.y base_y) + z (toward + ndc.x toward_x + ndc.y
-// toward_y) where z is the depth before the eye in millimetres, along the direction of view.
+// Computes the rays of a picture in a volume's padded coordinates (brick_atlas.h), as the shaders need them. The ray
+// through the point `ndc` of the picture (from -1 to 1) is
+//   (base + ndc.x base_x + ndc.y base_y) + z (toward + ndc.x toward_x + ndc.y toward_y)
+// where z is the depth from the eye along the viewing direction, mm.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,26 +16,30 @@ namespace limber::render {
 struct ViewRays {
   glm::dvec3 base, base_x, base_y, toward, toward_x, toward_y;
   glm::dmat4 clip_from_padded;
-  glm::dmat3 view_from_gradient;  // a gradient in padded coordinates as a vector of the view (not unit)
-  glm::dvec4 depth_of_padded;     // z = dot(xyz, padded) + w
-  glm::dvec3 eye;                 // padded; orthographic: the direction of view instead
-  glm::dvec4 padded_from_clip_plane(const glm::dvec3& point,
-                                    const glm::dvec3& normal) const;  // dot(xyz, p) <= w is kept
+  glm::dmat3 view_from_gradient;  // converts a gradient in padded coordinates to a vector in view axes (not normalized)
+  glm::dvec4 depth_of_padded;     // the depth of a padded point is z = dot(xyz, padded) + w
+  glm::dvec3 eye;                 // padded coordinates; orthographic: the viewing direction instead
+  // Returns a clip plane in padded coordinates: points p with dot(xyz, p) <= w stay visible.
+  glm::dvec4 padded_from_clip_plane(const glm::dvec3& point, const glm::dvec3& normal) const;
   glm::dmat4 padded_from_world;
-  double nearest = 0;  // depth of the near plane
+  double nearest = 0;  // depth of the near plane, mm
   bool perspective = true;
-  glm::vec3 label_shift{
-      0};  // voxels by which labels are read beside their place: averaged pictures blend their borders
-  bool mirrored_taps = false;  // gradients by the other tetrahedron: averaged pictures use both
+  // Offset of the position at which labels are read, voxels. The pictures that are averaged have different offsets,
+  // which blends the borders between labels.
+  glm::vec3 label_shift{0};
+  // True: gradients are sampled at the corners of a mirrored tetrahedron; averaged pictures use both.
+  bool mirrored_taps = false;
 };
 
 AffineTransform padded_from_world(const Grid& grid);
 
-// `jitter` shifts the picture, in pixels. The depth range covers [low, high], padded.
+// Computes the rays of a picture of `size` pixels.
+//   jitter     shift of the picture relative to the pixel grid, pixels
+//   low, high  box in padded coordinates that the depth range covers
 ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& size, const glm::dvec2& jitter,
                    const glm::vec3& low, const glm::vec3& high);
 
-// The uniforms of shaders/rays.glsl.
+// Sets the uniforms that shaders/rays.glsl declares.
 void set_rays(gl::Program& program, const ViewRays& rays);
 
 }  // namespace limber::render

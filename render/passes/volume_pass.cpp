@@ -10,7 +10,9 @@ namespace limber::render {
 
 namespace {
 
-constexpr float kTap = 1.4f;  // voxels: smooths the steps of voxels without leaving the apron
+// Distance between a point and the positions at which the field is sampled for its gradient, voxels. It smooths the
+// steps between voxels without leaving the apron of a slot.
+constexpr float kTap = 1.4f;
 
 std::string march_defines(int atlases, VolumePass::Space space) {
   return atlas_defines(atlases) + gl::define("SURFACE", kSurface) + gl::define("BRICK", kBrick) +
@@ -38,9 +40,10 @@ bool inside(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high
          glm::all(glm::lessThan(point, glm::dvec3(high) + margin));
 }
 
-// The eye within the hull's box sees no front faces of what surrounds it: rays then start at the near plane.
+// Returns whether the eye is within the hull's box. The eye then sees no front faces around it, so rays start at the
+// near plane.
 bool eye_inside(const Hull& hull, const ViewRays& rays) {
-  if (!rays.perspective) return false;  // the orthographic depth range begins before the body
+  if (!rays.perspective) return false;  // the depth range of an orthographic camera begins before the body
   const double voxels_per_depth = glm::length(rays.toward) + glm::length(rays.toward_x) + glm::length(rays.toward_y);
   return inside(rays.eye, hull.low(), hull.high(), rays.nearest * voxels_per_depth);
 }
@@ -124,7 +127,8 @@ void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer
   const float far = 1, nothing[4] = {-kNothingDepth, -kNothingDepth, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, &far);
   glClearBufferfv(GL_COLOR, 0, nothing);
-  // Any depth before the far plane marks a pixel as covered.
+  // A pixel whose depth is in front of the far plane is marked as covered by the hull; the depth itself does not
+  // matter.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glEnable(GL_BLEND);
@@ -154,7 +158,8 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   if (buffer.place) glClearBufferuiv(GL_COLOR, 3, label);
   if (hull.empty()) return;
 
-  // Drawn at the far plane: only where the hull lies in front.
+  // The triangle is drawn at the far plane. It passes the depth test only at pixels with the hull in front of the far
+  // plane.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
@@ -177,7 +182,8 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set("u_view_from_gradient", glm::mat3(rays.view_from_gradient));
   glm::vec3 low = hull.low(), high = hull.high();
   if (clip.box) {
-    // A coarser volume's voxels are larger: by the padded coordinates' own scale.
+    // Padded coordinates count voxels of the drawn volume. Its voxels are larger than the original ones if it is drawn
+    // at a coarser resolution.
     const double scale = 1.0 / (1 << volume.halvings());
     low = glm::max(low, glm::vec3(((*clip.box)[0] + 0.5) * scale + double(kPad)));
     high = glm::min(high, glm::vec3(((*clip.box)[1] + 0.5) * scale + double(kPad)));

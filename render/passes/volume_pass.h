@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds what each pixel shows: rays march through a visible set to its surface, and position, normal and label of what
-// they meet go into buffers that later passes shade, outline and pick from; and where skin weights are shown its place
-// at rest.
+// Finds what each pixel shows. A ray marches through the volume until it reaches the surface of the visible labels. The
+// position, normal and label of the hit, and its rest position where skin weights are shown, are stored in buffers,
+// which later passes use for shading, outlines and picking.
 //
-// The hull of the set is drawn first, giving each ray its start; rays of pixels beside it never run. From there a ray
-// reads one texel a step, skipping as far as the texel allows; near the surface it reads filtered values, and the
-// crossing is found by the secant. A ray that the clip box or plane lets into the middle of the body ends at once, on a
-// cap.
+// The hull of the visible labels is drawn first and gives each ray its start; pixels outside the hull cost nothing.
+// From there a ray reads one texel per step and skips as far as the texel allows. Near the surface it reads filtered
+// values, and finds the crossing by the secant method. If the clip box or plane makes a ray start inside the body, the
+// ray ends at once, on a cap (the cut face).
 //
-// The rays of a posed body go from cube to cube of its map. A ray's way through a cube is nearly straight at rest: its
-// ends are read through the map, and between them the ray marches at rest as it would without a pose.
+// The rays of a posed body go from cube to cube of its inverse map (PreviewMap). The part of a ray within a cube is
+// nearly straight at rest: its ends are converted to rest positions by the map, and between them the ray marches
+// through the rest volume as it would without a pose.
 #pragma once
 
 #include <optional>
@@ -26,38 +27,41 @@
 
 namespace limber::render {
 
-inline constexpr float kNothingDepth = 1e30f;  // of a pixel that shows nothing of the volume
+inline constexpr float kNothingDepth = 1e30f;  // depth of a pixel that shows nothing of the volume
 
-// Rectangle of a picture's pixels, from the lower left corner.
+// A rectangle of pixels [low, high); pixels are counted from the lower left corner.
 struct PixelRect {
   glm::ivec2 low{0}, high{0};
   bool empty() const { return high.x <= low.x || high.y <= low.y; }
 };
 PixelRect intersection(const PixelRect& a, const PixelRect& b);
 
-// What the rays of a picture met.
+// The buffers that store what the rays of a picture hit.
 class GBuffer {
  public:
-  //   places  also where at rest each pixel lies, and room for what is shown of weights there
+  //   places  true: adds the buffers for the rest position and the weight colour of each pixel
   void resize(const glm::ivec2& size, bool places = false);
   const glm::ivec2& size() const { return size_; }
 
-  gl::Texture depth;   // R32F: mm before the eye along the direction of view; kNothingDepth
-  gl::Texture normal;  // RGB10_A2: unit, of the view, halved and shifted to [0, 1]; alpha 0 nothing, 1/3 surface, 2/3
-                       // in a fold of a posed body, 1 cap
-  gl::Texture label;   // R16UI
-  gl::Texture range;   // RG32F: depth where the ray enters the hull, negated, and where it leaves it for good
+  gl::Texture depth;  // R32F: mm from the eye along the viewing direction; kNothingDepth: no hit
+  // RGB10_A2: unit normal in view axes, mapped to [0, 1]. Alpha is 0 for no hit, 1/3 for a surface, 2/3 for a surface
+  // in a fold of a posed body, and 1 for a cap (cut face).
+  gl::Texture normal;
+  gl::Texture label;  // R16UI: label of the hit
+  // RG32F: the depth where the ray first enters the hull, negated, and the depth where it finally leaves the hull.
+  gl::Texture range;
   gl::Texture hull_depth;
-  gl::Texture place;   // RGBA16UI: padded coordinates at rest, in the voxel that gave the label, in steps of
-                       // place_step(); last 1 where there is one
-  gl::Texture weight;  // RGBA8: as weight_texture.h has it
+  // RGBA16UI: rest position of the hit in padded coordinates, in steps of place_step(). The last channel is 1 at a hit.
+  gl::Texture place;
+  gl::Texture weight;  // RGBA8: colour of the weights at the hit (weight_colour() in shaders/weights.glsl)
   gl::Framebuffer hull_target, march_target, weight_target;
 
  private:
   glm::ivec2 size_{0};
 };
 
-// Of a buffer's places: the finest that 16 bits can count through the volume by.
+// Returns the step in which GBuffer::place stores positions, padded voxels. It is the finest step for which 16 bits
+// cover the volume.
 float place_step(const VolumeTexture& volume);
 
 class VolumePass {
@@ -65,15 +69,15 @@ class VolumePass {
   enum class Space { Rest, Posed };
   VolumePass(int atlases, Space space);
 
-  // The part of the picture that the hull covers.
+  // Return the rectangle of the picture that a hull covers, or that a box in padded coordinates covers.
   static PixelRect covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size);
-  // That a box of padded coordinates covers.
   static PixelRect covered(const glm::vec3& low, const glm::vec3& high, const ViewRays& rays, const glm::ivec2& size);
 
-  // The start of every ray inside `rect`.
+  // Draws the hull, which gives the start and the end of every ray inside `rect`.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
-  // What the rays of `rect` meet: labels of that layer (appearance_texture.h), which are the field's.
-  //   posed, posed_hull  given exactly when this pass is for posed space
+  // Follows the rays inside `rect` until they hit a label of one layer (appearance_texture.h).
+  //   field              the field of the layer
+  //   posed, posed_hull  null unless this pass is for posed space
   void march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
              const PosedHull* posed_hull, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
              const GBuffer& buffer, const PixelRect& rect);

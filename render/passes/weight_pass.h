@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Looks up what each pixel of a picture shows of skin weights, at the places where its rays met the body. It stands
-// between rays and shading: other weights, another bone or another display need neither new rays nor new buffers.
+// Looks up the colour of the skin weights at the rest position of each pixel. This pass runs after the rays and before
+// shading. When other weights, another bone or another display are shown, the rays and their buffers can therefore be
+// reused.
 #pragma once
 
 #include <map>
@@ -16,12 +17,13 @@ class WeightPass {
  public:
   WeightPass();
 
-  // Into the buffer's own weights, inside `rect`. The buffer has places.
+  // Draws into GBuffer::weight inside `rect`. The buffer must have been made with `places`.
   void draw(const VolumeTexture& volume, const WeightTexture& weights, const ViewRays& rays, const GBuffer& buffer,
             const PixelRect& rect);
 
  private:
-  std::map<std::pair<int, WeightReading>, std::unique_ptr<gl::Program>> programs_;  // by number of atlases
+  // Keyed by number of atlases and reading.
+  std::map<std::pair<int, WeightReading>, std::unique_ptr<gl::Program>> programs_;
   gl::VertexArray nothing_;
 };
 

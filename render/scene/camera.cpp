@@ -10,14 +10,15 @@ namespace limber::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNearest = 1e-2, kFarthest = 1e6;  // mm, of the eye from the centre
-constexpr double kOrbitPerPixel = kPi / 450;        // Blender's turntable: 0.4 degrees
+constexpr double kNearest = 1e-2, kFarthest = 1e6;  // limits of the distance from the eye to the centre, mm
+// Rotation per pixel of mouse motion, radians: 0.4 degrees, as in Blender's turntable.
+constexpr double kOrbitPerPixel = kPi / 450;
 
 glm::dquat from_columns(const glm::dvec3& right, const glm::dvec3& up) {
   return glm::normalize(glm::quat_cast(glm::dmat3(right, up, glm::cross(right, up))));
 }
 
-// Half the picture's height at the centre, mm.
+// Returns half the height of the region that the picture shows at the depth of the camera's centre, mm.
 double half_height(const Camera& camera) { return camera.distance * std::tan(camera.field_of_view / 2); }
 
 }  // namespace
@@ -42,7 +43,7 @@ Camera framing(const Camera& camera, const glm::dvec3& low, const glm::dvec3& hi
   const double tan_y = std::tan(camera.field_of_view / 2), tan_x = tan_y * aspect;
   const glm::dquat view_from_world = glm::conjugate(camera.world_from_view);
 
-  // The nearest eye from which every corner lies within the picture.
+  // Finds the smallest distance from the centre at which every corner of the box is within the picture.
   double distance = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 world(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
@@ -70,7 +71,7 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const glm::dvec3&
   const double depth = -(view_from_world(camera) * glm::dvec4(middle, 1)).z;
   const bool perspective = camera.projection == Projection::Perspective;
   const double reach = std::max(depth + radius, 1e-3) * 1.001;
-  // A near plane of a ten-thousandth of the far one leaves 24 bits of depth enough everywhere.
+  // With a near plane of a ten-thousandth of the far plane, 24 bits of depth are precise enough everywhere.
   const double nearest = perspective ? std::max(depth - radius * 1.001, reach * 1e-4) : depth - radius * 1.001;
   glm::dmat4 clip(0);
   const double height = perspective ? std::tan(camera.field_of_view / 2) : half_height(camera);

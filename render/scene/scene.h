@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is to be drawn, as a value: the editor and the command line fill one for each picture, the passes draw it. Parts
-// are shared with the document; equal pointers mean that nothing needs to be uploaded again.
+// The description of a picture as a value. The editor and the command line fill a Scene for each picture, and the
+// passes draw it. The scene shares its data with the document. If a pointer equals that of the last picture, nothing
+// needs to be uploaded again.
 #pragma once
 
 #include <array>
@@ -25,20 +26,20 @@ namespace limber::render {
 
 enum class Display {
   Solid,   // the outermost visible tissue, opaque
-  XRay,    // skin and flesh as a ghost (fresnel), bone solid inside
-  Tissue,  // every visible tissue with its own opacity, front to back
+  XRay,    // skin and flesh as a transparent ghost (denser where seen at a slant), with solid bone inside
+  Tissue,  // every visible tissue with its own opacity, blended from front to back
 };
 
-// How a label is drawn.
+// The appearance of a label.
 struct LabelLook {
   glm::vec3 colour{0.7f};  // sRGB
   float opacity = 1;
   bool visible = true;
-  bool bone = false;  // stays solid in X-ray
+  bool bone = false;  // true: the label stays solid in X-ray
 
   bool operator==(const LabelLook&) const = default;
 };
-using LabelLooks = std::vector<LabelLook>;  // by label; beyond its end: invisible
+using LabelLooks = std::vector<LabelLook>;  // indexed by label; labels beyond the end are invisible
 
 struct BoneLook {
   bool selected = false, active = false, hovered = false;
@@ -48,67 +49,72 @@ enum class BoneShape { Octahedron, Stick, Cylinder, None };
 // A bone under a pixel.
 struct BoneHit {
   int bone;
-  double off;    // how far beside it the pixel is, of 1 where the bone is no longer meant
-  double depth;  // of its middle line there, mm before the eye along the direction of view
+  // Distance of the pixel from the bone's axis, as a share [0, 1) of the largest distance that still hits the bone.
+  double off;
+  double depth;  // depth of the axis at the pixel, mm from the eye along the viewing direction
 };
 
-// Half-spaces and a box that cut the volume open; a cut face shows the tissues unshaded.
+// A box and a plane that cut the volume open. Cut faces show the tissues without shading.
 struct Clip {
-  std::optional<std::array<glm::dvec3, 2>> box;    // low, high corner in voxel coordinates of the volume
-  std::optional<std::array<glm::dvec3, 2>> plane;  // point and unit normal, world; hidden is the normal's side
+  std::optional<std::array<glm::dvec3, 2>> box;  // low and high corner in the volume's voxel coordinates
+  // Point and unit normal, world; the side to which the normal points is hidden.
+  std::optional<std::array<glm::dvec3, 2>> plane;
 };
 
-// What of skin weights is shown in the tissues' place (render/scene/weight_colormap.h).
+// What the colours show when skin weights are shown instead of tissues (render/scene/weight_colormap.h).
 enum class WeightDisplay {
-  Active,    // the weight of one bone, exact 0 and exact 1 apart
-  Dominant,  // the bone that has most of a voxel
-  Mixed,     // all its bones, by their shares
-  Count,     // how many bones it follows
-  Field,     // no weights: a colour of its own for each voxel, of whatever is measured there
+  Active,    // the weight of the active bone; weights of exactly 0 and exactly 1 have special colours
+  Dominant,  // the bone with the largest weight
+  Mixed,     // all bones of the voxel, with their colours mixed by weight
+  Count,     // the number of bones that the voxel follows
+  Field,     // no weights, but a given colour for each voxel, for any measured quantity
 };
 struct ShownWeights {
-  std::shared_ptr<const SkinWeights> weights;  // null of a field
-  std::shared_ptr<const TissueVoxels> tissue;  // of the volume
+  std::shared_ptr<const SkinWeights> weights;  // null for WeightDisplay::Field
+  std::shared_ptr<const TissueVoxels> tissue;  // the tissue voxels of the volume
   WeightDisplay display = WeightDisplay::Active;
-  int bone = -1;                                           // of the weights' bones, the active one; -1: none
-  std::shared_ptr<const std::vector<glm::vec3>> swatches;  // #bones of the weights, sRGB
-  std::shared_ptr<const std::vector<std::uint8_t>>
-      region;  // a byte per voxel of `tissue`: where it is 0 colours are dull; null: none are
-  std::shared_ptr<const std::vector<glm::u8vec3>> field = nullptr;  // #voxels of `tissue`, sRGB; of a field alone
-  bool contours =
-      true;  // lines where the active bone's weight passes a quarter, a half, three quarters; else between colours
+  int bone = -1;                                           // the active bone, an index in the weights' bones; -1: none
+  std::shared_ptr<const std::vector<glm::vec3>> swatches;  // colour of each bone of the weights, sRGB
+  // One byte per voxel of `tissue`; colours of voxels with 0 are dimmed. Null: no colours are dimmed.
+  std::shared_ptr<const std::vector<std::uint8_t>> region;
+  // Colour of each voxel of `tissue`, sRGB; only for WeightDisplay::Field.
+  std::shared_ptr<const std::vector<glm::u8vec3>> field = nullptr;
+  // True: lines are drawn on the colours. For Active the lines mark weights of a quarter, a half and three quarters.
+  // For other displays they are borders between different colours.
+  bool contours = true;
 
   bool operator==(const ShownWeights&) const = default;
 };
 
-// A tet mesh that is shown by lines where the clip or a slice cuts it.
+// A tet mesh, drawn as lines where the clip or a slice cuts it.
 struct CutMesh {
-  std::shared_ptr<const Eigen::MatrixX3i> faces;  // each once
-  std::shared_ptr<const Eigen::MatrixX3d> V;      // where its nodes are, world, mm
+  std::shared_ptr<const Eigen::MatrixX3i> faces;  // faces of all tets, each once
+  std::shared_ptr<const Eigen::MatrixX3d> V;      // node positions, world, mm
 
   bool operator==(const CutMesh&) const = default;
 };
 
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
-  std::shared_ptr<const PreviewMap> pose;  // of this volume: its body is drawn as the map leads; null: as the volume is
+  // Inverse map of the posed body, from posed to rest positions; null: the volume is drawn at rest.
+  std::shared_ptr<const PreviewMap> pose;
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;
-  std::optional<ShownWeights> weights;  // nothing: tissues
-  std::optional<Label> outlined;        // tissue with a selection outline
+  std::optional<ShownWeights> weights;  // empty: tissue colours are shown
+  std::optional<Label> outlined;        // the tissue that has a selection outline
   std::optional<CutMesh> mesh;
 
   std::shared_ptr<const Armature> armature;
-  std::vector<RigidTransform> posed_from_rest;  // #bones; empty: at rest
-  std::vector<BoneLook> bones;                  // #bones; empty: none selected
+  std::vector<RigidTransform> posed_from_rest;  // one for each bone; empty: the rig is at rest
+  std::vector<BoneLook> bones;                  // one for each bone; empty: no bone is selected
   BoneShape bone_shape = BoneShape::Octahedron;
-  bool bones_in_front = false;  // X-ray: drawn on top
-  float line_scale = 1;         // the picture's pixels for one of a line's width or a joint's radius
+  bool bones_in_front = false;  // true: bones are drawn over the body
+  float line_scale = 1;         // factor on line widths and joint radii, for pictures of high resolution
 
-  bool grid = true;                     // ground grid
-  bool dark_background = true;          // the dark theme's gradient, else the light theme's
-  bool transparent_background = false;  // for pictures
+  bool grid = true;             // true: the ground grid is drawn
+  bool dark_background = true;  // true: the background gradient of the dark theme; false: that of the light theme
+  bool transparent_background = false;  // for saved pictures
 };
 
 }  // namespace limber::render

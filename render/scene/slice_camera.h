@@ -5,17 +5,18 @@
 
 namespace limber::render {
 
-enum class SliceAxis { Sagittal, Coronal, Axial };  // normal x, y, z of the world, by the grid axis nearest to it
+enum class SliceAxis { Sagittal, Coronal, Axial };  // the slice's normal is x, y or z of the world
 enum class SliceDisplay { Labels, Outline };
 
-// Where a slice is cut and what part of it is seen.
+// The position of a slice and the region of it that the picture shows.
 struct SliceCamera {
   SliceAxis axis = SliceAxis::Axial;
-  glm::dvec3 centre{0};  // world point in the picture's middle; the slice goes through it
+  glm::dvec3 centre{0};  // world point at the picture's centre, mm; the slice passes through it
   double millimetres_per_pixel = 1;
 };
 
-// World axes of a slice picture: radiological convention (axial seen from the feet, the patient's right on the left).
+// World axes of a slice picture, by the radiological convention: axial slices are seen from the feet, with the
+// patient's right on the left of the picture.
 struct SliceFrame {
   glm::dvec3 right, down, normal;
 };

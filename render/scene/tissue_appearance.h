@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the tissues of a table are drawn, with what the user changed of it.
+// Determines how each tissue of a table is drawn, from its kind, its colour and the user's changes.
 #pragma once
 
 #include "core/project/document.h"
@@ -8,7 +8,8 @@
 
 namespace limber::render {
 
-// What stays solid in X-ray: bone and cartilage, vessels and nerves, organs; the rest is flesh around them.
+// Returns whether a tissue is drawn solid in X-ray. Bone, cartilage, vessels, nerves and organs are; the flesh around
+// them is not.
 bool stays_solid(TissueKind kind);
 
 LabelLooks looks_of(const TissueTable& tissues, const Visibility& visibility = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A gradient from the top down. Its steps are one in 255: half a step of ordered noise hides them.
+// Draws a gradient from top to bottom. Ordered noise of half a colour step (1/255) hides its steps.
 in vec2 ndc;
 uniform vec3 u_top, u_bottom;
 layout(location = 0) out vec4 colour;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws bones with a smooth rim, fainter behind the body.
+// Draws bones with antialiased edges, fainter behind the body.
 in float depth;
 in vec3 local;
 in vec4 tint;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Corners of the bones' triangles, in pixels from the top left corner.
+// Places the corners of the bones' triangles, which are given in pixels from the picture's top left corner.
 layout(location = 0) in vec2 pixel;
 layout(location = 1) in float depth_in;
 layout(location = 2) in vec3 local_in;   // x, y, reach

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A square on the ground.
+// Places the square on the ground on which the grid is drawn.
 uniform mat4 u_clip;
 uniform vec3 u_middle;
 uniform float u_reach;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The greatest of each channel is kept: the nearest front face, negated, and the farthest back face.
+// Writes the depth range of the hull. Blending keeps the greatest value of each channel: the negated depth of the
+// nearest front face, and the depth of the farthest back face.
 in float depth;
 uniform bool u_front_is_clockwise;
 layout(location = 0) out vec2 range;

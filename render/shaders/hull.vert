@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Places the faces of the hull around the visible tissue and gives their depth before the eye.
+// Places the faces of the hull around the visible tissue and computes their depth from the eye.
 layout(location = 0) in vec3 corner;
 uniform mat4 u_clip;
 uniform vec4 u_depth;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws a line with a smooth rim, only where it lies on the body when `u_off` is positive.
+// Draws a line with antialiased edges; if `u_off` is positive, only where it lies on the body's surface.
 in float depth, across;
 uniform sampler2D u_depth;
 uniform vec2 u_size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Widens each line segment to a rectangle of pixels.
+// Widens each line segment to a rectangle in pixels.
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 uniform mat4 u_clip;

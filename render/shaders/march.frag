@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Follows the ray of each pixel to the surface of the visible tissue.
-// Lengths of s are voxels of the axis along which the ray moves fastest, so that no step of 1 passes over a voxel
-// layer.
+// Follows the ray of each pixel to the surface of the visible tissue. Positions s along a ray are in voxels of the axis
+// along which the ray moves fastest, so that no step of 1 skips a layer of voxels.
 #include "rays.glsl"
 #include "atlases.glsl"
 #ifdef POSED
@@ -10,12 +9,12 @@
 
 in vec2 ndc;
 uniform sampler2D u_range;
-uniform float u_nearest;         // where a ray starts whose eye is inside the hull; else -1e30
+uniform float u_nearest;         // depth at which rays start if the eye is inside the hull; else -1e30
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
 uniform uint u_layer;
-uniform vec3 u_low, u_high;      // the hull's corners, cut by the clip box
-uniform vec4 u_plane;            // dot(xyz, p) <= w is kept
+uniform vec3 u_low, u_high;      // the box of the hull, cut by the clip box
+uniform vec4 u_plane;            // points p with dot(xyz, p) <= w stay visible
 uniform bool u_clipped;
 uniform mat3 u_view_from_gradient;
 
@@ -25,25 +24,25 @@ layout(location = 2) out uint out_label;
 layout(location = 3) out uvec4 out_place;
 
 #ifdef POSED
-uniform usampler3D u_near_cubes;   // of the map, where they lead near the set
+uniform usampler3D u_near_cubes;   // the map's cubes that lead near the set
 uniform ivec3 u_blocks;
-const float kStretch = 3.0;         // nodes
-const float kNodeTap =
-    0.5 / 1.4;  // nodes for u_tap: half a node, so that directions go over smoothly from cube to cube
+const float kStretch = 3.0;         // length of the pieces of rays that are tested for straightness, nodes
+// Scales u_tap to half a node, so that directions change smoothly from cube to cube.
+const float kNodeTap = 0.5 / 1.4;
 #endif
 
-uniform float u_tap;               // voxels; of either sign, which mirrors the tetrahedron
+uniform float u_tap;               // distance of gradient samples, voxels; a negative one mirrors the tetrahedron
 uniform vec3 u_label_shift;
-uniform float u_places;            // a padded voxel
+uniform float u_places;            // steps of out_place per padded voxel
 
 const float kSurface = float(SURFACE) / 255.0;
-const float kBand = 72.0 / 255.0;           // from here on the surface may be near
+const float kBand = 72.0 / 255.0;           // from this value on the surface may be near
 const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
 Slot slot_of(ivec3 block) {
 #ifdef POSED
-  // A piece of a ray may leave the blocks.
+  // A piece of a ray at rest may leave the blocks.
   ivec3 inside = clamp(block, ivec3(0), u_blocks - 1);
   uvec4 entry = texelFetch(u_index, inside, 0);
   if (inside != block) entry.w = 0u;
@@ -53,22 +52,22 @@ Slot slot_of(ivec3 block) {
   return Slot(ivec3(entry.xyz) * SLOT + APRON - block * BLOCK, entry.w);
 }
 
-// In the slot of its own block, since p may have left the block in which the march found it.
+// Returns the slot of p's own block, since p may have left the block in which the march found it.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
-// Of a ray: where it meets the surface, if it does, the value read there and the last one before.
+// Where a ray hits the surface (s = -1e30: it does not), the value there, and the last position and value before it.
 struct Meeting { float s, value, s_before, value_before; };
 
-// From s to s_end along what is a line at rest, base + d s, of which a voxel is 1 / rate; moves s on. Not before
-// s_start.
+// Marches from s to s_end along a straight line at rest, base + d s, on which a voxel is 1 / rate long. Moves s on, and
+// stores a hit in `found`, never before s_start.
 void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
   float voxel = 1.0 / rate;
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
   vec3 inverse_d = 1.0 / safe;
   vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
-  vec3 ahead = sign(safe) * 0.02;  // a block is left for good even where the ray runs along its face
+  vec3 ahead = sign(safe) * 0.02;  // moves on to the next block even where the ray runs along a face
   for (int tries = 0; tries < 1024 && s < s_end && found.s < -1e29; ++tries) {
-    // On, block by block, to where the surface may be near.
+    // Goes on, block by block, to where the surface may be near.
     Slot slot = Slot(ivec3(0), 0u);
     vec3 at;  // the base in the slot
     float value = 0.0;
@@ -88,8 +87,8 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
       s = max(s, s_leave);
     }
     if (value < kBand) break;
-    // From half a voxel before, so that a surface is not met from its inside. The field rises by about 3/8 a voxel,
-    // which gives the step; it is short enough not to pass over a thread. The apron reaches far enough.
+    // Starts half a voxel before, so that a surface is not hit from its inside. The field rises by about 3/8 per voxel,
+    // which gives the step; the step is short enough not to skip a thread. The apron is wide enough for this.
     float s_near = max(s - 0.5 * voxel, s_start), s_far = min(s + 1.5 * voxel, s_end);
     found.value_before = 0.0;
     found.s_before = s_near - 0.5 * voxel;
@@ -137,7 +136,7 @@ void main() {
   vec3 rest_base = vec3(0.0), rest_d = d;
   Sheet sheet = Sheet(false, vec3(0.0), vec3(0.0));
   for (int pieces = 0; pieces < 1024 && s < s_end && met.s < -1e29; ++pieces) {
-    // The next cube that can hold the surface, or half a cube beside a fold.
+    // Finds the next cube that can hold the surface, or half a cube beside a fold.
     uint cube = 0u;
     vec3 low;
     float s_leave, size = 1.0;
@@ -151,7 +150,7 @@ void main() {
       if (cube != 0u || s_leave >= s_end) break;
       s = s_leave;
     }
-    // Where the map is straight, as in limbs that turn as a whole, a piece goes through several cubes.
+    // Where the map is linear, as in limbs that turn as a whole, one piece runs through several cubes.
     float s_far = s + kStretch / u_node_scale;
     sheet = sheet_at(low + 0.5 * size, cube);
     vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);
@@ -164,7 +163,7 @@ void main() {
     vec3 rest_speed = abs(rest_d);
     float rate = max(max(max(rest_speed.x, rest_speed.y), rest_speed.z), 0.1);
     float s_to = min(s_leave, s_end);
-    if (cube >= kBordered) {  // only what is within the border
+    if (cube >= kBordered) {  // keeps only the part within the border
       float first = apart_on(sheet, node_base + node_d * s), last = apart_on(sheet, node_base + node_d * s_leave),
             at = s + (s_leave - s) * first / (first - last);
       if (last < 0.0) s_to = first < 0.0 ? s : min(s_to, at);
@@ -186,15 +185,16 @@ void main() {
     return;
   }
   bool cap = cut && found == s_start;
-  // The secant.
+  // Finds the crossing by the secant method.
   if (!cap)
     found = mix(max(met.s_before, s_start), found,
                 clamp((kSurface - met.value_before) / max(met.value - met.value_before, 1e-3), 0.0, 1.0));
   vec3 p = base + d * found;
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
-  // From here on at rest; how the map turns directions, from its differences along the four corners of a tetrahedron.
-  // A mirrored sheet is known in the cube on the other side of its node: at that cube's corners.
+  // The rest of this function works at rest. The matrix that turns directions is computed from the map's differences
+  // between the four corners of a tetrahedron. A mirrored sheet is defined only in the cube on the other side of its
+  // node, so it is sampled around that cube's centre.
   vec3 node = node_of(p);
   if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
   vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap),
@@ -208,7 +208,7 @@ void main() {
 #endif
   Slot slot = slot_at(p);
 
-  // Differences along the four corners of a tetrahedron.
+  // Computes the gradient from differences between the four corners of a tetrahedron.
   vec3 at = p + vec3(slot.offset);
   vec3 gradient = a * field_at(slot.atlas, at + a) + b * field_at(slot.atlas, at + b) +
                   c * field_at(slot.atlas, at + c) + e * field_at(slot.atlas, at + e);
@@ -220,15 +220,15 @@ void main() {
 #endif
 #ifdef POSED
   vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
-  normal.z = abs(normal.z);  // in a fold what is met may be the inside of a sheet
-  if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));  // whose pieces point this way and that
+  normal.z = abs(normal.z);  // in a fold the ray may hit the inside of a sheet
+  if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));  // smooths the scattered normals of a fold
 #else
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
 
-  // The first label of the set, from a little outside the surface inward: first through air, then through hidden
-  // tissue. A step from air over an edge or a corner is not taken past the voxels beside it: a skin one voxel thick has
-  // no gaps.
+  // Finds the first label of the set by walking inward from a little outside the surface: first through air, then
+  // through hidden tissue. A diagonal step out of air also looks at the voxels beside it, so that a skin one voxel
+  // thick has no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = label_at(slot.atlas, ivec3(inside));
@@ -261,6 +261,6 @@ void main() {
 #endif
   out_normal = vec4(normal * 0.5 + 0.5, cap ? 1.0 : fold ? 2.0 / 3.0 : 1.0 / 3.0);
   out_label = label;
-  // Inside the first voxels, where there are no steps.
+  // The position is a little inside the surface, where the steps between voxels do not show.
   out_place = uvec4(uvec3(clamp((p + (cap ? d * 0.02 : inward * 0.7)) * u_places, vec3(0.0), vec3(65535.0))), 1u);
 }

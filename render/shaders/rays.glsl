@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The ray through the picture at `ndc`; render/passes/view_rays.h tells what these hold.
+// The uniforms that describe the rays of a picture; render/passes/view_rays.h explains them.
 uniform vec3 u_base, u_base_x, u_base_y, u_toward, u_toward_x, u_toward_y;

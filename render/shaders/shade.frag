@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lights what the rays found, in the tissues' own colours, in those of skin weights, or as an X-ray ghost.
+// Shades the hits of the rays in the colours of tissues or of skin weights, or as an X-ray ghost.
 #include "rays.glsl"
 #ifdef POSED
 #include "posed.glsl"
@@ -10,22 +10,22 @@ uniform sampler2D u_depth, u_normal;
 uniform usampler2D u_label, u_looks;
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
-uniform mat3 u_padded_from_view;   // directions, scaled so that a unit normal moves one brick
+uniform mat3 u_padded_from_view;   // converts directions; a unit normal becomes one brick long
 uniform uint u_layer;
 layout(location = 0) out vec4 colour;
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
-const float kFold = 0.7;  // how open the crease of a fold is
+const float kFold = 0.7;  // openness in the crease of a fold
 
-// How open the place is: 1 on a flat or bulging surface, less in a crease.
+// Returns how open a position is: 1 on a flat or convex surface, less in a crease.
 float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
   vec3 out_of = u_padded_from_view * normal;
 #ifdef POSED
-  // Both at rest; the direction as the map turns it, from what lies just inside.
+  // Converts position and direction to rest; the direction is turned as the map turns a short step inward.
   vec3 rest = rest_of(p);
   vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
-  if (length(turned) > 4.0 * length(out_of)) return kFold;  // across one
+  if (length(turned) > 4.0 * length(out_of)) return kFold;  // the step crossed a fold
   out_of = turned * min(1.0, 1.5 * length(out_of) / max(length(turned), 1e-3));
   p = rest;
 #endif
@@ -42,7 +42,7 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
   float gloss = half_way * half_way;
   gloss *= gloss; gloss *= gloss; gloss *= gloss;
   float rim = (1.0 - toward) * (1.0 - toward);
-  // Light that leaves flesh again is warmer in the shade.
+  // Shadows are warmer, like light that has passed through flesh.
   vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
   vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open *
                (0.72 + 0.28 * toward);
@@ -52,17 +52,18 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
 #ifdef WEIGHTS
 uniform sampler2D u_weight;
 uniform usampler2D u_place;
-uniform int u_lines;      // 0 none, 1 between ranges of the weight, 2 between colours
-uniform vec2 u_joined;    // steps of the place that pixels side by side on one surface are apart, at most: so many, and
-                          // so many by their size
+uniform int u_lines;      // 0: none, 1: between ranges of the weight, 2: between colours
+// Largest distance of the rest positions of adjacent pixels on one surface, in steps of u_place: a constant, and a
+// factor of the pixel's size.
+uniform vec2 u_joined;
 const float kLine = 0.55;
 
-// Whether a line may run between what the two show.
+// Returns whether a line may run between two pixels with these weight colours.
 bool differs(vec4 weight, vec4 other) {
   return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb);
 }
 
-// Whether the pixels lie on one surface.
+// Returns whether two pixels lie on one surface.
 bool joined(ivec2 at, ivec2 beside) {
   vec3 apart = vec3(texelFetch(u_place, at, 0).xyz) - vec3(texelFetch(u_place, beside, 0).xyz);
   float most = u_joined.x + u_joined.y * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);
@@ -92,7 +93,7 @@ void main() {
   float alpha = normal.a == 0.0 || (look.a & 7u) > u_layer + 1u ? 0.0 : 1.0;
 #ifdef GHOST
   float steep = clamp(1.0 - abs(normal.z * 2.0 - 1.0), 0.0, 1.0);
-  // A cut through flesh stays see-through.
+  // A cut through flesh stays transparent.
   alpha *= cap ? 0.30 : 0.10 + 0.62 * steep * steep * steep;
   vec3 rgb = cap ? srgb : vec3(0.624, 0.722, 0.839);
 #else

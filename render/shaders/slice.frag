@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The label index stays with the field that rays use, since only it says which blocks are there; a slice needs every
-// block.
+// Draws a slice through the labels or the skin weights. It uses the volume's own index, since it needs every block with
+// tissue; the index that rays use contains only blocks with visible tissue.
 #include "atlases.glsl"
 #ifdef POSED
 #include "posed.glsl"
@@ -12,7 +12,7 @@
 in vec2 ndc;
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
-uniform vec3 u_middle, u_right, u_down;   // padded coordinates; a pixel right, a pixel down
+uniform vec3 u_middle, u_right, u_down;   // padded coordinates: the centre; the steps of one pixel
 uniform vec3 u_high;
 uniform vec2 u_size;
 uniform bool u_outline;
@@ -42,13 +42,13 @@ uint label_at_place(vec3 p) {
 uvec4 look_of(uint label) { return texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0); }
 
 #ifdef WEIGHTS
-// How much of the pixel lines cover.
+// Returns how much of the pixel is covered by lines, [0, 1].
 float contour(vec4 texel, vec3 right, vec3 below) {
 #ifdef RAMP
   float level = texel.r / max(texel.a, 1e-3);
   vec2 slope = abs(vec2(dFdx(level), dFdy(level)));
   float off = min(min(abs(level - 0.25), abs(level - 0.5)), abs(level - 0.75));
-  // A steep one is a fold or the border of the tissue.
+  // Where the level is steep there is a fold or the border of the tissue, and no line.
   return texel.a > 0.0 && all(lessThan(slope, vec2(0.3))) ? clamp(1.1 - off / max(length(slope), 1e-4), 0.0, 1.0) : 0.0;
 #elif defined(VOXELS)
   vec4 to_right = weights_at(right), to_below = weights_at(below);
@@ -69,7 +69,7 @@ void main() {
   uint right = label_at_place(p_right), below = label_at_place(p_below);
   bool border = right != label || below != label;
   if (u_outline) {
-    // The border belongs to whichever side is seen.
+    // The border is drawn in the colour of the visible side.
     if (!seen && border) look = look_of((look_of(right).a & 7u) != 0u ? right : below);
     alpha = border && (look.a & 7u) != 0u ? 1.0 : seen ? 0.10 : 0.0;
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Turns the position that each pixel shows into the colour of the skin weights there.
+// Computes the colour of the skin weights at the rest position of each pixel.
 #include "weights.glsl"
 
 uniform usampler2D u_place;
 uniform float u_place_step;
-uniform vec3 u_shift;  // of what is read voxel by voxel
+uniform vec3 u_shift;  // offset at which single voxels are read, padded voxels
 layout(location = 0) out vec4 colour;
 void main() {
   uvec4 place = texelFetch(u_place, ivec2(gl_FragCoord.xy), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the skin weights as they are shown. RAMP: the weight of the active bone by a colour ramp; FILTERED: filtered
-// colours; VOXELS: the colour of each voxel. The weights lie in ATLASES textures (atlases.glsl).
+// Reads the colours of skin weights. RAMP: the weight of the active bone as a colour ramp; FILTERED: filtered colours;
+// VOXELS: the colours of single voxels. The weights are stored in ATLASES textures (atlases.glsl).
 uniform sampler3D u_weights0;
 #if ATLASES > 1
 uniform sampler3D u_weights1;
@@ -52,7 +52,7 @@ vec3 weight_ramp(float weight) {
   return colour;
 }
 
-// The texel at a position in padded coordinates, filtered or of the voxel; zeros in air.
+// Returns the texel at a position in padded coordinates, filtered or of the single voxel; zeros in air.
 vec4 weights_at(vec3 p) {
   ivec3 block = clamp(ivec3(floor(p / float(BLOCK))), ivec3(0), u_weight_blocks - 1);
   uvec4 entry = texelFetch(u_weight_index, block, 0);
@@ -66,9 +66,10 @@ vec4 weights_at(vec3 p) {
   return entry.w == 0u ? vec4(0.0) : texel;
 }
 
-// The last channel is 0 without tissue, else the range between contours of the active bone's weight, 1 to 4, in 255.
+// Returns the colour of a texel. Alpha is 0 without tissue, else n / 255 for the range n, 1 to 4, between the contours
+// of the active bone's weight.
 vec4 weight_colour(vec4 texel) {
-  vec3 read = texel.rgb / max(texel.a, 1e-3);  // what is filtered counts tissue alone
+  vec3 read = texel.rgb / max(texel.a, 1e-3);  // filtered values count tissue alone
 #ifdef RAMP
   vec3 colour = read.g > 0.5 ? EXACT_ZERO : read.b > 0.5 ? EXACT_ONE : weight_ramp(read.r);
   float range = 1.0 + step(0.25, read.r) + step(0.5, read.r) + step(0.75, read.r);
@@ -77,6 +78,6 @@ vec4 weight_colour(vec4 texel) {
   const float range = 1.0;
 #endif
   if (u_weight_region != 0 && texel.a > 0.75)
-    colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // outside of it
+    colour = mix(vec3(dot(colour, vec3(0.3, 0.6, 0.1))), colour, 0.35) * 0.55;  // dims colours outside the region
   return texel.a < 0.004 ? vec4(0.0) : vec4(colour, range / 255.0);
 }

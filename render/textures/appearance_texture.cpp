@@ -21,7 +21,7 @@ bool is_seen(const LabelLook& look, Display display) {
   return look.visible && (display != Display::Tissue || look.opacity > 0);
 }
 
-// The last layer of each label, 0 where there is only one.
+// Returns, for each label, the index of the last layer that contains it.
 std::vector<int> last_layers(const LabelLooks& looks, Display display, const std::vector<float>& exposure) {
   std::vector<int> layer(kLabels, 0);
   const size_t count = std::min(looks.size(), kLabels);
@@ -29,7 +29,7 @@ std::vector<int> last_layers(const LabelLooks& looks, Display display, const std
     for (size_t label = 1; label < count; ++label) layer[label] = looks[label].bone;
   if (display != Display::Tissue) return layer;
 
-  std::vector<size_t> clear;  // those that let see through, the clearest and outermost first
+  std::vector<size_t> clear;  // transparent labels, sorted from transparent to opaque, and outer before inner ones
   bool any_opaque = false;
   for (size_t label = 1; label < count; ++label) {
     if (!is_seen(looks[label], display)) continue;
@@ -40,7 +40,8 @@ std::vector<int> last_layers(const LabelLooks& looks, Display display, const std
     if (looks[a].opacity != looks[b].opacity) return looks[a].opacity < looks[b].opacity;
     return exposure[a] > exposure[b];
   });
-  // One layer each, or as evenly shared as the limit allows.
+  // Each transparent label gets its own layer. If there are more labels than layers, the labels are spread over the
+  // layers evenly.
   const size_t room = kMostLayers - (any_opaque ? 1 : 0), used = std::min(room, clear.size());
   for (size_t i = 0; i < clear.size(); ++i) layer[clear[i]] = static_cast<int>(i * used / clear.size());
   for (size_t label = 1; label < count; ++label)

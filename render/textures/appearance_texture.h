@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How labels are drawn, as a table for the shaders, and the layers in which they are drawn.
+// The appearance of labels as a texture for the shaders, and the layers in which labels are drawn.
 //
-// A picture is made of layers, each the outer surface of a set of labels that lies within the set before it: the first
-// holds every visible label, the next ones those left when the outer, more transparent ones are peeled off. Solid has
-// one layer, X-ray two (the ghost, what stays solid), Tissue as many as its labels ask for, kMostLayers at most. A
-// label is drawn with its own opacity in the last layer that has it.
+// A picture consists of layers. Each layer is the outer surface of a set of labels, and each set contains the next one.
+// The first set contains every visible label; each next set leaves out the outer, more transparent labels. Solid has
+// one layer, X-ray two (the ghost, and the tissues that stay solid), and Tissue as many as its labels need, at most
+// kMostLayers. A label is drawn with its own opacity in the last layer that contains it.
 #pragma once
 
 #include <vector>
@@ -19,11 +19,12 @@ inline constexpr int kMostLayers = 5;
 
 class LooksTexture {
  public:
-  // exposure  by label, 65536: the share of its voxels that touch air, which tells outer tissues from inner ones
+  //   exposure  for each of the 65536 labels: the share of its voxels that touch air, which distinguishes outer from
+  //             inner tissues
   LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
 
-  // 256 x 256 texels RGBA16UI, label = x + 256 y: colour in 1/255; then 1 + its last layer in bits 0 to 2 (0:
-  // invisible), opacity in 1/255 above.
+  // Returns a texture of 256 x 256 texels in RGBA16UI; label = x + 256 y. RGB is the label's colour in 1/255. Alpha has
+  // 1 + the label's last layer in bits 0 to 2 (0: invisible), and the opacity in 1/255 in the bits above.
   const gl::Texture& texture() const { return texture_; }
   const std::vector<LabelSet>& layers() const { return layers_; }
 

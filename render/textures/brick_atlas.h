@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a volume of any size lies in textures of bounded size: only what holds tissue is kept.
+// The layout of a volume of any size in textures of limited size: only regions with tissue are stored.
 //
-// The grid is padded by kPad voxels on each side and cut into blocks of 32^3 voxels; a block with tissue in or near it
-// gets a slot of 36^3 texels (its voxels and an apron of 2 on each side, so that filtered reads and gradients never
-// leave the slot) in an atlas, a 3D texture within the driver's limit. An index texture, one texel a block, tells the
-// slot. Where one atlas is too small there are up to kMostAtlases; where these are too small, the volume is drawn
-// coarser.
+// The grid is padded by kPad voxels on each side and divided into blocks of 32^3 voxels. A block with tissue in or near
+// it gets a slot of 36^3 texels in an atlas. An atlas is a 3D texture within the size limit of the driver. A slot has
+// the block's voxels and an apron of 2 voxels on each side, so that filtered reads and gradients never leave the slot.
+// An index texture, with one texel per block, stores the position of the block's slot. If one atlas is too small, there
+// are up to kMostAtlases. If these are too small, the volume is drawn at a coarser resolution.
 //
-// The blocks are cut into bricks of 4^3 voxels: what a ray skips, and what its entry into the body is found by.
+// Blocks are divided into bricks of 4^3 voxels. Rays skip empty bricks, and the hull of a body is made of bricks.
 //
 // Padded coordinates: voxel v covers [v + kPad, v + kPad + 1), its centre at v + kPad + 0.5.
 #pragma once
@@ -26,14 +26,14 @@ inline constexpr int kBrick = 4;
 inline constexpr int kBlock = 32;
 inline constexpr int kApron = 2;
 inline constexpr int kSlot = kBlock + 2 * kApron;
-inline constexpr int kBricksPerBlock = kBlock / kBrick;  // an axis
+inline constexpr int kBricksPerBlock = kBlock / kBrick;  // number of bricks per axis of a block
 inline constexpr int kMostAtlases = 4;
 
 struct BlockLayout {
-  glm::ivec3 blocks{0};            // #blocks an axis
-  std::vector<int> slot_of_block;  // -1: nothing there
+  glm::ivec3 blocks{0};            // number of blocks per axis
+  std::vector<int> slot_of_block;  // slot of each block; -1: the block has no slot
   std::vector<glm::ivec3> block_of_slot;
-  glm::ivec3 slots{0};  // #slots an axis of one atlas
+  glm::ivec3 slots{0};  // number of slots per axis of one atlas
   int atlases = 0;
 
   glm::ivec3 bricks() const { return blocks * kBricksPerBlock; }
@@ -45,16 +45,17 @@ struct BlockLayout {
   }
   int slots_per_atlas() const { return slots.x * slots.y * slots.z; }
   int atlas_of(int slot) const { return slot / slots_per_atlas(); }
-  glm::ivec3 place_of(int slot) const;  // in its atlas, in slots
+  glm::ivec3 place_of(int slot) const;  // position of a slot in its atlas, in slots
 };
 
-// Blocks that hold tissue within kBrick voxels.
+// Returns the layout: each block that has tissue within kBrick voxels gets a slot.
 BlockLayout block_layout(const LabelVolume& volume);
 
-// Gives the slots places; false when they do not fit textures of that many texels an axis.
+// Arranges the slots in atlases. Returns false when they do not fit in textures with largest_texture texels per axis.
 bool place_slots(BlockLayout& layout, int largest_texture);
 
-// Every second voxel an axis: the label most frequent among 2^3, tissue before air.
+// Returns the volume at half its resolution: each voxel gets the most frequent tissue of 2^3 voxels, or air if more
+// than half of these voxels are air.
 LabelVolume halved(const LabelVolume& volume);
 
 }  // namespace limber::render

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The outer faces of the bricks in which rays can meet a body. They are drawn first: they give each pixel the place to
-// start from, and pixels beside the body no work at all.
+// The hull of a body: the outer faces of the bricks in which rays can hit the body. The hull is drawn first and gives
+// each ray its start. Pixels that it does not cover cost no work.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace limber::render {
 class Hull {
  public:
   struct Faces {
-    std::vector<glm::u16vec4> corners;   // in bricks, the last 1
-    std::vector<std::uint32_t> indices;  // two triangles a face, counter-clockwise from outside
+    std::vector<glm::u16vec4> corners;   // position in bricks; the last component is 1
+    std::vector<std::uint32_t> indices;  // two triangles per face, counter-clockwise when seen from outside
   };
 
   Hull();
 
-  // Padded coordinates (brick_atlas.h) of a corner: offset + scale corner.
+  // Uploads the faces. The padded coordinates (brick_atlas.h) of a corner are offset + scale * corner.
   void upload(const Faces& faces, double scale, const glm::dvec3& offset);
   void draw() const;
 
   bool empty() const { return faces_ == 0; }
   std::int64_t face_count() const { return faces_; }
-  const glm::vec3& low() const { return low_; }  // padded coordinates
+  const glm::vec3& low() const { return low_; }  // lowest corner of the hull's box, padded coordinates
   const glm::vec3& high() const { return high_; }
   const glm::dmat4& padded_from_corner() const { return padded_from_corner_; }
 

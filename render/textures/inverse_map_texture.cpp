@@ -19,8 +19,8 @@ constexpr Format3D kNodes = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, true};
 constexpr Format3D kApart = {GL_R8_SNORM, GL_RED, GL_BYTE, true};
 constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
 
-// The layers that differ from those that are there, in runs.
-//   before  what is there, of the same size; null: nothing
+// Uploads the slices (z layers) that differ from the uploaded ones; consecutive slices are uploaded together.
+//   before  the texels that are on the graphics card, of the same size; null: none
 template <class Texel>
 void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const std::vector<Texel>& texels,
            const std::vector<Texel>* before) {
@@ -40,8 +40,9 @@ void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& f
   }
 }
 
-// Maps grow and shrink from pose to pose. Room is kept, and is no power of two: a software driver translates its
-// programs anew when an axis becomes one, which takes as long as many pictures.
+// Returns the size to allocate for a texture. The maps grow and shrink from pose to pose, so textures never shrink.
+// Sizes that are powers of two are avoided: when an axis becomes a power of two, a software driver compiles its
+// programs again, which takes as long as drawing many pictures.
 glm::ivec3 roomier(glm::ivec3 room, const glm::ivec3& size, int largest_texture) {
   for (int axis = 0; axis < 3; ++axis) {
     room[axis] = std::max(room[axis], size[axis]);
@@ -74,7 +75,7 @@ void PosedTexture::upload(const std::shared_ptr<const PreviewMap>& map, int larg
     room_ = room;
     map_ = nullptr;
   }
-  const std::shared_ptr<const PreviewMap> last = std::exchange(map_, nullptr);  // until this has ended
+  const std::shared_ptr<const PreviewMap> last = std::exchange(map_, nullptr);  // stays null if the upload fails
   const PreviewMap* before = last && last->size == map->size ? last.get() : nullptr;
   size_ = map->size;
   write(nodes_, size_, kNodes, map->nodes, before ? &before->nodes : nullptr);
@@ -102,7 +103,7 @@ int PosedTexture::bind(const VolumeTexture& volume, gl::Program& program, int fi
 void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const VolumeTexture& volume,
                        const VisibleField& field) {
   if (map_ == pointer && revision_ == field.revision()) return;
-  map_ = nullptr;  // until this has ended
+  map_ = nullptr;  // stays null if the update fails
   const PreviewMap& map = *pointer;
   const double halving = 1 << volume.halvings();
   const glm::vec3 scale(map.extent / halving / double(PreviewMap::kFullFraction)),
@@ -114,8 +115,8 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
     for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
       holds[i] = PreviewMap::kNothing;
       if (map.cubes[i] == PreviewMap::kNothing) continue;
-      // Beside a fold what is mirrored lies outside the nodes' box; elsewhere a piece of a ray is a little straighter
-      // than the map.
+      // Beside a fold, positions that are mirrored at the fold lie outside the box of the nodes. Elsewhere the margin
+      // allows for the pieces into which rays are divided, which are a little straighter than the map.
       const float margin = map.cubes[i] >= PreviewMap::kBroken ? float(map.step / halving) : 0.25f;
       const glm::vec3 low(map.reach[i].low), high(map.reach[i].high);
       if (field.may_be_met(low * scale + offset - margin, high * scale + offset + margin)) holds[i] = map.cubes[i];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A live preview's inverse map (core/deform/preview_map.h) on the card. A posed body is drawn in posed space: rays,
-// slices and shading read the map at a posed place and then the volume's own textures at the rest point it tells, so a
-// pose uploads the map alone, and of that the layers that have changed.
+// The inverse map of a posed body for its live preview (core/deform/preview_map.h) on the graphics card. A posed body
+// is drawn in posed space: rays, slices and shading convert a posed position to a rest position by the map, and then
+// read the volume's own textures there. A new pose therefore uploads only the map, and only those of its slices that
+// have changed.
 #pragma once
 
 #include <array>
@@ -22,37 +23,41 @@ class PosedTexture {
  public:
   PosedTexture();
 
-  // Throws Error when the driver has no room for it.
+  // Uploads the slices (z layers) that changed. Throws Error when the driver has no memory for the map.
   void upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture);
   const std::shared_ptr<const PreviewMap>& map() const { return map_; }
 
-  // The uniforms of shaders/posed.glsl; returns the next free unit.
+  // Sets the uniforms that shaders/posed.glsl declares, with textures on the units from `first` on. Returns the next
+  // free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
  private:
   std::shared_ptr<const PreviewMap> map_;
   gl::Texture nodes_, apart_, cubes_;
-  glm::ivec3 size_{0}, room_{0};  // texels in use, and there
+  glm::ivec3 size_{0}, room_{0};  // texels per axis: those in use, and those allocated
 };
 
-// Where rays in posed space can meet a field's set: the cubes of a map that lead near it, and the hull around them.
+// The region of posed space where rays can hit the labels of a field: the cubes of a map whose rest positions are near
+// these labels, and the hull around these cubes.
 class PosedHull {
  public:
   PosedHull() : cubes_(gl::Texture::create()) {}
 
-  // As needed. Throws Error when the driver has no room for it.
+  // Computes cubes and hull again if the map or the field has changed. Throws Error when the driver has no memory for
+  // them.
   void update(const std::shared_ptr<const PreviewMap>& map, const VolumeTexture& volume, const VisibleField& field);
   const Hull& hull() const { return hull_; }
-  const gl::Texture& cubes() const { return cubes_; }  // as PreviewMap::cubes, kNothing where the set is far
+  // Returns the map's cubes (PreviewMap::cubes) as a texture; cubes far from the field's labels are kNothing.
+  const gl::Texture& cubes() const { return cubes_; }
 
  private:
   Hull hull_;
   Hull::Faces faces_;
   gl::Texture cubes_;
-  std::array<std::vector<std::uint8_t>, 2> holds_;  // what cubes_ shows; what it is to show
+  std::array<std::vector<std::uint8_t>, 2> holds_;  // contents of cubes_: those uploaded, and those of the next upload
   glm::ivec3 room_{0}, holds_size_{0};
   std::shared_ptr<const PreviewMap> map_;
-  int revision_ = 0;  // of the field
+  int revision_ = 0;  // revision of the field for which the hull was computed
 };
 
 }  // namespace limber::render

@@ -17,17 +17,18 @@ namespace {
 
 constexpr Format3D kField = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, true};
 
-constexpr int kReach = 2;                        // voxels that two blurs carry
-constexpr int kRead = kSlot + 2 * kReach;        // voxels an axis that a slot's field depends on
-constexpr int kRaised = 230;                     // gives a voxel that would vanish its size back
-constexpr int kFarthest = kFirstFieldValue - 1;  // bricks that a texel can tell
+constexpr int kReach = 2;                  // distance over which the two blurs read, voxels
+constexpr int kRead = kSlot + 2 * kReach;  // number of voxels per axis on which the field of a slot depends
+// Value of a voxel that the blur would make vanish. With this value the voxel keeps its size.
+constexpr int kRaised = 230;
+constexpr int kFarthest = kFirstFieldValue - 1;  // largest distance that a texel can store, bricks
 constexpr int kHalf = kBrick / 2;
 constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
 using Slot = std::vector<std::uint8_t>;
 
-// Whether voxels belong to the set, over a slot and what its blur reads; `labels` get what was met.
-// Returns how many belong.
+// Sets `member` to 1 for the voxels of the set, in a slot and in the voxels around it that its blur reads. Returns the
+// number of these voxels. If `labels` is not null, it receives all labels in this region.
 int gather(const LabelVolume& volume, const glm::ivec3& block, const LabelSet& set, Slot& member,
            std::vector<Label>* labels) {
   const glm::ivec3 low = block * kBlock - kApron - kReach - kPad, size = volume.grid.size;
@@ -51,7 +52,8 @@ int gather(const LabelVolume& volume, const glm::ivec3& block, const LabelSet& s
   return count;
 }
 
-// [1 2 1]/4 twice is [1 4 6 4 1]/16: sums of whole numbers, up to 16 an axis, so nothing is rounded before the end.
+// Blurs a line by [1 4 6 4 1], which is 16 times [1 2 1]/4 applied twice. The sums are whole numbers, at most 16 times
+// larger per axis, so nothing is rounded before the end.
 template <class In, class Out>
 void blur_line(const In* in, std::ptrdiff_t stride, Out* out, int count) {
   for (int i = 0; i < count; ++i) {
@@ -83,7 +85,8 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
       }
     }
 
-  // A bump on something thick may go; what stands alone must stay.
+  // A voxel that the blur made vanish is raised only if no neighbour is inside the surface: a bump on a thick body may
+  // vanish, but a thin sheet or thread may not.
   const auto stands_alone = [&](int at) {
     for (const int step : {1, kSlot, kSlot * kSlot})
       for (const int next : {at - step, at + step})
@@ -95,11 +98,13 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
   for (const int at : swallowed) field[static_cast<size_t>(at)] = kRaised;
 }
 
-// What a brick of a slot holds.
+// What rays need to know of a brick: whether it has a voxel with a blurred value above 0, whether it belongs to the
+// hull, and its mean value.
 struct BrickFacts {
   bool touched, hull;
   std::uint8_t mean;
-  std::array<std::uint8_t, 8> met;  // by half, x fastest: whether a filtered read there can reach the surface
+  // For each half brick, x fastest: whether a filtered read in it can reach the surface.
+  std::array<std::uint8_t, 8> met;
 };
 BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
   const glm::ivec3 low = brick * kBrick + kApron;
@@ -125,8 +130,8 @@ BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
   return facts;
 }
 
-// Chebyshev distance to the nearest zero, in place, at most kFarthest: forward and backward over the 13 earlier
-// neighbours.
+// Computes in place, for each brick, the Chebyshev distance to the nearest brick with value 0, at most kFarthest
+// bricks. A forward and a backward sweep each compare with the 13 neighbours visited before.
 void spread_distance(std::vector<std::uint8_t>& distance, const glm::ivec3& size) {
   const std::ptrdiff_t row = size.x, layer = row * size.y;
   const auto sweep = [&](int sign) {
@@ -155,7 +160,8 @@ void spread_distance(std::vector<std::uint8_t>& distance, const glm::ivec3& size
   sweep(-1);
 }
 
-// The distances of a slot's bricks written into its empty texels. The apron keeps 0: rays do not step there.
+// Writes the distances of a slot's bricks into its empty texels. The texels of the apron keep 0, since rays do not step
+// there.
 void write_distances(Slot& field, const BlockLayout& layout, const glm::ivec3& block,
                      const std::vector<std::uint8_t>& distance) {
   for (int z = 0; z < kBlock; ++z)
@@ -169,7 +175,8 @@ void write_distances(Slot& field, const BlockLayout& layout, const glm::ivec3& b
       }
 }
 
-// Empty bricks that the outside reaches through empty bricks: a hull's faces are theirs.
+// Returns the empty bricks that are connected to the outside. The faces of the hull lie between these bricks and those
+// of the hull.
 std::vector<std::uint8_t> outside_of(const std::vector<std::uint8_t>& hull, const glm::ivec3& size) {
   std::vector<std::uint8_t> outside(hull.size());
   std::vector<glm::ivec3> open;
@@ -237,7 +244,8 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     met_.assign(brick_count * 8, 0);
   }
 
-  // Blurred anew: the slots that depend on a changed label. Their bricks are touched by the set or not.
+  // Blurs the slots again that depend on a changed label.
+  //   touched  for each brick: whether it has a voxel with a blurred value above 0
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);
   for (size_t b = 0; b < brick_count; ++b) touched[b] = distance_[b] == 0;
@@ -272,7 +280,8 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
       if (first || changes_any(labels_of_slot_[s], set_, set)) compute(s, true);
   });
 
-  // Distances may have changed anywhere: a shorter one must be written, a longer one may be.
+  // Distances may have changed anywhere. A slot in which a distance became shorter must be written again, since rays
+  // would skip too far. Where distances only became longer, the old ones remain valid.
   std::vector<std::uint8_t> distance(brick_count);
   for (size_t b = 0; b < brick_count; ++b) distance[b] = touched[b] ? 0 : kFarthest;
   spread_distance(distance, bricks);
@@ -322,7 +331,8 @@ void VisibleField::build_hull(const BlockLayout& layout) {
     return outside[static_cast<size_t>(layout.brick_index(b))] != 0;
   };
 
-  // Lattice corners are shared between faces, so that no gap opens between them; two layers of the lattice are at hand.
+  // Faces share their corners, so that no gaps open between them. Only two layers of the corners' lattice are kept in
+  // memory.
   Hull::Faces faces;
   const auto lattice_layer = static_cast<size_t>(size.x + 1) * (size.y + 1);
   constexpr std::uint32_t kNone = ~0u;
@@ -349,7 +359,7 @@ void VisibleField::build_hull(const BlockLayout& layout) {
           const int u = (axis + 1) % 3, v = (axis + 2) % 3;
           glm::ivec3 c[4] = {brick, brick, brick, brick};
           for (glm::ivec3& each : c) each[axis] += up;
-          // Counter-clockwise from outside.
+          // The corners are in counter-clockwise order when seen from outside.
           c[up ? 1 : 3][u] += 1, c[2][u] += 1, c[2][v] += 1, c[up ? 3 : 1][v] += 1;
           const std::uint32_t ids[4] = {corner(c[0]), corner(c[1]), corner(c[2]), corner(c[3])};
           for (const int i : {0, 1, 2, 0, 2, 3}) faces.indices.push_back(ids[i]);
@@ -362,8 +372,8 @@ void VisibleField::build_hull(const BlockLayout& layout) {
   hull_.upload(faces, kBrick, glm::dvec3(0));
 }
 
-// The share of each brick that belongs to the set, once more blurred: how closed in a place is, for soft shadows in
-// creases.
+// Builds the occupancy texture: the share of each brick that belongs to the set, blurred once more. It tells how
+// enclosed a position is, which is needed for soft shadows in creases.
 void VisibleField::build_occupancy(const VolumeTexture& volume) {
   const BlockLayout& layout = volume.layout();
   const glm::ivec3 size = layout.bricks();

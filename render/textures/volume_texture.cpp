@@ -16,7 +16,7 @@ constexpr int kBlockShift = 5;
 constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
 
-// The labels of a slot, its apron included; air outside the grid.
+// Collects the labels of a slot, including its apron. Voxels outside the grid are air.
 void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Label>& slot) {
   const glm::ivec3 low = block * kBlock - kApron - kPad, size = volume.grid.size;
   slot.assign(static_cast<size_t>(kSlot) * kSlot * kSlot, 0);
@@ -29,7 +29,7 @@ void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Labe
     }
 }
 
-// How much of each tissue touches air along the rows.
+// Estimates, for each tissue, the share of its voxels that touch air along x. It examines every second voxel.
 class Exposure {
  public:
   void count(const std::vector<Label>& slot) {
@@ -136,7 +136,7 @@ int VolumeTexture::bind(gl::Program& program, int first) const {
 }
 
 std::string atlas_defines(int atlases) {
-  static_assert(kBlock == 1 << kBlockShift && kMostAtlases == 4);  // as shaders/atlases.glsl has it
+  static_assert(kBlock == 1 << kBlockShift && kMostAtlases == 4);  // shaders/atlases.glsl relies on these values
   return gl::define("ATLASES", atlases) + gl::define("SLOT", kSlot) + gl::define("APRON", kApron) +
          gl::define("BLOCK", kBlock) + gl::define("BLOCK_SHIFT", kBlockShift);
 }

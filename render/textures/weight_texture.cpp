@@ -20,9 +20,10 @@ namespace limber::render {
 namespace {
 
 constexpr Format3D kTexels = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, true};
-constexpr std::size_t kRemembered = 64;  // changes: more than views miss
+// Number of latest uploads whose boxes are remembered. A view that has missed more uploads is recoloured as a whole.
+constexpr std::size_t kRemembered = 64;
 
-// The texel of an influence.
+// Computes the texel that shows an influence.
 class Texels {
  public:
   explicit Texels(const ShownWeights& shown) : shown_(shown) {
@@ -47,7 +48,7 @@ class Texels {
   glm::u8vec4 of_active(const Influence& influence) const {
     int weight = 0;
     for (int i = 0; i < 4; ++i)
-      if (influence.bone[i] == shown_.bone) weight += influence.weight[i];  // unused places have none
+      if (influence.bone[i] == shown_.bone) weight += influence.weight[i];  // unused entries have weight 0
     return {(weight * 255 + kFullWeight / 2) / kFullWeight, weight == 0 ? 255 : 0, weight == kFullWeight ? 255 : 0,
             255};
   }
@@ -69,7 +70,7 @@ Box box_of(const TissueVoxels::Brick& brick, int halvings) {
   return {(brick.corner >> halvings) + kPad, (last >> halvings) + kPad + 1};
 }
 Box grown(const Box& box) { return {box.low - 1, box.high + 1}; }
-// With its apron.
+// Returns the box of a block, including its apron.
 Box box_of_block(const glm::ivec3& block) { return {block * kBlock - kApron, (block + 1) * kBlock + kApron}; }
 
 std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue,
@@ -77,7 +78,8 @@ std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue
   std::vector<Box> boxes(layout.block_of_slot.size());
   for (std::size_t b = 0; b < changed.size(); ++b) {
     if (!changed[b]) continue;
-    const Box brick = grown(box_of(tissue.bricks()[b], halvings));  // air beside it takes its colours
+    // The box is grown by one voxel, since air beside a brick gets the brick's colours.
+    const Box brick = grown(box_of(tissue.bricks()[b], halvings));
     const glm::ivec3 first = glm::max((brick.low - kApron) >> 5, glm::ivec3(0)),
                      last = glm::min((brick.high - 1 + kApron) >> 5, layout.blocks - 1);
     for (int z = first.z; z <= last.z; ++z)
@@ -95,8 +97,8 @@ std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue
 }
 static_assert(kBlock == 1 << 5);
 
-// Air beside tissue takes the mean of the tissue beside it, axis by axis: what is read a little outside, or filtered
-// there, is then what lies inside.
+// Gives air voxels beside tissue the mean colour of the tissue beside them, axis by axis. The tissue's colour is then
+// also found by texture reads a little outside the tissue, and by filtered reads.
 class SpreadIntoAir {
  public:
   SpreadIntoAir(std::vector<glm::u8vec4>& texels, const glm::ivec3& size) : texels_(texels) {
@@ -120,12 +122,14 @@ class SpreadIntoAir {
   }
 
  private:
-  // A row whose neighbours lie so far before and behind; 0: there are none.
+  // Examines a row of texels.
+  //   back, on  offsets to the neighbour before and to the neighbour behind; 0: there is none
   void look_at(std::ptrdiff_t row, int count, std::ptrdiff_t back, std::ptrdiff_t on) {
     const glm::u8vec4* texel = texels_.data() + row;
     for (int x = 0; x < count; ++x, ++texel) {
       if (texel->a != 0) continue;
-      const glm::u8vec4 before = texel[back], after = texel[on];  // without a neighbour the texel itself, which is air
+      // A missing neighbour is replaced by the texel itself, which is air.
+      const glm::u8vec4 before = texel[back], after = texel[on];
       if ((before.a | after.a) == 0) continue;
       found_.push_back({row + x, before.a == 0  ? after
                                  : after.a == 0 ? before
@@ -137,7 +141,8 @@ class SpreadIntoAir {
   std::vector<std::pair<std::ptrdiff_t, glm::u8vec4>> found_;
 };
 
-// Where the volume is drawn coarser, a texel takes any of its tissue voxels.
+// Computes the texels of a box; air has 0. If the volume is drawn at a coarser resolution, a texel shows one of the
+// tissue voxels that it covers.
 std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& shown, const Texels& texels,
                                           int halvings) {
   const glm::ivec3 size = box.size();
@@ -180,7 +185,7 @@ std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, co
   return result;
 }
 
-// Fills in the texels.
+// Returns `parts` with their texels computed.
 std::vector<Part> worked_out(std::vector<Part> parts, const ShownWeights& shown, int halvings) {
   const Texels texels(shown);
   parallel_for(std::ssize(parts), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -321,7 +326,7 @@ void WeightTexture::take_over(const VolumeTexture& volume, UploadTime* time) {
       return;
     std::vector<Part> parts = lot_.get();
     if (time) time->used = true;
-    // What was changed meanwhile waits on.
+    // Slots that were changed in the meantime keep waiting, since their computed texels are out of date.
     std::erase_if(parts, [this](const Part& part) { return edited_[static_cast<std::size_t>(part.slot)] > lot_edit_; });
     for (const Part& part : parts) waiting_[static_cast<std::size_t>(part.slot)] = {};
     waiting_count_ -= static_cast<int>(parts.size());
@@ -354,19 +359,19 @@ void WeightTexture::upload(const VolumeTexture& volume, const std::vector<Part>&
   if (more_present && !upload_index(index_, layout, present_))
     throw Error("the weights cannot be shown", "skin weights", "show the tissues");
   ++changes_;
-  last_changes_.push_back(grown(whole));  // what is filtered reaches further
+  last_changes_.push_back(grown(whole));  // grown by one texel, since filtered reads reach one texel further
   if (last_changes_.size() > kRemembered) last_changes_.pop_front();
 }
 
 void WeightTexture::update(const VolumeTexture& volume, const ShownWeights& shown, UploadTime* time) {
   texels_uploaded_ = 0;
   ShownWeights now = shown;
-  now.contours = true;  // drawn, not uploaded
+  now.contours = true;  // contours do not affect the texels
   try {
     if (shown_ != now) change_to(volume, now);
     take_over(volume, time);
   } catch (...) {
-    shown_.reset();  // all anew
+    shown_.reset();  // the next update uploads everything again
     throw;
   }
 }

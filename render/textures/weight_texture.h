@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is shown of skin weights, on the card: four bytes a voxel in atlases laid out like the volume's labels
-// (brick_atlas.h), so that a place is found by the labels' own index, and filtered reads go smoothly from voxel to
+// The shown skin weights on the graphics card: four bytes per voxel in atlases with the same layout as the volume's
+// labels (brick_atlas.h). Positions are therefore found in the same way, and filtered reads are smooth from voxel to
 // voxel.
 //
-// A texel holds what the display asks for, worked out here from the whole numbers: of the active bone its weight in 8
-// bits, whether that is exactly 0, whether it is exactly 1; else a colour. The last channel says that there is tissue,
-// so that what is filtered counts tissue alone: (weight, is 0, is 1, 1) or (colour, 1), and zeros in air; air beside
-// tissue is coloured like it, for what is read on the surface. Within a region all four are half of that, so that
-// outside of it colours can be dull while only the bricks of the region are uploaded. The arm of 646 912 tissue voxels
-// takes twice as much as its labels.
+// A texel has the values that the display needs, computed here from the exact weights. For the active bone these are
+// its weight in 8 bits, whether it is exactly 0, and whether it is exactly 1; for other displays they are a colour. The
+// last channel is 1 in tissue. Filtered values can be divided by it, so that only tissue counts. In tissue the texel is
+// (weight, is 0, is 1, 1) or (colour, 1); in air it is zero. Air beside tissue is coloured like the tissue, for reads
+// at the surface. Within a region all four channels are halved. Colours outside the region can then be dimmed although
+// only the bricks of the region are uploaded. The arm of 646 912 tissue voxels takes twice as much memory as its
+// labels.
 //
-// Weights share the bricks that are equal in both, and only bricks that differ from what is there are uploaded; another
-// active bone uploads the bricks in which the old or the new one occurs.
+// Old and new weights share the bricks that are equal, and only bricks that differ are uploaded. If another bone
+// becomes active, the bricks in which the old or the new active bone has weight are uploaded.
 //
-// A change of little, as a brush makes it, is there when update() returns. Of more the slots wait in a line: their
-// texels are worked out beside, some slots at a time, from the newest weights, and each update() takes over what is
-// ready as long as it has time. The latest change comes first, and of it what a slice cuts. A slot that waits shows
-// what was there before, or the tissue where its old texels would mean something else (another display, other
-// swatches).
+// A small change, such as a brush makes, is uploaded before update() returns. The slots of a larger change wait: their
+// texels are computed on another thread, some slots at a time, from the newest weights, and each update() uploads
+// finished slots as long as it has time. The latest change comes first, and within it the slots that a slice cuts. A
+// waiting slot shows its old weights. If its old texels have another meaning (another display, other swatches), the
+// tissue's own colours are shown there.
 #pragma once
 
 #include <array>
@@ -36,12 +37,12 @@
 
 namespace limber::render {
 
-// How a display is read: as a ramp of filtered weights, filtered colours, or the colours of voxels. Programs are made
-// for each, since a software driver follows every branch.
+// How the shaders read a display: as a ramp of filtered weights, as filtered colours, or as the colours of single
+// voxels. Each reading has its own shader program, since a software driver executes every branch.
 enum class WeightReading { Ramp, Filtered, Voxels };
 WeightReading reading_of(WeightDisplay display);
 
-// Padded coordinates, half open.
+// A box [low, high) in padded coordinates.
 struct TexelBox {
   glm::ivec3 low{1 << 30}, high{-(1 << 30)};
   bool empty() const { return glm::any(glm::greaterThanEqual(low, high)); }
@@ -50,38 +51,43 @@ struct TexelBox {
   std::int64_t texels() const { return empty() ? 0 : std::int64_t{size().x} * size().y * size().z; }
 };
 
-// What all uploads of a frame may take together. At least one lot of slots is taken over, however long that lasts.
+// The time limit for all uploads of a frame together. At least one lot (a group of slots) is uploaded, however long
+// that takes.
 struct UploadTime {
   std::chrono::steady_clock::time_point until;
-  bool used = false;  // something was taken over
+  bool used = false;  // true: a lot has been uploaded in this frame
 };
 
 class WeightTexture {
  public:
-  static constexpr std::int64_t kAtOnce =
-      8 * kSlot * kSlot * kSlot;   // texels of a change of little: some 2 ms on two cores
-  static constexpr int kLot = 16;  // slots worked out together: 3 MB
+  // Largest number of texels of a change that is uploaded at once (some 2 ms on two cores).
+  static constexpr std::int64_t kAtOnce = 8 * kSlot * kSlot * kSlot;
+  static constexpr int kLot = 16;  // number of slots that are computed together: 3 MB
 
-  // Throws Error when the driver has no room for it.
+  // Throws Error when the driver has no memory for the texture.
   explicit WeightTexture(const VolumeTexture& volume);
 
-  // Without a time until all is there. Throws std::logic_error if weights or tissue are another volume's.
+  // Uploads changed weights: as many as `time` allows, or all if `time` is null. Throws std::logic_error if the weights
+  // or the tissue belong to another volume.
   void update(const VolumeTexture& volume, const ShownWeights& shown, UploadTime* time = nullptr);
   bool complete() const { return waiting_count_ == 0; }
-  // A slice shows this plane across an axis of padded coordinates.
+  // Makes the slots that a slice cuts come first. The slice is the plane at position `at` of an axis, in padded
+  // coordinates.
   void prefer(int axis, float at) { cuts_[static_cast<std::size_t>(axis)] = at; }
 
-  // How many changes there were, and the box in which those after the first `count` lie; nothing: it may be everywhere.
+  // changes() returns the number of uploads so far. changed_since() returns the box of all uploads after the first
+  // `count`; empty: the box is unknown, and changes may be anywhere.
   int changes() const { return changes_; }
   std::optional<TexelBox> changed_since(int count) const;
-  std::int64_t texels_uploaded() const { return texels_uploaded_; }  // by the last update
+  std::int64_t texels_uploaded() const { return texels_uploaded_; }  // number of texels that the last update uploaded
   std::int64_t bytes() const { return bytes_; }
 
   WeightReading reading() const { return reading_of(shown_->display); }
-  // The uniforms of shaders/weights.glsl; returns the next free unit.
+  // Sets the uniforms that shaders/weights.glsl declares, with textures on the units from `first` on. Returns the next
+  // free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
-  // What is to be uploaded of a slot, and its texels.
+  // A box to upload, which lies within one slot, and its texels.
   struct Part {
     int slot;
     TexelBox box;
@@ -98,17 +104,17 @@ class WeightTexture {
   void upload(const VolumeTexture& volume, const std::vector<Part>& parts);
 
   std::vector<gl::Texture> atlases_;
-  gl::Texture index_;                  // the volume's, of the slots that are there
-  std::optional<ShownWeights> shown_;  // what is there, or will be once nothing waits
-  int edits_ = 0;                      // how often it was another
+  gl::Texture index_;                  // same format as VolumeTexture::index; it has only slots that are present
+  std::optional<ShownWeights> shown_;  // the weights that are uploaded, or will be once no slot waits
+  int edits_ = 0;                      // number of times that shown_ has changed
 
-  // By slot.
-  std::vector<TexelBox> waiting_;      // what is not there yet
-  std::vector<int> edited_;            // the last edit that changed it
-  std::vector<std::uint8_t> present_;  // its texels mean what is shown
+  // These vectors have one entry for each slot.
+  std::vector<TexelBox> waiting_;      // the box that waits for its upload
+  std::vector<int> edited_;            // number of the last edit that changed the slot
+  std::vector<std::uint8_t> present_;  // whether the slot's texels were computed for the current display
   int waiting_count_ = 0;
   std::array<std::optional<float>, 3> cuts_;
-  std::future<std::vector<Part>> lot_;  // being worked out, as of edit lot_edit_
+  std::future<std::vector<Part>> lot_;  // the slots being computed, from the weights of edit lot_edit_
   int lot_edit_ = 0;
 
   int changes_ = 0;
@@ -116,7 +122,7 @@ class WeightTexture {
   std::int64_t texels_uploaded_ = 0, bytes_ = 0;
 };
 
-// The definitions that shaders/weights.glsl needs, those of atlas_defines() among them.
+// Returns the preprocessor definitions that shaders/weights.glsl needs, including those of atlas_defines().
 std::string weight_defines(int atlases, WeightReading reading);
 
 }  // namespace limber::render

@@ -163,7 +163,7 @@ class Samples:
         if not self.has_editor:
             return
         self.write("look.txt", "key Ctrl+Alt+Q\nwait 0.1\n")
-        self.write("keys.txt", 'key F3\ntype "import keys"\nkey Return\ntype keys.json\nkey Return\nwait-job\nexpect widget:dialog/Keymap\n')
+        self.write("keys.txt", 'key F3\ntype "import keymap"\nkey Return\ntype keys.json\nkey Return\nwait-job\nexpect widget:dialog/Keymap\n')
         self.write("keys.json", (ASSETS / "keymap.json").read_bytes())
         self.write("script.txt", 'move 300 200\nwheel "3D view/view" 2\nkey-down Shift\nkey-up Shift\ndrop rig.json\nwait-job\nresize 700 500\n'
                                  'type "a\u00e9"\nwait 0.1\nexpect workspace rig\n')

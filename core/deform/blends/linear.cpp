@@ -6,7 +6,7 @@ namespace limber {
 
 extern const BlendRule kLinearBlend;
 
-// A displacement holds the stretch of its bone already.
+// The displacement of a bone already contains its stretch, so one function serves for bones with and without stretch.
 const BlendRule kLinearBlend{
     .word = "lbs",
     .label = "LBS",

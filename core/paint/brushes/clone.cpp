@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Copies the weights around a place of the user's to where the stroke goes: the way from that place to where the stroke
-// began stays the same all along it.
+// Implements the brush that copies weights from the surroundings of a position that the user set. A voxel gets the
+// weights at a fixed offset: that from the stroke's first dab to the user's position.
 #include "core/paint/brush_rule.h"
 #include "core/paint/weights_nearby.h"
 
@@ -21,7 +21,7 @@ class CloneSide final : public BrushSide {
     shift_ = voxel_from_world_.linear * (dab.centre - from);
   }
 
-  // Nothing where the copied place is air.
+  // Computes the weights to copy. Returns false when there is air at the position to copy from.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     nearby_.add_between(glm::dvec3(at.voxel) - *shift_, target);
     return !target.empty();
@@ -31,7 +31,7 @@ class CloneSide final : public BrushSide {
   const BrushView view_;
   const WeightsNearby nearby_;
   const AffineTransform voxel_from_world_;
-  std::optional<glm::dvec3> shift_;  // voxels
+  std::optional<glm::dvec3> shift_;  // offset in voxels, from the position copied from to the painted voxel
 };
 
 }  // namespace

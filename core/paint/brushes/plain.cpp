@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The brushes that look at nothing but the painted bones' weight.
+// Implements the plain brushes, which compute a voxel's new weight only from its old weight of the painted bones.
 #include <algorithm>
 
 #include "core/paint/brush_rule.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The brushes that draw weights to the mean around, or away from it.
+// Implements the brushes that move weights towards the mean around a voxel (Smooth) or away from it (Sharpen).
 #include "core/paint/brush_rule.h"
 
 namespace limber {
 
 namespace {
 
-// Of the radius: the width of the curve that weights are drawn to the mean by.
+// Width of the Gaussian that weights the mean, as a share of the brush's radius.
 constexpr double kWidth = 0.45;
 
 class SmoothSide : public BrushSide {
@@ -32,7 +32,8 @@ class SharpenSide final : public SmoothSide {
  public:
   using SmoothSide::SmoothSide;
 
-  // As far again from the mean as it is.
+  // Computes the target 2 w - mean, where w are the voxel's own weights: it differs from w as much as the mean does, in
+  // the opposite direction. Negative weights are dropped.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     if (!SmoothSide::target_at(at, target)) return false;
     for (auto& [_, weight] : target) weight = -weight;

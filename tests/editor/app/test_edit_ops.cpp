@@ -190,7 +190,7 @@ std::vector<Proof> proofs_of_work() {
       {"resample.fem", "click Edit/Resample/FEM",
        [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
       // The worker takes its time, so that there is something to watch.
-      {"result.watch", "click \"Edit/Resample/Watch it settle\"",
+      {"result.watch", "click \"Edit/Resample/Watch the solve\"",
        [](Stage& s, const Seen&) { return s.editor().fem->watched == 0 && !s.editor().fem->solves.empty(); },
        Shows::Nothing, "key Ctrl+Return",
        [](Stage& s) {

@@ -208,7 +208,7 @@ TEST_CASE("preferences: keys are exported and imported as a file, a file that is
   test.play("click \"Edit/Change keys...\"\nclick dialog/Export...\n" + file +
             "expect error none\nclick \"Restore all\"");
   CHECK(test.editor->preferences.keys.empty());
-  test.play("click dialog/Import...\nkey Escape\nexpect \"text:No key has two meanings\"\nclick dialog/Import...\n" +
+  test.play("click dialog/Import...\nkey Escape\nexpect \"text:No key runs two commands\"\nclick dialog/Import...\n" +
             file + "expect error none\nexpect \"text:1 clash\"");
   CHECK(test.editor->preferences.keys == mine);
   std::ofstream(folder / "keys.json") << "{}";

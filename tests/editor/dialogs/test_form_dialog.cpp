@@ -23,12 +23,14 @@ TEST_CASE("form: what is typed goes into the first number, and a number out of r
        {},
        [&](Editor&, const std::vector<FormField>& fields) { taken = fields[1].value; }}));
   test.play(
-      "wait-idle\n type \"-5\"\n wait-idle\n expect \"text:From 1 to 100 fps.\"\n key Return\n wait-idle\n expect "
+      "wait-idle\n type \"-5\"\n wait-idle\n expect \"text:Enter a number from 1 to 100 fps.\"\n key Return\n "
+      "wait-idle\n expect "
       "dialog yes");
   CHECK(taken == 0);
   test.play("double-click First/value\n type \"101\"\n key Return\n wait-idle\n expect dialog yes");
   test.play(
-      "double-click Second/value\n type \"10\"\n wait-idle\n expect \"text:From 0 to 9.\"\n key Return\n double-click "
+      "double-click Second/value\n type \"10\"\n wait-idle\n expect \"text:Enter a number from 0 to 9.\"\n key "
+      "Return\n double-click "
       "Second/value\n type \"9\"\n key Return\n expect dialog yes");
   test.play("double-click First/value\n type \"30\"\n key Return\n key Return\n wait-idle\n expect dialog no");
   CHECK(taken == 30);
@@ -51,8 +53,8 @@ TEST_CASE(
   CHECK(told);
   test.play("drag dialog/preview 119 0\n wait-idle\n expect \"text:Frame 4 / 4\"");
   test.play(
-      "move \"Frame rate/value\"\n double-click \"Frame rate/value\"\n type \"-5\"\n wait-idle\n expect \"text:From 1 "
-      "to 1000 fps.\"\n key Return\n wait-idle\n expect dialog yes");
+      "move \"Frame rate/value\"\n double-click \"Frame rate/value\"\n type \"-5\"\n wait-idle\n expect "
+      "\"text:Enter a number from 1 to 1000 fps.\"\n key Return\n wait-idle\n expect dialog yes");
   CHECK(test.editor->document().clips.empty());
   test.play("double-click \"Frame rate/value\"\n type \"25\"\n key Return\n key Return\n wait-idle\n expect dialog no");
   CHECK(shown_clip(*test.editor)->rate == 25);

@@ -52,7 +52,7 @@ TEST_CASE("file browser: arrows, Tab, places, search and Escape work without a m
     expect name b
     key Ctrl+O
     type nothing
-    expect "text:No name holds"
+    expect "text:No name contains"
     key Escape
     expect dialog yes
     key Tab
@@ -117,9 +117,9 @@ TEST_CASE(
     click "File/Save as..."
     type there
     key Return
-    expect "text:there.limber is there already"
+    expect "text:there.limber already exists"
     key Return
-    expect "text:there.limber is there already"
+    expect "text:there.limber already exists"
     click "Keep it"
     key Escape
     expect dialog no
@@ -158,7 +158,7 @@ TEST_CASE("file browser: a folder of DICOM images is offered as one volume") {
     key Ctrl+O
     type scans
     key Return
-    expect "text:This folder holds DICOM images"
+    expect "text:This folder contains DICOM images"
     click "Open as one volume"
     wait-job
     expect volume no

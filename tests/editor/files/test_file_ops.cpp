@@ -248,9 +248,9 @@ std::vector<Proof> proofs_of_pages() {
        [](Stage& s, const Seen&) { return s.is("dialog", "yes") && s.is("text:User guide"); }},
       {"help.new", "click \"Help/What is new\"",
        [](Stage& s, const Seen&) { return s.is("dialog", "yes") && s.is("text:What is new"); }},
-      {"edit.export_keymap", "key F3\n type \"export keys\"\n key Return\n type mine\n key Return\n wait-job",
+      {"edit.export_keymap", "key F3\n type \"export keymap\"\n key Return\n type mine\n key Return\n wait-job",
        [](Stage& s, const Seen&) { return std::filesystem::exists(s.home / "mine.json"); }},
-      {"edit.import_keymap", "key F3\n type \"import keys\"\n key Return\n type other.json\n key Return\n wait-job",
+      {"edit.import_keymap", "key F3\n type \"import keymap\"\n key Return\n type other.json\n key Return\n wait-job",
        [](Stage& s, const Seen&) { return s.editor().keymap.find(*chord_from_text("Ctrl+F9"), {"global"}) != nullptr; },
        Shows::Nothing, "",
        [](Stage& s) {

@@ -123,7 +123,8 @@ TEST_CASE("opening: a rig that does not lie in the body comes in with the offer 
                  "\"\n wait-job\n wait-idle\n expect dialog no\n expect error none");
     CHECK((inside() > 0.6) == (std::string(answer) != "Leave it"));
   }
-  sitting.play("expect toast \"Skeleton placed, but no joint is sure\"\n key Ctrl+Z\n expect edit \"Import far.json\"");
+  sitting.play(
+      "expect toast \"Skeleton placed, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import far.json\"");
 }
 
 TEST_CASE("opening: a damaged file is one error message, and the open project stays as it is") {

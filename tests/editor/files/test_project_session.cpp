@@ -87,7 +87,7 @@ TEST_CASE(
     create_project(project, home / "deep.limber", writer);
   }
   Sitting sitting(home.folder.path(), {home / "deep.limber"});
-  sitting.play("expect name deep.limber\n expect toast \"Views and tools begin anew\"");
+  sitting.play("expect name deep.limber\n expect toast \"Views and tools were reset\"");
   CHECK(sitting.editor().document().volume != nullptr);
 }
 

@@ -249,7 +249,7 @@ TEST_CASE(
   type("Bone/Turn, \u00b0 Y", "30");
   const Bone& upper = test.editor->document().armature->bones[0];
   CHECK(test.degrees(0, rest_axes(upper)[1]) == doctest::Approx(30));
-  type("Bone/Place, mm Z", "-7");
+  type("Bone/Offset, mm Z", "-7");
   CHECK(test.pose().root_translation.z == doctest::Approx(-7));
   CHECK(test.last_edit() == "Move body");
 
@@ -340,7 +340,7 @@ TEST_CASE(
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(glm::degrees(-1.0)));
   // Straight it goes no further back, and the status line says why.
   test.play(
-      "move \"3D view/view\"\n key R\n key X\n key -\n key 6\n key 0\n wait-idle\n expect \"text:Held by the limit of "
+      "move \"3D view/view\"\n key R\n key X\n key -\n key 6\n key 0\n wait-idle\n expect \"text:At the joint limit of "
       "Fore (0\u00b0 to 150\u00b0)\"\n expect \"text:Flexion 0.0\u00b0 of 150\u00b0\"");
   const std::size_t toasts = test.editor->messages.log.size();
   test.play("key Return\n wait-idle");

@@ -86,7 +86,7 @@ TEST_CASE(
   const Armature& rig = *s.document().armature;
   CHECK(pose_of(s.document()) == with_request(rig, rest_pose(rig), {"sit", {}}, warnings));
   CHECK(find_operator(s.editor(), "pose.library_delete")->disabled_reason(s.editor()) ==
-        "This pose comes with the program");
+        "This pose is built in and cannot be changed");
   CHECK(find_operator(s.editor(), "pose.library_apply")->disabled_reason(s.editor()).empty());
 
   // A pose of the user's of the same name is another one.

@@ -108,9 +108,9 @@ std::vector<Proof> proofs_of_posing() {
          return s.document().poses.size() == 1 && s.document().poses[0]->rotation.contains("Fore");
        },
        Shows::Nothing, "key R\n key X\n key 3\n key 0\n key Return", choose(1)},
-      {"pose.library_apply", "click \"Edit/Pose library/Apply pose of library\"", edit_is("Apply Pose"), Shows::InBody,
+      {"pose.library_apply", "click \"Edit/Pose library/Apply library pose\"", edit_is("Apply Pose"), Shows::InBody,
        "key Alt+R"},
-      {"pose.library_blend", "click \"Edit/Pose library/Blend to pose of library\"\n key 5\n key 0\n key Return",
+      {"pose.library_blend", "click \"Edit/Pose library/Blend to library pose\"\n key 5\n key 0\n key Return",
        edit_is("Blend to Pose"), Shows::InBody, "move \"3D view/view\"\n key Alt+R"},
       {"pose.library_rename",
        "click \"Edit/Pose library/Rename pose...\"\n wait-idle\n key Ctrl+A\n type Reach\n key Return",

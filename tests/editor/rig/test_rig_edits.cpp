@@ -163,7 +163,7 @@ TEST_CASE("rigging: the sidebar sets what a joint allows, one edit each, and res
   CHECK(glm::degrees(limits().cone) == doctest::Approx(30));
   CHECK(glm::degrees(limits().twist_minimum) == doctest::Approx(-180));
   test.play(
-      "click Joint/Kind/list\n click Joint/Kind/Hinge\n wait-idle\n click Joint/Axis/list\n click \"Joint/Axis/Own "
+      "click Joint/Kind/list\n click Joint/Kind/Hinge\n wait-idle\n click Joint/Axis/list\n click \"Joint/Axis/Local "
       "Z\"");
   CHECK(limits().axis == rest_axes(test.rig().bones[1])[2]);
   // A range holds the rest pose: its lower end is not above zero.

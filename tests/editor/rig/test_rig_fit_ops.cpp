@@ -53,10 +53,10 @@ std::vector<Proof> proofs_of_rig_fitting() {
        Shows::InBody, rigging},
       // A rig of names that mean nothing, so that it is over soon.
       {"rig.auto_fit",
-       "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The rig that is here\"\n key Return\n wait-job",
+       "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The current rig\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) {
          return s.is("edit", "Auto-fit skeleton") && s.document().armature != b.document.armature &&
-                s.is("toast", "Skeleton placed, but no joint is sure");
+                s.is("toast", "Skeleton placed, but every joint is uncertain");
        },
        Shows::Nothing, rigging},
       {"rig.fit_joint_axis", "key Shift+J\n wait-job\n wait-idle",

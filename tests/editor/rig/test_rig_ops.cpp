@@ -192,19 +192,19 @@ std::vector<Proof> proofs_of_rigging() {
       {"snap.voxel", "move \"3D view/view\"\n key Shift+S\n wait-idle\n click \"Snap/Snap to voxels\"",
        snaps(Snap::Voxel)},
       {"rig.joints_to_bone", "key Shift+S\n wait-idle\n click \"Snap/Joint to bone middle\"",
-       edited("To bone middle: Upper",
+       edited("Move to bone middle: Upper",
               [](const Armature& r) {
                 return glm::length(glm::dvec2(r.bones[0].tail)) < 3 && r.bones[1].head == r.bones[0].tail;
               }),
        Shows::InBody, "key G\n key X\n key 6\n key Return", tail_of_upper},
       {"rig.joints_to_voxels", "key Shift+S\n wait-idle\n click \"Snap/Joint to voxel\"",
-       edited("To voxel: Upper",
+       edited("Move to voxel: Upper",
               [](const Armature& r) {
                 return glm::distance(r.bones[0].tail, {6, 2, 1}) < 1e-9;
               }),
        Shows::InBody, "key G\n key X\n key 6\n key Return", tail_of_upper},
       {"rig.joint_to_cross_hair", "key Shift+S\n wait-idle\n click \"Snap/Joint to cross-hair\"",
-       edited("To cross-hair: Upper", [](const Armature& r) { return r.bones[0].tail == glm::dvec3(10, 2, -20); }),
+       edited("Move to cross-hair: Upper", [](const Armature& r) { return r.bones[0].tail == glm::dvec3(10, 2, -20); }),
        Shows::InBody, "",
        [](Stage& s) {
          tail_of_upper(s);

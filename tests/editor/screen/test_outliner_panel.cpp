@@ -149,7 +149,7 @@ TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back
     expect "widget:Outliner/result First/name" absent
     key Ctrl+F
     type "zebra"
-    expect "text:Nothing is named 'zebra'"
+    expect "text:Nothing in the project is named 'zebra'"
     click "Outliner/Clear search"
     expect "widget:Outliner/volume/name"
   )");

@@ -108,13 +108,13 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     click Help/Tour
     expect "text:Hide a tissue"
     click Muscle/17/eye
-    expect "text:Take it back"
+    expect "text:Undo an edit"
     key Ctrl+Z
     expect "text:See slices"
     click view.four
     expect "text:Move the cross-hair"
     click "Skip step"
-    expect "text:Count the tissue"
+    expect "text:See tissue statistics"
     click Steps/Prepare/Statistics
     wait-job
     key Escape

@@ -61,7 +61,7 @@ TEST_CASE("seams: the button finds them, the list says between what, a click on 
   GluedEditor test;
   test.play("key N\nwait-idle");
   test.open_only("Seams");
-  CHECK(test.fact("text:Not looked for yet") == "shown");
+  CHECK(test.fact("text:Seams not searched yet") == "shown");
   test.play("click \"sidebar/sections/Seams/Find seams\"\nwait-job\nwait-idle");
   const std::int64_t faces = test.faces();
   CHECK(faces > 200);
@@ -182,7 +182,7 @@ TEST_CASE("seams: those by hand go to weights, and to the worker that resamples"
   test.play("click \"Edit/Weights/Find seams\"\nwait-job\nwait-idle");
   CHECK(test.last_edit() == "Find seams");
   CHECK_FALSE(test.editor->document().seams);
-  CHECK(why_weights_are_old(*test.editor) == "Older than the seams");
+  CHECK(why_weights_are_old(*test.editor) == "Weights are older than the seams");
   CHECK(parted_tissue(*test.editor)->seams());
   test.play("click \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   CHECK(why_weights_are_old(*test.editor) == "");

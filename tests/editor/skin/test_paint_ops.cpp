@@ -100,7 +100,7 @@ std::vector<Proof> proofs_of_painting() {
        is(&Painting::falloff, FalloffShape::Linear)},
       {"skin.falloff_constant", "click \"Edit/Brush/Falloff/Constant falloff\"",
        is(&Painting::falloff, FalloffShape::Constant)},
-      {"skin.falloff_own", "click \"Edit/Brush/Falloff/Own falloff\"",
+      {"skin.falloff_own", "click \"Edit/Brush/Falloff/Custom falloff\"",
        [](Stage& s, const Seen&) { return !s.editor().skin->painting->falloff_curve.empty(); }},
       {"skin.falloff_smooth", "click \"Edit/Brush/Falloff/Smooth falloff\"",
        is(&Painting::falloff, FalloffShape::Smooth)},

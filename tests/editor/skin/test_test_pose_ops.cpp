@@ -71,7 +71,7 @@ TEST_CASE("test pose: a joint is bent on trial, the project's pose stays, and an
   CHECK(test.steps() == steps);
   test.choose(0);
   CHECK(bend(*test.editor) == 0);
-  CHECK(why_not_bend(*test.editor) == "No joint lies above this bone: choose one further down");
+  CHECK(why_not_bend(*test.editor) == "A bone without a parent cannot be bent: select another bone");
   CHECK(test.editor->trial->degrees == 60);
   CHECK(shows_pose(*test.editor));
   // In the sidebar, with the way back.

@@ -105,7 +105,7 @@ TEST_CASE(
   test.painting().tissue = PaintedTissue::Chosen;
   test.play("key Ctrl+X\nwait-idle");
   CHECK(test.steps() == steps);
-  CHECK(test.last_toast() == "Flood: No tissue is chosen: choose one in the list, or paint all tissue");
+  CHECK(test.last_toast() == "Flood: No tissue is selected: select one in the list, or paint all tissue");
   test.play("key Shift+X\nwait-idle");
 
   test.editor->selection.tissues = {kBlood};
@@ -401,7 +401,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   test.play("key Ctrl+2\nwait-idle");
   Painting& painting = *test.editor->skin->painting;
   const Falloff smooth = falloff_of(painting);
-  test.play("click \"Edit/Brush/Falloff/Own falloff\"\nwait-idle");
+  test.play("click \"Edit/Brush/Falloff/Custom falloff\"\nwait-idle");
   REQUIRE(painting.falloff_curve.size() == 5);
   CHECK(std::abs(falloff_of(painting)(0.5f) - smooth(0.5f)) < 1e-3);
   // Its middle point, half as high as the box, goes down to the bottom.

@@ -63,7 +63,7 @@ TEST_CASE("replay: Escape brings back the view as it was before a drag") {
   test.host->events.push(PointerMoved{test.editor->widgets.find("3D view/view")->rect.centre()});
   test.host->events.push(ButtonChanged{MouseButton::Middle, true});
   test.player.settle();
-  test.play("move 500 200\n expect \"text:Drop the drag\"");
+  test.play("move 500 200\n expect \"text:Cancel the drag\"");
   CHECK_FALSE(camera_of(test) == before);
   test.play("key Escape");
   CHECK(camera_of(test) == before);
@@ -144,7 +144,7 @@ TEST_CASE("replay: walking goes by keys, looks by the mouse, changes speed by th
   test.play(R"(
     key Shift+`
     expect "text:Walking"
-    expect "text:Rise, sink"
+    expect "text:Up, down"
     key-down W
     wait 0.5
     key-up W
@@ -191,7 +191,7 @@ TEST_CASE("replay: hints follow the modifiers that are held") {
     move "3D view/view"
     expect text:Turn
     key-down Shift
-    expect "text:Shift view"
+    expect "text:Pan view"
     expect "text:Frame all" absent
     key-up Shift
     key-down Alt

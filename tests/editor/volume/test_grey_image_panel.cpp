@@ -87,6 +87,6 @@ TEST_CASE("grey images: the window of values, the cross and the turn change what
     return changed;
   };
   CHECK(changes("drag dialog/Axial 40 30"));
-  CHECK(changes("drag \"dialog/Largest values, drag to turn\" 60 0"));
+  CHECK(changes("drag \"dialog/Maximum intensity, drag to turn\" 60 0"));
   CHECK(changes("drag dialog/Width 60 0"));
 }

@@ -133,7 +133,7 @@ TEST_CASE("prepare: statistics count each tissue, are copied and exported") {
   test.play("type \"" + (folder / "s").string() +
             "\"\nkey Return\nexpect error none\nexpect \"text:Cortical bone\" shown\nclick \"Export CSV\"");
   test.play("type \"" + (folder / "s.csv").string() +
-            "\"\nkey Return\nexpect \"text:s.csv is there already\"\nclick \"Keep it\"\nkey Escape");
+            "\"\nkey Return\nexpect \"text:s.csv already exists\"\nclick \"Keep it\"\nkey Escape");
   const std::string expected =
       to_csv(label_statistics(*test.editor->document().volume), *test.editor->document().tissues);
   CHECK(test.host->clipboard() == expected);
