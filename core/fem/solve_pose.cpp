@@ -16,19 +16,18 @@
 namespace limber {
 
 namespace {
-// The stiffness of springs at bones' nodes, kPa per mm2, times the volume around the node. With it a bone gives way by
-// 0.01 mm where flesh pulls with 50 kPa.
+// The stiffness of springs at bones' nodes at size 1, kPa per mm2, times the volume around the node. With it a bone
+// gives way by 0.01 mm where flesh pulls with 50 kPa.
 constexpr double kPinStiffness = 1000;
-// The same at nodes of tets between two bones. It is low because the mesh is coarse there, and the bones' ends could
-// often not pass each other.
+// The same at nodes of tets between two bones, kPa per mm2. With stiffer springs bones' ends often could not pass.
 constexpr double kJointPinStiffness = 0.1;
-constexpr TetMaterial kBoneTet{100, 0.3};  // material of a rigid tet where flesh pulls at it
+constexpr TetMaterial kBoneTet{100, 0.3};  // for tets that one bone holds but that share a node with flesh
 constexpr int kSettling = 3;               // factor on step_iterations for the last solve, at the pose
-constexpr double kStragglers = 1e-3;       // share of the nodes that may lag while the solve settles at the pose
-constexpr double kTight = 0.25;            // share of a step's tolerance that is used after the next step failed
-constexpr double kWorth = 0.125;  // share of the solved nodes below which freeing more is not worth a new matrix
-constexpr double kRough = 0.5;    // a first guess bounded to less than this share is smoothed
-// The strength of the barrier on flesh, kPa. It halves the iterations of a deep bend, since no tet gets nearly flat.
+constexpr double kStragglers = 1e-3;       // share of the nodes that may still move at the end of the last solve
+constexpr double kTight = 0.25;            // factor on step_tolerance_mm for solving again after the next part failed
+constexpr double kWorth = 0.125;           // smallest group of nodes freed separately, as a share of the solved nodes
+constexpr double kRough = 0.5;             // a first guess of which less than this share is possible is smoothed
+// Strength, kPa, of the barrier that keeps tets from getting nearly flat. It halves the iterations of a deep bend.
 constexpr double kWeakBarrier = 100;
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
@@ -60,8 +59,8 @@ bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet)
   return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
 }
 
-// Returns the model's waiting nodes. If only a few nodes could wait longer than others, they are freed together with
-// those, since the matrix must be analysed again whenever more nodes are solved for.
+// Returns the model's nodes that become free at a position on the path. Frees small groups of them together with
+// earlier ones, since each group that becomes free costs a new analysis of the matrix.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
@@ -81,19 +80,19 @@ std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   return waiting;
 }
 
-// The parts of the mesh that deform, those that bones hold by springs, and those that bones carry along. A tet that one
-// bone holds at every node is rigid, unless flesh pulls at one of its nodes: this node may give way, so the tet
-// deforms.
+// Splits the mesh into tets that deform and rigid tets; lists the nodes that bones hold by springs and those that they
+// carry along. A tet that one bone holds at every node is rigid, unless it shares a node with flesh: that node may give
+// way.
 struct Parts {
   Eigen::MatrixX4i elastic, rigid;
   std::vector<TetMaterial> material;  // per elastic tet
   std::vector<char> is_flesh;         // per elastic tet: whether no single bone holds all of its nodes
-  std::vector<int> pinned, carried;   // nodes that bones hold: in elastic tets, and elsewhere
+  std::vector<int> pinned, carried;   // nodes that bones hold: those in elastic tets, and all others
   std::vector<double> pin_stiffness;
   std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
 
   Parts() = default;
-  Parts(const FemModel& model, const std::vector<int>& held_by) {
+  Parts(const FemModel& model, const std::vector<int>& held_by, double size) {
     const auto& T = model.mesh.T;
     std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
     for (Eigen::Index t = 0; t < T.rows(); ++t)
@@ -132,7 +131,8 @@ struct Parts {
     for (int v = 0; v < int(model.mesh.V.rows()); ++v) {
       if (held_by[v] < 0) continue;
       (in_elastic[v] ? pinned : carried).push_back(v);
-      if (in_elastic[v]) pin_stiffness.push_back((in_joint[v] ? kJointPinStiffness : kPinStiffness) * volume[v]);
+      const double spring = (in_joint[v] ? kJointPinStiffness : kPinStiffness) / (size * size);
+      if (in_elastic[v]) pin_stiffness.push_back(spring * volume[v]);
     }
   }
 };
@@ -203,20 +203,20 @@ class PoseSolve {
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
   const std::vector<FemModel::Waiting> waiting_;
-  double freed_ = 0;          // position on the path: nodes that wait until before it are free
-  std::vector<int> held_by_;  // #V: the model's held_by, with the bones of nodes that still wait
+  double freed_ = 0;          // position on the path; nodes that wait until an earlier one are free
+  std::vector<int> held_by_;  // #V: the bone that holds each node at present, -1: free
   Parts parts_;
   const NodePositions rest_;
   std::vector<char> held_;  // #V: 1 for nodes that a bone holds by stiff springs, or carries along
   NodePositions x_;
-  double shortest_ = 0;  // shortest step, as a share of the path
+  double shortest_ = 0;  // length of the shortest step, as a share of the path
   std::optional<FemEnergy> energy_;
   FemSeconds seconds_;
   SolvedPose result_;
 };
 
-// Frees the nodes that stop waiting before `place` on the path, so that they are solved for like other flesh. Nodes
-// that still wait move with their bone.
+// Frees the nodes that wait until a position before `place` on the path, so that they are solved for like other flesh.
+// Nodes that still wait move with their bone.
 void PoseSolve::free_for(double place) {
   freed_ = std::max(freed_, place);
   std::vector<int> held_by = model_.held_by;
@@ -226,7 +226,7 @@ void PoseSolve::free_for(double place) {
   if (energy_) count_spent();
   energy_.reset();
   held_by_ = std::move(held_by);
-  parts_ = Parts(model_, held_by_);
+  parts_ = Parts(model_, held_by_, settings_.size);
   held_.resize(held_by_.size());
   for (std::size_t v = 0; v < held_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
   energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
@@ -242,7 +242,7 @@ void PoseSolve::count_spent() {
   seconds_ += energy_->seconds();
 }
 
-// Returns whether nothing has to move, so that the start is the answer, bit for bit.
+// Returns whether nothing has to move; the start then is the result, bit for bit.
 bool PoseSolve::at_rest() const {
   const auto pose = path_(1);
   for (int v = 0; v < int(rest_.rows()); ++v)
@@ -250,8 +250,8 @@ bool PoseSolve::at_rest() const {
   return x_ == rest_;
 }
 
-// Holds the bones' nodes where `pose` puts them.
-//   less  #V offsets that are subtracted from these positions; null: none
+// Sets the target positions of the nodes that bones hold to where `pose` moves them.
+//   less  #V offsets to subtract from these positions; null: none
 void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less) {
   const auto place_of = [&](int v) {
     const Eigen::RowVector3d place = moved(pose[held_by_[v]], rest_.row(v));
@@ -267,7 +267,8 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePosit
   energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// Returns, for each node, way(bone, position) of the bone that holds it, or the weighted sum over its influences.
+// Returns a vector for each node: way(bone, position) for the bone that holds the node, or the weighted sum of way()
+// over the node's influences.
 template <class Way>
 NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   NodePositions sum = NodePositions::Zero(x.rows(), 3);
@@ -294,10 +295,10 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// Moves x, a solution at `from`, to a first guess of the shape at `to`. The guess is a Newton step, with the tissue's
-// Hessian, for the velocities with which the bones start (the tangent of the path), plus what the turns of the bones
-// add to these. If tissue does not allow the whole step, it is half of it, a quarter, ... Returns the position on the
-// path that x has reached and at which the bones are held; `from` if there is no such step.
+// Moves x, a solution at position `from` on the path, to a first guess of the shape at `to`: a Newton step, with the
+// tissue's Hessian, for the velocities with which the bones start (the tangent of the path), plus what the turns of the
+// bones add to these. If tissue does not allow the whole step, tries half of it, a quarter, and so on. Returns the
+// position on the path that x has reached and at which the bones are held; `from` if no step is possible.
 double PoseSolve::follow(double from, double to, NodePositions& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
@@ -344,7 +345,7 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
   return drift;
 }
 
-// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm", with the two bones of most weight at the nodes.
+// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm", with the two bones of most weight there.
 std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
@@ -380,7 +381,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const NodePositi
   on_step_({at, iteration, residual, V});
 }
 
-// Minimises the energy with the bones where they are held. x must be on the motion of the last broad phase.
+// Minimises the energy with the bones where hold_at() put them. x must be on the motion of the last broad phase.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
@@ -391,8 +392,8 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
   return solved;
 }
 
-// Solves to the final tolerance at the pose, since a step ends with a coarser one. A shape that does not settle is
-// kept, as it is as good as that of a step.
+// Solves at the pose to the final tolerance, since a step ends at a coarser one. A shape that does not converge is
+// kept: it is as good as the result of a step.
 void PoseSolve::settle() {
   result_.blocked_by.clear();
   if (result_.residual < settings_.tolerance_mm) return;
@@ -410,7 +411,7 @@ void PoseSolve::settle() {
   result_.blocked_by = moves + obstacle(solved.bound, x_);
 }
 
-// Returns whether no bone's node has moved too far from its bone; else sets blocked_by.
+// Returns whether no node of a bone has moved too far from its bone. Otherwise sets blocked_by and returns false.
 bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePositions& x) {
   const Drift drift = bone_drift(pose, x);
   if (drift.mm > settings_.bone_drift_mm) {
@@ -428,8 +429,8 @@ void PoseSolve::record() {
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// Moves x, a solution at `from`, to the shape at `to`, or at an earlier position on the path, to which `to` is set.
-// Returns false if that fails.
+// Moves x, a solution at `from`, to the shape at `to` or, if that is too far, at an earlier position, to which it sets
+// `to`. Returns false if no solution was found.
 bool PoseSolve::part(double from, double& to, NodePositions& x) {
   const double at = follow(from, to, x);
   if (at == from) {
@@ -445,8 +446,8 @@ bool PoseSolve::part(double from, double& to, NodePositions& x) {
   return good(path_(at), x);
 }
 
-// Solves as far towards `to` as possible, in as few parts as possible. Returns false if not even the shortest part can
-// be solved.
+// Solves from the reached position towards `to`, as far as possible and in as few parts as possible. Returns false if
+// not even the shortest part can be solved.
 bool PoseSolve::step(double to) {
   free_for(to);
   const double begin = result_.reached;
@@ -462,13 +463,13 @@ bool PoseSolve::step(double to) {
       from = next;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
-      // A shape that lags behind its bones is a poor start for the next part, so it is solved more precisely.
+      // Solves the current shape more precisely: a shape that lags behind its bones is a poor start for the next part.
       hold_at(path_(from));
       energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       if (held_by_ == model_.held_by) break;
-      free_for(INFINITY);  // nodes that still wait may be what blocks the step
+      free_for(INFINITY);  // the nodes that still wait may block the step
       way = to - from;
     }
   }

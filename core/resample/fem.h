@@ -27,7 +27,7 @@ enum class FemQuality { Draft, Normal, Fine };
 
 struct Fem {
   bool contact = false;                     // true: skin is pushed apart instead of passing through skin
-  FemQuality quality = FemQuality::Normal;  // tets of 12 mm, 8 mm, or 8 mm and 4 mm around joints that bend
+  FemQuality quality = FemQuality::Normal;  // tets across the thinnest bent limb: 8, 12, or 24 around joints
   std::optional<double> spacing_mm;         // edge length of all tets, instead of the quality's
   Mesher mesher = Mesher::lattice;
   std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
@@ -42,11 +42,12 @@ struct MeshReport {
   std::int64_t joint_tets = 0;                     // soft tets between two bones, not counted in min_det_f
   double share_below_fifth = 0;                    // share of the soft tets with det F below 0.2, [0, 1]
   std::optional<std::int64_t> self_intersections;  // pairs of crossing triangles of the posed border
-  // Border nodes nearer to another part of the border than 1.5 times the contact distance; counted without contact too.
+  // Number of nodes of the mesh's surface whose distance from another part of the surface is below 1.5 times the
+  // contact distance. They are also counted where contact is off.
   std::int64_t contact_nodes = 0;
-  std::optional<double> min_gap_mm, median_gap_mm;  // width of the air at the contact nodes
-  std::map<Label, double> volume_change_percent;    // volume change of the tets that hold the label's voxels
-  std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends
+  std::optional<double> min_gap_mm, median_gap_mm;  // smallest and median width of the air gap at contact_nodes
+  std::map<Label, double> volume_change_percent;    // volume change of the tets that hold the label's voxels, by label
+  std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends, by label
   std::string fallback;                             // the mesher's warning when it used a fallback; empty: none
 };
 
@@ -56,8 +57,9 @@ struct SolveReport {
   std::string blocked_by;  // what blocks the pose; empty where the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
   int analyses = 0;        // symbolic analyses of the matrix's sparsity pattern, which contact changes
-  double residual_mm = 0;  // longest move of a node that the last iteration proposed
-  // Largest distance of a bone's node from its exact rigid position. Bone voxels are always painted exactly.
+  double residual_mm = 0;  // longest displacement of a node that the last iteration proposed, mm
+  // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
+  // are written at their exact positions.
   double bone_drift_mm = 0;
 };
 

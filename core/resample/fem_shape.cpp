@@ -2,47 +2,85 @@
 #include "core/resample/fem_shape.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 
 #include "core/base/error.h"
 #include "core/fem/contact_gap.h"
 #include "core/mesh/crossings.h"
 #include "core/mesh/mesh_tissue.h"
+#include "core/resample/limb_thickness.h"
 #include "core/resample/pose_path.h"
 
 namespace limber {
 
 namespace {
 
-// Margins around the tissue that bends by its weights, mm: skin creases further out than weights blend.
+// Thickness, mm, of the adult elbow for which the lengths below were chosen. They are scaled by the thickness of the
+// thinnest limb that the pose bends, relative to this, so that bodies of any size are posed alike.
+constexpr double kThickness = 93;
+// Edge length of the tets in such an elbow, mm, by quality: 8 and 12 tets across the limb.
+constexpr double kDraft = 12, kUsual = 8;
+// Upper limit on the number of meshed cells, cubes with a tet's edge length as edge. A pose that bends both fingers and
+// hips would exceed it, so its tets are made larger than requested.
+constexpr double kMostCells = 120'000;
+// How far the mesh reaches beyond tissue whose weights blend several bones, mm: skin creases further out than that.
 constexpr double kMargin = 24;
-// The same around tissue that the pose brings into contact: pressed flesh gives way less far than a crease reaches.
+// Width of the margin that is meshed around tissue that the pose brings into contact, mm. It is smaller than kMargin,
+// because pressed flesh deforms less far out than a crease.
 constexpr double kGive = 16;
-constexpr double kRim = 2.5;  // width of the rim of held nodes, in tets: at least two whole layers
-constexpr double kJoint = 2;  // layers of tets that share the sliding of two bones
-// Largest distance of a bone's node from its bone, mm. Coarse tets, whose bones are rough, are allowed more.
+// Width of the rim of held nodes around the tissue that may deform, in tet edge lengths: at least two layers of tets.
+constexpr double kRim = 2.5;
+// Distance from another bone, in tet edge lengths, below which the end of a bone is part of a joint and may slide.
+constexpr double kJoint = 2;
+// Upper limit on the distance of a bone's node from its exact position, mm. Coarse tets, whose bones are rough, have a
+// larger limit.
 constexpr double kDrift = 2;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; smaller where tets are small
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
-constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees
+constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees: fine quality has smaller tets about the joint
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double tet_spacing(const Fem& fem) {
-  if (fem.spacing_mm) return *fem.spacing_mm;
-  return fem.quality == FemQuality::Draft ? 12 : 8;
-}
-
-// Returns the joints that turn in any of the poses; the mesh of fine quality has smaller tets around them.
-std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses) {
+// Returns the joints that turn by more than an angle in any of the poses.
+//   cosine  of half the angle
+std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses, double cosine) {
   std::vector<glm::dvec3> joints;
   for (size_t b = 0; b < armature.bones.size(); ++b)
-    if (armature.bones[b].parent >= 0 &&
-        std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) { return std::abs(pose.rotation[b].w) < kBent; }))
+    if (armature.bones[b].parent >= 0 && std::any_of(poses.begin(), poses.end(), [&](const Pose& pose) {
+          return std::abs(pose.rotation[b].w) < cosine;
+        }))
       joints.push_back(armature.bones[b].head);
   return joints;
+}
+
+// Returns the thickness of the thinnest limb at these joints as a multiple of kThickness. Joints outside all tissue do
+// not count; without any other it is 1.
+double limb_size(const TissueVoxels& tissue, const Grid& grid, const std::vector<glm::dvec3>& joints) {
+  const TissueDepth depth(tissue, grid.spacing);
+  std::optional<double> thinnest;
+  for (const glm::dvec3& joint : joints)
+    if (const auto thickness = limb_thickness(depth, grid, joint))
+      thinnest = std::min(thinnest.value_or(INFINITY), *thickness);
+  return thinnest.value_or(kThickness) / kThickness;
+}
+
+// Returns the edge length of tets, mm. The smallest tets are not smaller than a voxel, which holds no more detail.
+double spacing_of(FemQuality quality, double size, const Grid& grid) {
+  const double voxel = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
+  return std::max(size * (quality == FemQuality::Draft ? kDraft : kUsual),
+                  quality == FemQuality::Fine ? 2 * voxel : voxel);
+}
+
+std::int64_t count_voxels(const TissueMask& mask) {
+  std::int64_t count = 0;
+  for (const auto& brick : mask)
+    for (const std::uint64_t layer : brick) count += std::popcount(layer);
+  return count;
 }
 
 // Returns the path from rest through all poses; each pose gets an equal share of [0, 1].
@@ -55,8 +93,8 @@ BonePath way_through(const std::vector<Pose>& poses, const SkinWeights& weights,
   };
 }
 
-// Returns the points of way_through that moving_tissue examines: four on the first leg, which may be long, and two on
-// each later leg.
+// Returns the points of the path, [0, 1], at which moving_tissue examines the body: four on the way to the first pose,
+// which may be long, and two on the way to each later pose.
 std::vector<double> places_of(std::size_t poses) {
   std::vector<double> places;
   for (int k = 1; k <= 4; ++k) places.push_back(0.25 * k / double(poses));
@@ -65,7 +103,8 @@ std::vector<double> places_of(std::size_t poses) {
   return places;
 }
 
-// Returns the nodes that wait on one of several legs of the path, with `until` converted to that leg.
+// Returns the nodes that a bone still holds on one leg of the path (the way from one pose to the next). Their release
+// point `until` is converted from the whole path to that leg.
 std::vector<FemModel::Waiting> on_leg(std::vector<FemModel::Waiting> waiting, std::size_t leg, std::size_t legs) {
   for (FemModel::Waiting& each : waiting) each.until = each.until * double(legs) - double(leg);
   std::erase_if(waiting, [](const FemModel::Waiting& each) { return each.until <= 0; });
@@ -73,7 +112,8 @@ std::vector<FemModel::Waiting> on_leg(std::vector<FemModel::Waiting> waiting, st
 }
 
 // Fills the mesh report of a solved shape.
-//   spacing  edge length of the tets, mm       contact_mm  distance below which skin is pushed apart
+//   spacing     edge length of the tets, mm
+//   contact_mm  distance below which contact pushes skin apart
 void measure(const SolvedPose& solved, double spacing, double contact_mm, FemShape& shape) {
   const TetMesh& mesh = shape.model.fem.mesh;
   const std::vector<double> ratios = volume_ratios(mesh, solved.V);
@@ -129,27 +169,42 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
       armature_(armature),
       is_bone_(is_bone),
       poses_(std::move(poses)),
-      fem_(std::move(fem)),
-      spacing_(tet_spacing(fem_)) {
+      fem_(std::move(fem)) {
   const auto meshing = std::chrono::steady_clock::now();
-  DeformingRegion& moving = last_.moving;
-  moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
-                         {.margin_mm = kMargin + spacing_,
-                          .rim_mm = kRim * spacing_,
-                          .contact = fem_.contact,
-                          .near_mm = 2 * spacing_,
-                          .give_mm = kGive + spacing_,
-                          .places = places_of(poses_.size())},
-                         progress);
   last_.pose = rest_pose(armature);
+  size_ = limb_size(tissue, volume.grid, bent_joints(armature, poses_, 1));
+  DeformingRegion& moving = last_.moving;
+  const double asked = fem_.spacing_mm.value_or(spacing_of(fem_.quality, size_, volume.grid));
+  const auto find_moving = [&](double spacing) {
+    spacing_ = spacing;
+    moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
+                           {.margin_mm = size_ * kMargin + spacing,
+                            .rim_mm = kRim * spacing,
+                            .contact = fem_.contact,
+                            .near_mm = 2 * spacing,
+                            .give_mm = size_ * kGive + spacing,
+                            .places = places_of(poses_.size())},
+                           progress);
+  };
+  find_moving(asked);
   if (moving.empty()) return;
+  const double cells = double(count_voxels(moving.meshed)) * volume.grid.voxel_volume() / std::pow(asked, 3);
+  if (!fem_.spacing_mm && cells > kMostCells) {
+    find_moving(asked * std::cbrt(cells / kMostCells));
+    char note[160];
+    std::snprintf(note, sizeof note,
+                  "the pose bends limbs of very different thickness: tets of %.3g mm instead of %.3g mm", spacing_,
+                  asked);
+    last_.mesh.fallback = note;
+  }
 
   const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, moving);
-  MeshSettings settings{.spacing_mm = spacing_, .mesher = fem_.mesher};
-  if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_);
+  MeshSettings settings{
+      .spacing_mm = spacing_, .mesher = fem_.mesher, .fine_radius_mm = size_ * MeshSettings().fine_radius_mm};
+  if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_, kBent);
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
-  last_.mesh.fallback = meshed.warning;
+  if (!meshed.warning.empty()) last_.mesh.fallback = meshed.warning;
   last_.model =
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
   waiting_ = last_.model.fem.waiting;
@@ -165,9 +220,11 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   const auto solving = std::chrono::steady_clock::now();
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
   const SolveSettings settings{.contact = fem_.contact,
-                               .contact_mm = std::min(kContact, finest_ / 4),
+                               .contact_mm = std::min(size_ * kContact, finest_ / 4),
                                .step_tolerance_mm = finest_ / 2,
-                               .bone_drift_mm = std::max(kDrift, spacing_ / 2)};
+                               .tolerance_mm = size_ * SolveSettings().tolerance_mm,
+                               .bone_drift_mm = std::max(size_ * kDrift, spacing_ / 2),
+                               .size = size_};
   const SolvedPose solved =
       solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // no node is held by a moving bone
@@ -184,10 +241,11 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
     return is_bone_[tissue.first] != 0;
-  });  // bone is painted rigidly, whatever tets it lies in
+  });  // bone voxels move rigidly, even inside tets that stretch
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
-  if (shape->reached < 1) waiting_.clear();  // the next leg starts elsewhere, so the waiting times are not valid
+  // The next leg starts from another pose than planned, so the release points of held nodes are not valid any more.
+  if (shape->reached < 1) waiting_.clear();
   last_.V = shape->V;
   last_.pose = shape->pose;
   last_.seconds_mesh = 0;  // only the first shape reports the time for meshing

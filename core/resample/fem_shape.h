@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Meshes the tissue that a pose bends and solves for its posed shape: the part of resample.h by finite elements that
-// comes before any voxel is written.
+// Meshes the tissue that a pose bends and solves for its posed shape. This is the stage of posing by finite elements
+// that comes before any voxel is written (resample.h).
 #pragma once
 
 #include <vector>
@@ -21,11 +21,11 @@ struct FemShape {
   MeshReport mesh;
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;
-  FemSeconds cpu;  // time of each part of the solve
+  FemSeconds cpu;  // CPU time of each stage of the solve
 };
 
 // Returns the solved shape of the tissue that the pose bends; null where the pose bends nothing.
-//   weights  give every voxel of bone tissue to one bone alone
+//   weights  rigid in bone tissue: each bone voxel follows one rig bone alone
 //   throws Error when the tissue cannot be meshed or memory does not suffice
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
                                             const TissueTable& tissues, const LabelSet& is_bone,
@@ -50,7 +50,8 @@ class FemSequence {
   const LabelSet& is_bone_;
   std::vector<Pose> poses_;
   Fem fem_;
-  double spacing_, finest_;                 // edge length of the tets, and of the smallest tets, mm
+  double size_ = 1;                         // thickness of the thinnest bent limb, relative to an adult's elbow (1)
+  double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets, mm
   std::vector<FemModel::Waiting> waiting_;  // nodes held for a while; `until` counts along the way through all poses
   std::size_t solved_ = 0;                  // number of poses solved so far
   FemShape last_;                           // the shape solved last; at rest before the first solve

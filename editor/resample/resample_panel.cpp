@@ -19,11 +19,12 @@ void draw_fem(Editor& editor, Column& column) {
   const Rect quality = column.property("Quality");
   const PathScope path(editor, "Quality");
   int chosen = settings.quality == "draft" ? 0 : settings.quality == "fine" ? 2 : 1;
-  if (choice_field(editor, quality, {"Draft, 12 mm", "Normal, 8 mm", "Fine, 4 mm"}, chosen))
+  if (choice_field(editor, quality, {"Draft", "Normal", "Fine"}, chosen))
     settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
   if (ImGui::IsItemHovered())
     tooltip(editor, quality, "Quality",
-            "Edge length of the tetrahedra. The mesh is finest around bent joints. A finer mesh takes longer.");
+            "Tetrahedra across the thinnest limb that bends: 8 (draft), 12 (normal), or 24 around joints (fine). Finer "
+            "takes longer.");
   const Rect contact = column.property("Contact");
   checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
   if (ImGui::IsItemHovered())

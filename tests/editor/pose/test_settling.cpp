@@ -257,16 +257,6 @@ TEST_CASE(
   CHECK(test.editor->fem->solves.empty());
 }
 
-TEST_CASE("settling: where no bone that moves is as large as the tets the user is told so, and no result is made up") {
-  SolveEditor test;
-  test.editor->worker_program = LIMBER_PROGRAM;
-  test.editor->resampling.quality = "draft";
-  const Document before = test.editor->document();
-  test.play("key Ctrl+Return\nwait-job");
-  CHECK(test.editor->messages.last_failure.find("choose a finer quality") != std::string::npos);
-  CHECK(test.editor->document() == before);
-}
-
 #ifndef LIMBER_ADDRESS_SANITIZER
 TEST_CASE("settling: a solve that may not take the memory it needs ends with a line that says so") {
   SolveEditor test(60);

@@ -362,7 +362,7 @@ TEST_CASE("resample: finite elements run in the worker as the panel says, and th
     key Ctrl+4
     click resample.fem
     click Quality/list
-    click "Fine, 4 mm"
+    click Fine
   )");
   CHECK(test.editor->resampling.quality == "fine");
   CHECK(test.editor->resampling.contact);
