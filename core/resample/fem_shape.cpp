@@ -204,7 +204,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_, kBent);
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
-  if (!meshed.warning.empty()) last_.mesh.fallback = meshed.warning;
+  if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   last_.model =
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
   waiting_ = last_.model.fem.waiting;
