@@ -23,9 +23,10 @@ namespace {
 constexpr double kThickness = 93;
 // Edge length of the tets in such an elbow, mm, by quality: 8 and 12 tets across the limb.
 constexpr double kDraft = 12, kUsual = 8;
-// Upper limit on the number of meshed cells, cubes with a tet's edge length as edge. A pose that bends both fingers and
-// hips would exceed it, so its tets are made larger than requested.
-constexpr double kMostCells = 120'000;
+// Upper limit on the number of meshed cells, cubes with a tet's edge length as edge: about those of a seated adult at
+// kUsual, and accordingly fewer in a draft. A pose that bends both fingers and hips would exceed it, so its tets are
+// made larger than requested.
+constexpr double kMostCells = 40'000;
 // How far the mesh reaches beyond tissue whose weights blend several bones, mm: skin creases further out than that.
 constexpr double kMargin = 24;
 // Width of the margin that is meshed around tissue that the pose brings into contact, mm. It is smaller than kMargin,
@@ -189,8 +190,9 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   find_moving(asked);
   if (moving.empty()) return;
   const double cells = double(count_voxels(moving.meshed)) * volume.grid.voxel_volume() / std::pow(asked, 3);
-  if (!fem_.spacing_mm && cells > kMostCells) {
-    find_moving(asked * std::cbrt(cells / kMostCells));
+  const double most = kMostCells * (fem_.quality == FemQuality::Draft ? std::pow(kUsual / kDraft, 3) : 1);
+  if (!fem_.spacing_mm && cells > most) {
+    find_moving(asked * std::cbrt(cells / most));
     char note[160];
     std::snprintf(note, sizeof note,
                   "the pose bends limbs of very different thickness: tets of %.3g mm instead of %.3g mm", spacing_,
