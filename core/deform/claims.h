@@ -29,25 +29,27 @@ class Claims {
   }
 
   // Enters the claim only if no other cell has the voxel yet.
-  void claim_empty(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim) {
+  //   near  cells that are at most this many voxels apart at rest do not overlap but are pressed together
+  void claim_empty(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim, int near) {
     const std::int64_t at = map_.index(claim.voxel);
     if (map_.cell[at] == InverseMap::kNoCell) write(cell, claim, at);
-    else count_overlap(rest_voxel, at, cell);
+    else count_overlap(rest_voxel, at, cell, near);
   }
 
  private:
-  static bool are_neighbours(const glm::ivec3& a, const glm::ivec3& b) {
-    return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(1)));
+  static bool are_near(const glm::ivec3& a, const glm::ivec3& b, int near) {
+    return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(near)));
   }
 
-  // Marks an overlap at a voxel that another cell has already, unless both cells are neighbours at rest.
+  // Marks an overlap at a voxel that another cell has already, unless both cells are near each other at rest.
   //   rest_voxel  cell of the new claim
   //   loser       whichever of the two cells does not get the voxel
-  void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser) {
+  //   near        largest distance of near cells along each axis, voxels; 1: neighbours
+  void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser, int near = 1) {
     const std::uint32_t holder = map_.cell[at];
     const glm::ivec3 size = volume_.grid.size;
-    if (are_neighbours(rest_voxel,
-                       {int(holder % size.x), int(holder / size.x % size.y), int(holder / size.x / size.y)}))
+    if (are_near(rest_voxel, {int(holder % size.x), int(holder / size.x % size.y), int(holder / size.x / size.y)},
+                 near))
       return;
     map_.flags[at] |= InverseMap::kOverlap;
     map_.lost.push_back(volume_.voxels[loser]);

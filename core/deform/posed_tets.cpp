@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
 constexpr int kPosedBin = 16;        // edge of a search bin, voxels: a quarter of an output tile's
+// Distance at rest, voxels, up to which a rider and other tissue of a crease may be pressed together: riders stick out
+// of the mesh by two voxels on either side of the crease, and its bottom is one voxel wide.
+constexpr int kCrease = 5;
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
@@ -76,7 +79,8 @@ class PosedTets::Border {
   // Returns the posed position of a rest point outside the mesh. It stays as far from the mesh's border as at rest. If
   // another part of the mesh is near, the point takes at most half of the air between both parts; the other half is for
   // tissue outside that part's border.
-  FixedPoint carried(const glm::dvec3& rest) const {
+  //   pressed  set to true if the other part keeps the point closer to the border than at rest, else not changed
+  FixedPoint carried(const glm::dvec3& rest, bool& pressed) const {
     const Grid& grid = tets_.lattice_->volume().grid;
     const auto place = border_.nearest(rest);  // there always is one, since a mesh has a border
     glm::dvec3 from(0), moved(0);              // rest position of the border's nearest point, and its motion; mm
@@ -104,7 +108,9 @@ class PosedTets::Border {
     // If the other part of the mesh was that near at rest already, the point keeps its distance from the border.
     const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners,
                                      [&](int t) { return tets_.rest_corners(t); });
-    return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
+    if (way > rest_way - kRounding) return tets_.fixed(whole);
+    pressed = true;
+    return tets_.fixed(at(std::min(1.0, kApart * way / rest_way)));
   }
 
  private:
@@ -297,16 +303,18 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
   }
 
   std::array<std::optional<FixedPoint>, kSide * kSide * kSide> posed;
+  std::array<bool, kSide * kSide * kSide> pressed{};  // of each posed corner
   tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - cells.corner;
     if (!(mine[v.z] >> (v.x + 8 * v.y) & 1)) return;
-    Rider rider{voxel, {}};
+    Rider rider{voxel, {}, false};
     bool rides = !(centre_held[v.z] >> (v.x + 8 * v.y) & 1);
     for (int i = 0; i < 8; ++i) {
       const glm::ivec3 corner = v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
       const int at = PosedLattice::place(corner.x, corner.y, corner.z);
       const glm::dvec3 rest = glm::dvec3(cells.corner + corner) - 0.5;
-      if (!posed[at]) posed[at] = tet_of[at] >= 0 ? carried(tet_of[at], rest) : border.carried(rest);
+      if (!posed[at]) posed[at] = tet_of[at] >= 0 ? carried(tet_of[at], rest) : border.carried(rest, pressed[at]);
+      rider.pressed |= pressed[at];
       rides |= tet_of[at] < 0;
       rider.corners[i] = *posed[at];
       outcome.low = glm::min(outcome.low, *posed[at]);
@@ -346,10 +354,13 @@ void PosedTets::rasterize_riders(InverseMap& map, const std::vector<int>& priori
   Claims claims(map, volume, priority, depth);
   std::vector<int> near;
   rider_bins_.meeting(map.range, near);
-  for (int r : near)
-    PosedCell(riders_[r].corners.data(), 2, 4, riders_[r].voxel).rasterize(map.range, [&](const CellClaim& claim) {
-      claims.claim_empty(index_of(volume.grid, riders_[r].voxel), riders_[r].voxel, claim);
+  for (int r : near) {
+    const Rider& rider = riders_[r];
+    PosedCell(rider.corners.data(), 2, 4, rider.voxel).rasterize(map.range, [&](const CellClaim& claim) {
+      if (rider.pressed && map.cell[map.index(claim.voxel)] != InverseMap::kNoCell) return;
+      claims.claim_empty(index_of(volume.grid, rider.voxel), rider.voxel, claim, kCrease);
     });
+  }
 }
 
 }  // namespace limber

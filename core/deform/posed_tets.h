@@ -9,7 +9,8 @@
 // outside it are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
 // outside moves with the nearest point of the mesh's border and rotates with the tet there. If another part of the mesh
 // has come near, it moves closer to the border than at rest: tissue outside the border is pressed flat where skin
-// presses on skin. Riders fill only voxels that no tet covers.
+// presses on skin. Riders fill only voxels that no tet covers. A voxel that another claims too is an overlap, except
+// where a rider pressed flat gives way: tissue lies between there, and none of it passes through other tissue.
 //
 // A mesh need not contain the whole body. The lattice carries all other tissue, and also one layer of the mesh's voxels
 // next to it: both move alike there, and no rounding opens a gap.
@@ -55,6 +56,7 @@ class PosedTets {
   struct Rider {
     glm::ivec3 voxel;
     std::array<FixedPoint, 8> corners;  // posed corners; bits 0, 1, 2 of the index are x, y, z
+    bool pressed;  // whether another part of the mesh presses the voxel flat; it then gives way to all other tissue
   };
   struct BrickOutcome;
   class Border;

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <unordered_map>
 
 #include <Eigen/Geometry>
-
-#include "core/mesh/voxels_in_tet.h"
 
 namespace limber {
 
@@ -18,7 +17,7 @@ namespace {
 using Point = Eigen::Vector3d;
 
 // Badness (cosine of the smallest dihedral angle) above which a tet counts as flat: its smallest angle is below 6
-// degrees. Flat tets are worth the slower search in Improver::move.
+// degrees.
 const double kFlat = std::cos(6 * std::numbers::pi / 180);
 
 // Returns the badness of a tet: the cosine of its smallest dihedral angle, or 2 if its volume is not positive. A
@@ -35,20 +34,20 @@ double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::isfinite(worst) ? worst : 2;
 }
 
+// Upper limit on the distance by which a node of the skin leaves the surface that was fitted to the voxels, relative to
+// the mean length of the edges at the node.
+constexpr double kOffSkin = 0.05;
+
 constexpr int kAskEvery = 256;  // number of nodes (about 20 ms) between two checks for cancellation
 
 class Improver {
  public:
   // Converts the nodes to lattice axes, in which the boxes of the net's nodes are given.
-  //   may_lose  number of tissue voxels that may end up outside the mesh
-  Improver(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, std::int64_t may_lose)
+  Improver(TetMesh& mesh, const LatticeNet& net)
       : mesh_(mesh),
         net_(net),
-        voxels_(voxels),
-        may_lose_(may_lose),
         first_(mesh.V.rows() + 1, 0),
-        V_(mesh.V.rows()),
-        on_skin_(mesh.V.rows(), 0) {
+        V_(mesh.V.rows()) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) turn_(i, j) = net.world_from_lattice.linear[j][i];
     offset_ << net.world_from_lattice.offset.x, net.world_from_lattice.offset.y, net.world_from_lattice.offset.z;
@@ -56,11 +55,17 @@ class Improver {
     const Eigen::Matrix3d back = turn_.inverse();
     for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) V_[i] = back * (mesh.V.row(i).transpose() - offset_);
 
-    const AffineTransform to_voxel = voxel_from_world(voxels.grid);
-    voxel_from_lattice_ = {to_voxel.linear * net.world_from_lattice.linear, to_voxel * net.world_from_lattice.offset};
-    for (Eigen::Index i = 0; i < net.surface.F.rows(); ++i)
-      if (net.surface.sides[i][0] == RegionSurface::kAir || net.surface.sides[i][1] == RegionSurface::kAir)
-        for (const int corner : net.surface.F.row(i)) on_skin_[corner] = 1;
+    for (Eigen::Index i = 0; i < net.surface.F.rows(); ++i) {
+      const auto [front, back_side] = net.surface.sides[i];
+      if (front != RegionSurface::kAir && back_side != RegionSurface::kAir) continue;
+      const Eigen::RowVector3i corner = net.surface.F.row(i);
+      const Point normal = (V_[corner[1]] - V_[corner[0]]).cross(V_[corner[2]] - V_[corner[0]]);
+      for (const int node : corner) {
+        Skin& skin = skin_.try_emplace(node, Skin{V_[node], Point::Zero()}).first->second;
+        skin.normal += front == RegionSurface::kAir ? normal : Point(-normal);
+      }
+    }
+    for (auto& [node, skin] : skin_) skin.normal.normalize();
 
     for (const auto& tet : mesh.T.rowwise())
       for (const int corner : tet) ++first_[corner + 1];
@@ -102,6 +107,10 @@ class Improver {
   }
 
  private:
+  struct Skin {
+    Point first, normal;  // position before any move, and the surface's unit normal there
+  };
+
   double badness_of(const Eigen::RowVector4i& tet) const {
     const int c = mirrored_ ? 2 : 1, b = mirrored_ ? 1 : 2;
     return badness(V_[tet[0]], V_[tet[c]], V_[tet[b]], V_[tet[3]]);
@@ -120,48 +129,31 @@ class Improver {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  bool is_tissue(const glm::ivec3& v) const {
-    const int brick = voxels_.tissue.brick_at(v);
-    return brick >= 0 && (voxels_.tissue.bricks()[brick].mask[v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1);
-  }
-
-  // Collects the grid indices, sorted, of the tissue voxels in the tets around a node.
-  void voxels_around(int node, std::vector<std::int64_t>& places) const {
-    places.clear();
-    const Grid& grid = voxels_.grid;
-    for (int i = first_[node]; i < first_[node + 1]; ++i) {
-      glm::dvec3 corner[4];
-      for (int k = 0; k < 4; ++k) {
-        const Point& p = V_[mesh_.T(tet_[i], k)];
-        corner[k] = voxel_from_lattice_ * glm::dvec3(p[0], p[1], p[2]);
-      }
-      if (glm::dot(glm::cross(corner[1] - corner[0], corner[2] - corner[0]), corner[3] - corner[0]) < 0)
-        std::swap(corner[0], corner[1]);
-      for_each_row_in_tet(corner, grid, 0, grid.size.z - 1, [&](glm::ivec3 v, const glm::ivec3& last) {
-        for (; v.x <= last.x; ++v.x)
-          if (is_tissue(v)) places.push_back(grid.index(v));
-      });
+  // Returns the position nearest to `there` to which the node may move: in its box, and at a node of the skin at most
+  // kOffSkin off its first position along the skin's normal. Returns nothing if the two limits exclude each other near
+  // `there`.
+  std::optional<Point> allowed(int node, Point there, double size) const {
+    if (node >= net_.low.rows()) return there;
+    const Point low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
+    there = there.cwiseMax(low).cwiseMin(high);
+    const auto skin = skin_.find(node);
+    if (skin == skin_.end()) return there;
+    const double most = kOffSkin * size;
+    const auto off = [&] { return (there - skin->second.first).dot(skin->second.normal); };
+    for (int attempt = 0; attempt < 3 && std::abs(off()) > most; ++attempt) {
+      there -= (off() - std::copysign(most, off())) * skin->second.normal;
+      there = there.cwiseMax(low).cwiseMin(high);
     }
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
+    if (std::abs(off()) > 1.01 * most) return std::nullopt;
+    return there;
   }
 
-  // Returns how many voxels of `before` the tets around a node no longer contain.
-  std::int64_t lost_around(int node, const std::vector<std::int64_t>& before) const {
-    if (!on_skin_[node]) return 0;
-    std::vector<std::int64_t> after, lost;
-    voxels_around(node, after);
-    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(lost));
-    return std::ssize(lost);
-  }
-
-  // Searches for the node position with the least badness and returns it. Calls accept() with the node at each
-  // candidate position; false rejects that position.
-  template <class Accept>
-  Point search(int node, double reach, const Accept& accept) {
+  // Moves a node to the position with the least badness around it. Returns whether it moved.
+  bool move(int node, double enough, double reach) {
     Point& place = V_[node];
-    Point low = Point::Constant(-1e300), high = Point::Constant(1e300);
-    if (node < net_.low.rows()) low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
+    const Point start = place;
+    double best = worst_around(node);
+    if (best <= enough) return false;
     Point middle = Point::Zero();
     double size = 0;
     int count = 0;
@@ -170,13 +162,13 @@ class Improver {
         if (corner != node) middle += V_[corner], size += (V_[corner] - place).norm(), ++count;
     middle /= count, size /= count;
 
-    const Point start = place;
     Point best_place = start;
-    double best = worst_around(node);
     const auto attempt = [&](const Point& there) {
-      place = there.cwiseMax(low).cwiseMin(high);
+      const std::optional<Point> candidate = allowed(node, there, size);
+      if (!candidate) return;
+      place = *candidate;
       const double now = worst_around(node, best);
-      if (now < best && accept()) best = now, best_place = place;
+      if (now < best) best = now, best_place = place;
     };
     for (const double share : {1.0, 0.5, 0.2}) attempt(start + share * (middle - start));
     for (double step = reach * size; step > 0.02 * size; step *= 0.5) {
@@ -184,51 +176,16 @@ class Improver {
       for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0}) attempt(from + side * step * Point::Unit(axis));
     }
-    place = start;
-    return best_place;
-  }
-
-  bool move(int node, double enough, double reach) {
-    const double worst = worst_around(node);
-    if (worst <= enough) return false;
-    const Point start = V_[node];
-    const Point best = search(node, reach, [] { return true; });
-    if (best == start) return false;
-    std::vector<std::int64_t> before;
-    if (on_skin_[node]) voxels_around(node, before);
-    if (settle(node, best, worst, before)) return true;
-    if (worst <= kFlat) return false;
-    // The tet is flat, so it is worth the time to count the voxels that leave the mesh at every candidate position.
-    const Point kept = search(node, reach, [&] { return lost_around(node, before) <= may_lose_; });
-    return kept != start && settle(node, kept, worst, before);
-  }
-
-  // Moves a node to `there`, or 1/2 or 1/4 of the way if the whole way would leave too many voxels outside the mesh.
-  // Returns whether the node moved.
-  bool settle(int node, const Point& there, double worst, const std::vector<std::int64_t>& before) {
-    Point& place = V_[node];
-    const Point start = place;
-    for (const double share : {1.0, 0.5, 0.25}) {
-      place = start + share * (there - start);
-      if (worst_around(node, worst) >= worst) continue;
-      const std::int64_t lost = lost_around(node, before);
-      if (lost > may_lose_) continue;
-      may_lose_ -= lost;
-      moved_.push_back(node);
-      return true;
-    }
-    place = start;
-    return false;
+    place = best_place;
+    if (best_place != start) moved_.push_back(node);
+    return best_place != start;
   }
 
   TetMesh& mesh_;
   const LatticeNet& net_;
-  const VoxelRegions& voxels_;
-  AffineTransform voxel_from_lattice_;
-  std::int64_t may_lose_;
   std::vector<int> first_, tet_;  // indices of the tets around node i: tet_[first_[i]] .. tet_[first_[i + 1] - 1]
   std::vector<Point> V_;
-  std::vector<std::uint8_t> on_skin_;
+  std::unordered_map<int, Skin> skin_;  // by node of the surface at air
   std::vector<int> moved_;
   Eigen::Matrix3d turn_;
   Eigen::Vector3d offset_;
@@ -237,13 +194,11 @@ class Improver {
 
 }  // namespace
 
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings,
-            Progress& progress) {
-  const double spare = std::max(0.0, net.covered - settings.least_covered);
-  Improver improver(mesh, net, voxels, static_cast<std::int64_t>(spare * double(voxels.tissue.size())));
+int improve(TetMesh& mesh, const LatticeNet& net, const ImproveSettings& settings, Progress& progress) {
+  Improver improver(mesh, net);
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
-  // The flattest tets come first: all tets share one limit on the number of voxels that may leave the mesh.
+  // The flattest tets come first, since a node that has moved for one tet leaves less room for the next.
   for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3, progress);
   improver.write();
   return moves;

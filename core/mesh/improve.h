@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Improves tets by moving their nodes [Freitag & Ollivier-Gooch, Tetrahedral mesh improvement using swapping and
 // smoothing, 1997]: each node of a flat tet moves to where the smallest dihedral angle around the node is largest.
-// Nodes of the surface stay in their boxes (LatticeNet::low, high), so that the surface still cannot cross itself;
-// other nodes move freely.
+// Nodes of the surface stay in their boxes (LatticeNet::low, high), so that the surface still cannot cross itself, and
+// nodes of the skin stay close to the surface that was fitted to the voxels; other nodes move freely.
 #pragma once
 
 #include "core/mesh/lattice_net.h"
@@ -13,14 +13,13 @@ namespace limber {
 struct ImproveSettings {
   double enough_degrees = 10;  // tets whose smallest dihedral angle is larger stay unchanged
   int sweeps = 12;
-  double least_covered = 0.9992;  // share of the tissue voxels that must stay inside the mesh
 };
 
 // Moves the nodes of flat tets and returns the number of moves. A move never reduces the smallest dihedral angle around
 // its node.
 //   mesh  its first nodes are those of the net's surface, in the same order (one per row of net.low)
 //   throws Cancelled
-int improve(TetMesh& mesh, const LatticeNet& net, const VoxelRegions& voxels, const ImproveSettings& settings = {},
+int improve(TetMesh& mesh, const LatticeNet& net, const ImproveSettings& settings = {},
             Progress& progress = no_progress());
 
 }  // namespace limber

@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/mesh/surface_net.h"
+#include "core/mesh/voxel_ball.h"
 
 namespace limber {
 
@@ -56,6 +57,22 @@ std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice&
         std::for_each(&near_air[begin], &near_air[0] + end, body);
       },
       [&](const glm::ivec3& v) { return net.is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+}
+
+// Returns those of the voxels outside the surface that have no tissue voxel inside it within kNearVoxels.
+std::vector<glm::ivec3> find_missed(const SurfaceNet& net, const SampleLattice& lattice, const TissueVoxels& tissue,
+                                    const Grid& grid, const std::vector<glm::ivec3>& outside) {
+  const auto is_near_inside = [&](const glm::ivec3& v) {
+    return any_voxel_near(v, grid, kNearVoxels, [&](const glm::ivec3& near) {
+      return tissue.index_of(near) >= 0 && !net.is_air(lattice.fine_from_voxel * glm::dvec3(near));
+    });
+  };
+  return select(
+      std::ssize(outside), kVoxels,
+      [&](std::int64_t begin, std::int64_t end, const auto& body) {
+        std::for_each(&outside[begin], &outside[0] + end, body);
+      },
+      [&](const glm::ivec3& v) { return !is_near_inside(v); });
 }
 
 struct Missed {
@@ -185,23 +202,27 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   const VoxelLookup voxel_at(voxels, lattice);
   const SmallestCells smallest(lattice, voxels.grid);
   Pushes pushes(lattice.label.size());
-  const auto allowed = static_cast<std::int64_t>((1 - settings.least_covered) * double(voxels.tissue.size()));
+  const auto allowed = static_cast<std::int64_t>((1 - settings.least_near) * double(voxels.tissue.size()));
   auto net = std::make_unique<SurfaceNet>(lattice, voxel_at);
   std::vector<glm::ivec3> near_air, outside;
   bool is_known = false;  // whether near_air was found for the current net
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     net->place(pushes);
-    if (round > 0)
-      std::erase_if(outside,
-                    [&](const glm::ivec3& v) { return !net->is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
+    const auto missed = [&](const std::vector<glm::ivec3>& among) {
+      return find_missed(*net, lattice, voxels.tissue, voxels.grid, find_outside(*net, lattice, among));
+    };
+    if (round > 0) outside = missed(outside);
     if (round == 0 || std::ssize(outside) <= allowed) {  // moved points may have left other voxels outside
       if (!std::exchange(is_known, true)) near_air = find_near_air(*net, smallest, voxels.tissue);
-      outside = find_outside(*net, lattice, near_air);
+      outside = missed(near_air);
     }
     if (std::ssize(outside) <= allowed || round == kRounds) {
       LatticeNet result = finished(*net, lattice);
-      result.covered = 1 - double(outside.size()) / double(voxels.tissue.size());
+      const double all = double(voxels.tissue.size());
+      result.near = 1 - double(outside.size()) / all;
+      if (!is_known) near_air = find_near_air(*net, smallest, voxels.tissue);
+      result.covered = 1 - double(find_outside(*net, lattice, near_air).size()) / all;
       return result;
     }
     if (make_room(*net, lattice, cells_that_miss(lattice, outside), std::ssize(outside) - allowed, round, pushes)) {

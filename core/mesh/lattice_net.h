@@ -2,10 +2,11 @@
 // Fits a surface net over a lattice (surface_net.h) to a body's voxels, and fills it with the lattice's tets.
 //
 // Every sample of the lattice has a region: soft tissue, one of the bones of a rig, or air. The net's points on lattice
-// edges lie at the border between the voxels of two regions. Where tissue voxels stay outside the surface, nearby
-// points of the net are pushed outwards. Where that is not enough, the samples around these voxels become tissue, until
-// the surface encloses them. Two bones never share a cell: between them is at least one cell of soft tissue, so no node
-// belongs to two bones.
+// edges lie at the border between the voxels of two regions, and the net encloses the tissue's volume. Some voxels lie
+// outside the surface, as many as the surface encloses air. Where tissue voxels lie further out than kNearVoxels,
+// nearby points of the net are pushed outwards. Where that is not enough, the samples around these voxels become
+// tissue, until the surface comes near them. Two bones never share a cell: between them is at least one cell of soft
+// tissue, so no node belongs to two bones.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,10 @@
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {
+
+// Distance, voxels, within which tissue outside the mesh must have tissue inside it. It then moves with the mesh's
+// border.
+inline constexpr int kNearVoxels = 2;
 
 // The region of each tissue voxel: TetMesh::kSoft, or 1 + the index of the rig bone to which the voxel belongs.
 struct VoxelRegions {
@@ -29,7 +34,8 @@ struct LatticeNetSettings {
   double spacing_mm = 8;
   std::vector<glm::dvec3> fine_around;  // positions of joints that bend, world, mm
   double fine_radius_mm = 40;           // closer to these joints than this, samples are half as far apart
-  double least_covered = 0.9995;        // share of the tissue voxels whose centre must lie inside the surface
+  double least_near =
+      0.9995;  // share of the tissue voxels that must lie inside the surface or within kNearVoxels of it
 };
 
 struct LatticeNet {
@@ -41,6 +47,7 @@ struct LatticeNet {
   AffineTransform world_from_lattice;
   double spacing_mm = 0;  // the spacing in use, which may be larger than requested
   double covered = 0;     // share of tissue voxels inside the surface
+  double near = 0;        // share of tissue voxels that lie inside the surface, or near voxels inside
 };
 
 // Returns the surface net and its tets; both are empty for a body without voxels.

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/parallel.h"
+#include "core/mesh/voxel_ball.h"
 #include "core/mesh/voxels_in_tet.h"
 
 namespace limber {
@@ -16,8 +17,10 @@ namespace {
 
 constexpr double kVolumeTolerance = 1e-9;  // largest error of a region's volume, as a share of the total volume
 
-double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue) {
-  if (tissue.size() == 0) return 1;
+// Fills in `covered` and `near`.
+void measure_cover(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue, MeshQuality& quality) {
+  quality.covered = quality.near = 1;
+  if (tissue.size() == 0) return;
   const AffineTransform to_voxel = voxel_from_world(grid);
   const bool mirrored = glm::determinant(to_voxel.linear) < 0;
   std::vector<glm::dvec3> V(mesh.V.rows());
@@ -44,12 +47,22 @@ double covered_share(const TetMesh& mesh, const Grid& grid, const TissueVoxels& 
         });
       }
   });
-  const double covered = parallel_sum(std::ssize(tissue.bricks()), 256, [&](std::int64_t begin, std::int64_t end) {
-    std::int64_t count = 0;
-    tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { count += hit[grid.index(v)]; });
-    return double(count);
+  const auto share_of = [&](const auto& passes) {
+    return parallel_sum(std::ssize(tissue.bricks()), 256,
+                        [&](std::int64_t begin, std::int64_t end) {
+                          std::int64_t count = 0;
+                          tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) { count += passes(v); });
+                          return double(count);
+                        }) /
+           double(tissue.size());
+  };
+  const auto is_hit = [&](const glm::ivec3& v) { return hit[grid.index(v)] != 0; };
+  quality.covered = share_of(is_hit);
+  quality.near = share_of([&](const glm::ivec3& v) {
+    return is_hit(v) || any_voxel_near(v, grid, kNearVoxels, [&](const glm::ivec3& near) {
+             return tissue.index_of(near) >= 0 && is_hit(near);
+           });
   });
-  return covered / double(tissue.size());
 }
 
 double total(const std::map<std::uint16_t, double>& volumes) {
@@ -91,7 +104,8 @@ MeshQuality quality_of(const TetMesh& mesh, const Grid& grid, const TissueVoxels
   }
   quality.min_dihedral_degrees = mesh.T.rows() > 0 ? smallest * 180 / std::numbers::pi : 0;
   quality.share_below_5_degrees = mesh.T.rows() > 0 ? double(below) / double(mesh.T.rows()) : 0;
-  quality.covered = covered_share(mesh, grid, tissue);
+  measure_cover(mesh, grid, tissue, quality);
+  quality.volume_ratio = total(region_volumes(mesh)) / (double(tissue.size()) * grid.voxel_volume());
   return quality;
 }
 

@@ -14,6 +14,8 @@ struct MeshQuality {
   double min_dihedral_degrees = 0;
   double share_below_5_degrees = 0;  // share of the tets whose smallest dihedral angle is below 5 degrees
   double covered = 0;                // share of tissue voxels whose centre lies in a tet
+  double near = 0;                   // share of tissue voxels that are covered or have a covered one within kNearVoxels
+  double volume_ratio = 0;           // volume of the tets relative to that of the tissue voxels
 };
 
 MeshQuality quality_of(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue);

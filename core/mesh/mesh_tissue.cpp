@@ -20,11 +20,11 @@ std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) {
 }
 
 // Fills the net's surface with tets by TetGen. Returns why that failed, or an empty string.
-std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels,
-                           const MeshSettings& settings, Progress& progress) {
+std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const MeshSettings& settings,
+                           Progress& progress) {
   Tetrahedralized filled = tetrahedralize_inside(net.surface, settings.limits, progress);
   if (!filled.mesh) return filled.failure;
-  improve(*filled.mesh, net, voxels, ImproveSettings{}, progress);
+  improve(*filled.mesh, net, ImproveSettings{}, progress);
   if (std::string fault = find_fault_of(*filled.mesh, net); !fault.empty()) return fault;
   result.mesh = std::move(*filled.mesh);
   result.mesher = Mesher::tetgen;
@@ -41,12 +41,12 @@ void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSetting
   result.spacing_mm = net.spacing_mm;
   progress.update("tetrahedra", 0);
   if (by_tetgen) {
-    const std::string failure = fill_by_tetgen(result, net, voxels, settings, progress);
+    const std::string failure = fill_by_tetgen(result, net, settings, progress);
     if (failure.empty()) return;
     result.warning = "the mesh is made of the lattice's own tetrahedra: TetGen failed on its surface: " + failure;
   }
   result.mesh = std::move(net.mesh);
-  improve(result.mesh, net, voxels, ImproveSettings{}, progress);
+  improve(result.mesh, net, ImproveSettings{}, progress);
   if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty())
     throw Error("a tet mesh is not sound", fault, "try another spacing of nodes");
 }

@@ -68,6 +68,10 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   number_cells();
   number_faces();
   find_air();
+  start_at_borders();
+  shift_to_skin(voxel_at);
+  fitted_.reserve(nodes_.size());
+  for (const Node& node : nodes_) fitted_.push_back(node.place);
 }
 
 // Calls body(from, at, axis, length, first, second) for each lattice edge with tissue at one end or both. `at` is the
@@ -196,28 +200,21 @@ void SurfaceNet::find_air() {
       }
 }
 
-void SurfaceNet::place(const Pushes& pushes) {
+void SurfaceNet::start_at_borders() {
   struct Sum {
-    glm::dvec3 place{0}, outwards{0};
+    glm::dvec3 place{0};
     int count = 0;
   };
   const int first_cell = static_cast<int>(edges_.size());
   std::vector<Sum> sums(nodes_.size() - edges_.size());
   const auto meet = [&](int node, const Edge& edge) {
-    Sum& sum = sums[node - first_cell];
-    sum.place += nodes_[edge.node].place;
-    if (edge.second == kAir) sum.outwards[edge.axis] += 1;
-    if (edge.first == kAir) sum.outwards[edge.axis] -= 1;
-    ++sum.count;
+    sums[node - first_cell].place += nodes_[edge.node].place;
+    ++sums[node - first_cell].count;
   };
   for (const Edge& edge : edges_) {
-    const std::uint8_t pushed = pushes.edge[edge.axis][lattice_.index(edge.from)];
-    double share = edge.border;
-    if (edge.second == kAir) share += kPushShare * pushed;
-    if (edge.first == kAir) share -= kPushShare * pushed;
     Node& node = nodes_[edge.node];
     node.place[edge.axis] =
-        std::clamp(edge.from[edge.axis] + share * edge.length, node.low[edge.axis], node.high[edge.axis]);
+        std::clamp(edge.from[edge.axis] + double(edge.border) * edge.length, node.low[edge.axis], node.high[edge.axis]);
     for (int slot = 0; slot < 4; ++slot) {
       if (edge.cell[slot] != edge.cell[(slot + 3) % 4])
         meet(edge.cell[slot], edge);  // a larger cell fills two slots, but counts once
@@ -226,11 +223,94 @@ void SurfaceNet::place(const Pushes& pushes) {
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     Node& node = nodes_[first_cell + i];
-    node.place = sums[i].place / double(sums[i].count);
-    if (i < cells_.size())
-      if (const double length = glm::length(sums[i].outwards); length > 0)
-        node.place +=
-            sums[i].outwards * (kPushShare * cells_[i].size * pushes.cell[lattice_.index(cells_[i].corner)] / length);
+    node.place = glm::clamp(sums[i].place / double(sums[i].count), node.low, node.high);
+  }
+}
+
+namespace {
+
+// Returns the distance along `outwards` from a position to the nearest border between tissue and air, in lattice
+// steps, negative where the position is in air; nothing if no border is closer than `reach`.
+std::optional<double> distance_to_skin(const VoxelLookup& voxel_at, const glm::dvec3& place, const glm::dvec3& outwards,
+                                       double reach) {
+  const double step = 0.5 * voxel_at.shortest_voxel();
+  const bool is_air = voxel_at.is_air(place);
+  const double side = is_air ? -1 : 1;
+  for (double far = step; far < reach; far += step)
+    if (voxel_at.is_air(place + side * far * outwards) != is_air) return side * (far - 0.5 * step);
+  return std::nullopt;
+}
+
+// Returns the shift of a node that moves it by `distance` along `normal`, for a node that may move only where its box
+// is wide. A node whose box is narrow along the normal moves less far.
+glm::dvec3 shift_in_box(const SurfaceNet::Node& node, const glm::dvec3& normal, double distance) {
+  constexpr double kSteepest = 0.3;  // least component of the normal along which a node moves the whole distance
+  glm::dvec3 along = normal;
+  for (int i = 0; i < 3; ++i)
+    if (node.low[i] == node.high[i]) along[i] = 0;
+  const double length = glm::length(along);
+  return length > 0 ? along * (distance / length / std::max(length, kSteepest)) : glm::dvec3(0);
+}
+
+}  // namespace
+
+void SurfaceNet::shift_to_skin(const VoxelLookup& voxel_at) {
+  constexpr int kRounds = 6;
+  constexpr double kReach = 0.5;  // of a cell's size: a border further away belongs to another part of the body
+  struct Fit {
+    glm::dvec3 normal{0};  // sum of the triangles' normals, each as long as twice the triangle's area
+    double gap = 0, weight = 0;
+  };
+  std::vector<Fit> fits;
+  for (int round = 0; round < kRounds; ++round) {
+    fits.assign(nodes_.size(), {});
+    for_each_triangle([&](int a, int b, int c, const Edge& edge) {
+      if (edge.first != kAir && edge.second != kAir) return;
+      const std::array<int, 3> corner = edge.second == kAir ? std::array{a, b, c} : std::array{a, c, b};
+      const glm::dvec3 &p = nodes_[corner[0]].place, &q = nodes_[corner[1]].place, &r = nodes_[corner[2]].place;
+      const glm::dvec3 normal = glm::cross(q - p, r - p);
+      const double area = glm::length(normal);
+      for (const int node : corner) fits[node].normal += normal;
+      if (area == 0) return;
+      for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 sample = (p + q + r + 3.0 * nodes_[corner[i]].place) / 6.0;
+        const auto gap = distance_to_skin(voxel_at, sample, normal / area, kReach * edge.length);
+        if (!gap) continue;
+        for (int k = 0; k < 3; ++k) {
+          const double weight = area * (k == i ? 4 : 1);
+          fits[corner[k]].gap += weight * *gap;
+          fits[corner[k]].weight += weight;
+        }
+      }
+    });
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const double length = glm::length(fits[i].normal);
+      if (length == 0 || fits[i].weight == 0) continue;
+      Node& node = nodes_[i];
+      node.place = glm::clamp(node.place + shift_in_box(node, fits[i].normal / length, fits[i].gap / fits[i].weight),
+                              node.low, node.high);
+    }
+  }
+}
+
+void SurfaceNet::place(const Pushes& pushes) {
+  const std::size_t first_cell = edges_.size();
+  std::vector<glm::dvec3> outwards(cells_.size(), glm::dvec3(0));
+  for (const Edge& edge : edges_) {
+    const double side = (edge.second == kAir) - (edge.first == kAir);
+    Node& node = nodes_[edge.node];
+    node.place = fitted_[edge.node];
+    node.place[edge.axis] += side * kPushShare * edge.length * pushes.edge[edge.axis][lattice_.index(edge.from)];
+    node.place = glm::clamp(node.place, node.low, node.high);
+    for (int slot = 0; slot < 4; ++slot)
+      if (edge.cell[slot] != edge.cell[(slot + 3) % 4]) outwards[edge.cell[slot] - first_cell][edge.axis] += side;
+  }
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    Node& node = nodes_[first_cell + i];
+    node.place = fitted_[first_cell + i];
+    if (const double length = glm::length(outwards[i]); length > 0)
+      node.place +=
+          outwards[i] * (kPushShare * cells_[i].size * pushes.cell[lattice_.index(cells_[i].corner)] / length);
     node.place = glm::clamp(node.place, node.low, node.high);
   }
 }

@@ -15,6 +15,7 @@
 // vertices lie in their cells, so this cannot fail.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -30,7 +31,13 @@ class VoxelLookup {
   // Splits the line of `length` that begins at `from` along `axis` into `count` equal intervals, and writes the region
   // at the centre of each.
   void along(const glm::dvec3& from, int axis, int length, int count, std::uint16_t* regions) const;
+  // Returns whether the voxel around a position is air.
+  bool is_air(const glm::dvec3& place) const {
+    const glm::ivec3 v(glm::floor((place - offset_) / scale_ + 0.5));
+    return !voxels_.grid.contains(v) || voxels_.tissue.index_of(v) < 0;
+  }
   double voxel_along(int axis) const { return scale_[axis]; }  // voxel size along `axis`, lattice steps
+  double shortest_voxel() const { return std::min({scale_.x, scale_.y, scale_.z}); }
 
  private:
   const VoxelRegions& voxels_;
@@ -60,10 +67,12 @@ class SurfaceNet {
     int face[4];   // node of the face between cells i and i + 1; -1: both have the same size
   };
 
-  // Numbers the nodes. Node positions are valid only after a call of place().
+  // Numbers the nodes and fits them to the voxels: points on lattice edges lie at the border between the edge's
+  // regions, points of cells and faces in the middle of the edge points around them. Then all points at air move along
+  // the surface's normal until, around each of them, as much tissue lies outside the surface as air lies inside. So a
+  // coarse surface has the volume of the voxels, although its corners lie outside a convex body.
   SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at);
-  // Moves the points on lattice edges to the border between the regions, and outwards by the number of pushes. Then
-  // moves the points of cells and faces to the mean of the edge points around them.
+  // Moves each point from its fitted position outwards by its number of pushes.
   void place(const Pushes& pushes);
 
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -114,6 +123,8 @@ class SurfaceNet {
   void number_cells();
   void number_faces();
   void find_air();
+  void start_at_borders();
+  void shift_to_skin(const VoxelLookup& voxel_at);
   std::int64_t face_between(const glm::ivec3& from, int axis, int slot, int size) const;
   glm::ivec3 sample_at(std::int64_t index) const;
   std::optional<glm::dvec3> middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner,
@@ -122,7 +133,8 @@ class SurfaceNet {
                                int size) const;
 
   const SampleLattice& lattice_;
-  std::vector<Node> nodes_;  // nodes on lattice edges, then those in cells, then those on faces
+  std::vector<Node> nodes_;         // nodes on lattice edges, then those in cells, then those on faces
+  std::vector<glm::dvec3> fitted_;  // #nodes: position before any push
   std::vector<Edge> edges_;
   std::vector<Cell> cells_;  // cells with samples of two regions
   std::vector<std::int32_t> cell_node_, edge_node_[3];

@@ -69,7 +69,7 @@ void measure(const std::filesystem::path& data, const Case& each, double spacing
   const double start = cpu_seconds();
   LatticeNet net = lattice_net(voxels, {.spacing_mm = spacing * std::cbrt(2.0)});
   const double netted = cpu_seconds();
-  improve(net.mesh, net, voxels);
+  improve(net.mesh, net);
   const double improved = cpu_seconds();
   const std::string fault = find_fault(net.mesh, enclosed_volumes(net.surface, net.mesh.V));
   const double checked = cpu_seconds();

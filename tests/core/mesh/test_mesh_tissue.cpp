@@ -16,6 +16,7 @@
 #include "core/mesh/crossings.h"
 #include "core/phantom/phantom.h"
 #include "core/rig_io/rig_io.h"
+#include "core/volume/distance_transform.h"
 #include "core/volume_io/tissue_table_io.h"
 #include "core/volume_io/volume_io.h"
 #include "tests/support/random_bodies.h"
@@ -52,8 +53,10 @@ void check_sound(const TissueMesh& result, const LabelVolume& regions) {
     if (region != TetMesh::kSoft && there.count(region + 1) == 0) FAIL_CHECK("a region that is not there");
 }
 
-void check_quality(const MeshQuality& quality) {
-  CHECK(quality.covered >= 0.999);
+//   volume_error  largest error of the mesh's volume, relative to that of the voxels
+void check_quality(const MeshQuality& quality, double volume_error = 0.02) {
+  CHECK(quality.near >= 0.999);
+  CHECK(quality.volume_ratio == doctest::Approx(1).epsilon(volume_error));
   CHECK(quality.min_dihedral_degrees >= 2.5);
   CHECK(quality.share_below_5_degrees <= 0.0005);
 }
@@ -81,15 +84,62 @@ Regions regions_of(LabelVolume volume, TissueTable table, const Armature& rig) {
   return regions;
 }
 
-void check_body(const Regions& regions, const std::string& name, MeshSettings settings = {}) {
+// Returns the share of the mesh's border nodes that lie within 1.5 voxels of the tissue's border. Nodes at the faces of
+// the grid, where the tissue is cut off, do not count.
+double share_on_skin(const TetMesh& mesh, const LabelVolume& volume) {
+  const VoxelBox box = tissue_box(volume, 12);
+  const double voxel = volume.grid.spacing.x;
+  std::vector<std::uint8_t> body(box.voxel_count());
+  glm::ivec3 v;
+  for (v.z = 0; v.z < box.size.z; ++v.z)
+    for (v.y = 0; v.y < box.size.y; ++v.y)
+      for (v.x = 0; v.x < box.size.x; ++v.x) body[box.index(box.lowest + v)] = volume.at(box.lowest + v) != 0;
+  const std::vector<float> distance = signed_distance(box, body, volume.grid.spacing);
+  // Interpolates the distance; between the centres of two voxels the border lies half-way.
+  const auto distance_at = [&](const glm::dvec3& place) {
+    const glm::ivec3 low = glm::clamp(glm::ivec3(glm::floor(place)), box.lowest, box.lowest + box.size - 2);
+    const glm::dvec3 part = glm::clamp(place - glm::dvec3(low), 0.0, 1.0);
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 off(corner & 1, corner >> 1 & 1, corner >> 2);
+      const double at = distance[box.index(low + off)];
+      const glm::dvec3 weight = glm::mix(1.0 - part, part, glm::dvec3(off));
+      sum += weight.x * weight.y * weight.z * (at + (at > 0 ? -0.5 : 0.5) * voxel);
+    }
+    return sum;
+  };
+  const AffineTransform to_voxel = voxel_from_world(volume.grid);
+  const Eigen::MatrixX3i skin = boundary_of(mesh.T);
+  const std::set<int> nodes(skin.data(), skin.data() + skin.size());
+  int on = 0, all = 0;
+  for (const int node : nodes) {
+    const glm::dvec3 place = to_voxel * glm::dvec3(mesh.V(node, 0), mesh.V(node, 1), mesh.V(node, 2));
+    const glm::dvec3 last(volume.grid.size - 2);
+    if (glm::any(glm::lessThan(place, glm::dvec3(1))) || glm::any(glm::greaterThan(place, last))) continue;
+    ++all;
+    on += std::abs(distance_at(place)) <= 1.5 * voxel;
+  }
+  return double(on) / std::max(all, 1);
+}
+
+void check_body(const Regions& regions, const std::string& name, MeshSettings settings = {},
+                double volume_error = 0.02) {
   const TissueMesh result = mesh_tissue(regions.voxels(), settings);
   const MeshQuality quality = limber::quality_of(result.mesh, regions.volume.grid, regions.tissue);
   MESSAGE(name, ", ", settings.spacing_mm, " mm: ", result.mesh.V.rows(), " nodes, ", result.mesh.T.rows(),
-          " tets, covered ", 100 * quality.covered, " %, smallest angle ", quality.min_dihedral_degrees,
-          ", below 5 degrees ", 100 * quality.share_below_5_degrees, " %, ", result.seconds, " s");
+          " tets, covered ", 100 * quality.covered, " %, near ", 100 * quality.near, " %, volume ",
+          quality.volume_ratio, ", smallest angle ", quality.min_dihedral_degrees, ", below 5 degrees ",
+          100 * quality.share_below_5_degrees, " %, ", result.seconds, " s");
   CHECK(result.warning == "");
   check_sound(result);
-  check_quality(quality);
+  check_quality(quality, volume_error);
+  if (volume_error < 0.1) {
+    const double on_skin = share_on_skin(result.mesh, regions.volume);
+    // Where an edge is eight voxels long, more than 1 % of the nodes are further than 1.5 voxels off fingers and folds.
+    const bool coarse = settings.spacing_mm >= 8 * regions.volume.grid.spacing.x;
+    MESSAGE("on the skin ", 100 * on_skin, " %");
+    CHECK(on_skin >= (coarse ? 0.97 : 0.99));
+  }
   // The skin crosses itself nowhere.
   const Eigen::MatrixX3i skin = boundary_of(result.mesh.T);
   CHECK(crossing_pairs(result.mesh.V, skin).empty());
@@ -212,7 +262,9 @@ TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::
       settings.mesher = mesher;
       const TissueMesh result = mesh_tissue(body.regions, settings);
       check_sound(result, body.regions);
-      CHECK(quality_of(result, body.regions).covered >= 0.999);
+      // Moves of nodes that improve flat tets may leave a few voxels of a tiny body further away.
+      const double voxels = double(TissueVoxels(body.regions).size());
+      CHECK((1 - quality_of(result, body.regions).near) * voxels <= std::max(4.0, 0.001 * voxels));
       CHECK(crossing_pairs(result.mesh.V, boundary_of(result.mesh.T)).empty());
       if (mesher == Mesher::lattice) CHECK(result.warning == "");
       by_tetgen += result.mesher == Mesher::tetgen;
@@ -288,7 +340,8 @@ TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans
       Regions soft{std::move(file.volume), {}, {}};
       soft.tissue = TissueVoxels(soft.volume);
       soft.region.assign(soft.tissue.size(), TetMesh::kSoft);
-      check_body(soft, one.name, {.spacing_mm = one.spacing_mm});
+      // Cartilage and ligaments without the flesh around them: sheets that are thinner than the lattice's cells.
+      check_body(soft, one.name, {.spacing_mm = one.spacing_mm}, 0.4);
       continue;
     }
     TissueTable table = merge_tissue_tables(file.tissues, nullptr);
