@@ -13,9 +13,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kReach = 16;            // largest distance to the tissue near a node in air, voxels
-constexpr int kPlaces = 4;            // intervals along each tet edge in the grid of points that sample labels
-constexpr double kLeastFilled = 0.1;  // least share of tissue assumed in a tet, so that each tet resists volume change
+constexpr int kReach = 16;  // largest distance at which the tissue nearest to a position is searched, voxels
+constexpr int kPlaces = 4;  // intervals along each tet edge in the grid of points where labels are read
+// Lower limit on TetMaterial::filled, the share of a tet that is tissue, so that each tet resists change of its volume.
+constexpr double kLeastFilled = 0.1;
 constexpr double kMostPoisson = 0.4999;  // largest Poisson ratio that the volume terms allow; 0.5 is impossible
 
 TetMaterial material_of(const Tissue& tissue, double stiffest) {
@@ -28,7 +29,8 @@ class Surroundings {
  public:
   explicit Surroundings(const LabelVolume& volume) : volume_(volume), voxel_(voxel_from_world(volume.grid)) {}
 
-  // Finds the nearest tissue voxel (in mm) for which passes() is true. Returns false if there is none within kReach.
+  // Sets `found` to the tissue voxel nearest to a position, in mm, for which passes() is true. Returns false if there
+  // is none within kReach voxels.
   template <class Passes>
   bool nearest(const Eigen::RowVector3d& world, const Passes& passes, glm::ivec3& found) const {
     const glm::dvec3 at = voxel_ * glm::dvec3(world[0], world[1], world[2]), spacing = volume_.grid.spacing;
@@ -75,7 +77,7 @@ Influence influence_at(const SkinWeights& weights, const TissueVoxels& tissue, c
 std::vector<BoneWeight> influences_around(const SkinWeights& weights, const LabelVolume& volume,
                                           const TissueVoxels& tissue, const std::vector<int>& moves_as,
                                           const glm::ivec3& voxel) {
-  std::vector<std::pair<int, std::int64_t>> sums;  // (bone, sum of weights) in ascending order of bones; only a few
+  std::vector<std::pair<int, std::int64_t>> sums;  // (bone, sum of its weights), by ascending bone
   std::int64_t total = 0;
   const auto add = [&](int bone, int weight) {
     const auto at = std::lower_bound(sums.begin(), sums.end(), bone,
@@ -95,8 +97,8 @@ std::vector<BoneWeight> influences_around(const SkinWeights& weights, const Labe
   return result;
 }
 
-// Estimates the volume that each label fills in each tet from 35 sample points, each of which stands for an equal
-// volume.
+// Estimates the volume that each label fills in each tet: reads the labels at 35 points of the tet, each of which
+// stands for the same share of its volume.
 void find_parts(TissueModel& model, const LabelVolume& volume) {
   const TetMesh& mesh = model.fem.mesh;
   const AffineTransform voxel = voxel_from_world(volume.grid);
@@ -166,9 +168,9 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
 
 constexpr int kNone = -1, kSeveral = -2;
 
-// Returns, for each node, whether it lies between two bones: whether its distances to the two nearest bones sum to less
-// than `joint_mm`. At most half of each bone's own nodes are included, those nearest to another bone.
-//   bone  #V: the bone of each node, kNone or kSeveral
+// Returns 1 for each node that belongs to a joint: the sum of its distances to the two nearest bones is less than
+// `joint_mm`. Of the nodes of a bone itself, at most half are included, those nearest to another bone.
+//   bone  #V: the bone of each node; kNone: soft tissue; kSeveral: shared by bones
 std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector<int>& bone, double joint_mm) {
   std::vector<VoxelRange> boxes(mesh.V.rows()), of_bones(mesh.V.rows());
   for (int i = 0; i < mesh.V.rows(); ++i) {
@@ -177,7 +179,7 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   }
   const BoxBins bins(of_bones, 8);
   const int reach = static_cast<int>(std::ceil(joint_mm)) + 1;
-  std::map<int, std::vector<std::pair<double, int>>> near_other;  // per bone: (node's distance to another bone, node)
+  std::map<int, std::vector<std::pair<double, int>>> near_other;  // per bone: (distance to another bone, node)
   std::map<int, std::size_t> count;
   std::vector<std::uint8_t> between(mesh.V.rows(), 0);
   std::vector<int> near;
@@ -206,10 +208,50 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   return between;
 }
 
-// Chooses the bone that holds each node: the bone of the tets around it, or the bone with which rigid tissue moves.
-// Also marks the tets between two bones as joints.
+// Marks the nodes of bones that the pose brings closer to another bone than `closing_mm`, although they are further
+// away at rest. Of the nodes of a bone, at most half become or stay marked, those nearest to another bone.
+//   marked  #V: 1 for nodes that belong to a joint
+void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
+                        const std::vector<std::vector<RigidTransform>>& motions, double closing_mm,
+                        std::vector<std::uint8_t>& marked) {
+  std::map<int, std::size_t> count, free;  // of each bone: its nodes, and how many of them may still become marked
+  std::vector<int> nodes;
+  for (int i = 0; i < mesh.V.rows(); ++i)
+    if (bone[i] >= 0) nodes.push_back(i), ++count[bone[i]];
+  for (const auto& [which, all] : count) free[which] = all / 2;
+  for (const int i : nodes)
+    if (marked[i] && free[bone[i]] > 0) --free[bone[i]];
+
+  std::vector<double> nearest(nodes.size(), INFINITY);
+  const int reach = static_cast<int>(std::ceil(closing_mm)) + 1;
+  for (const std::vector<RigidTransform>& motion : motions) {
+    std::vector<glm::dvec3> posed;
+    std::vector<VoxelRange> boxes;
+    for (const int i : nodes) {
+      posed.push_back(motion[bone[i]] * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
+      const glm::ivec3 cell(glm::floor(posed.back()));
+      boxes.push_back({cell, cell});
+    }
+    const BoxBins bins(boxes, 8);
+    std::vector<int> near;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      bins.meeting({boxes[k].low - reach, boxes[k].high + reach}, near);
+      for (const int n : near)
+        if (bone[nodes[n]] != bone[nodes[k]]) nearest[k] = std::min(nearest[k], glm::distance(posed[n], posed[k]));
+    }
+  }
+  std::vector<std::pair<double, int>> closing;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (nearest[k] < closing_mm && !marked[nodes[k]]) closing.push_back({nearest[k], nodes[k]});
+  std::sort(closing.begin(), closing.end());
+  for (const auto& [distance, node] : closing)
+    if (std::size_t& left = free[bone[node]]; left > 0) marked[node] = 1, --left;
+}
+
+// Chooses the bone that holds each node: the bone of the bone tets around it or, in soft tissue that moves rigidly, the
+// bone with which this tissue moves. Also marks the tets between two bones as joints.
 void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
-                    const SkinWeights& weights, const DeformingRegion& moving, double joint_mm) {
+                    const SkinWeights& weights, const DeformingRegion& moving, const TissueModelSettings& settings) {
   const TetMesh& mesh = model.fem.mesh;
   std::vector<int> bone(mesh.V.rows(), kNone);
   for (int t = 0; t < mesh.T.rows(); ++t) {
@@ -220,7 +262,8 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
       holder = holder == kNone || holder == mine ? mine : kSeveral;
     }
   }
-  const std::vector<std::uint8_t> in_joint = nodes_of_joints(mesh, bone, joint_mm);
+  std::vector<std::uint8_t> in_joint = nodes_of_joints(mesh, bone, settings.joint_mm);
+  mark_closing_bones(mesh, bone, settings.motions, settings.closing_mm, in_joint);
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int first = kNone;
     bool between = false, inside = true;
@@ -274,7 +317,7 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
   TissueModel model;
   model.fem.mesh = std::move(mesh);
   model.fem.bone_names = weights.bones();
-  choose_holders(model, volume, tissue, weights, moving, settings.joint_mm);
+  choose_holders(model, volume, tissue, weights, moving, settings);
   find_parts(model, volume);
   choose_materials(model, volume, tissues, settings);
   return model;

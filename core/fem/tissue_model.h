@@ -13,13 +13,16 @@
 // held by the bone with which that tissue moves. A node of two bones that move differently is not held. Tets between
 // two bones are the joint: soft and compressible, since there the mesh is far coarser than the gap and fluid that let a
 // joint turn. Bones slide along each other by more than a tet, which a single layer of tets cannot follow: so the ends
-// of bones within `joint_mm` of another bone also belong to the joint and are not held. Their bone voxels still move
-// rigidly in the posed volume.
+// of bones within `joint_mm` of another bone also belong to the joint and are not held. Where the pose brings two bones
+// closer together than `closing_mm`, or into each other, no soft tissue could be pressed flat enough between them: the
+// nodes of bone there are not held either, and their tets belong to the joint. All bone voxels still move rigidly in
+// the posed volume.
 #pragma once
 
 #include <map>
 #include <vector>
 
+#include "core/base/rigid_transform.h"
 #include "core/fem/deforming_region.h"
 #include "core/tissue/tissue_table.h"
 
@@ -27,6 +30,10 @@ namespace limber {
 
 struct TissueModelSettings {
   double joint_mm = 12;
+  // Motions of the rig's bones, indexed as weights.bones(), at some positions on the path; and the distance between two
+  // bones at one of them below which both belong to a joint.
+  std::vector<std::vector<RigidTransform>> motions = {};
+  double closing_mm = 8;
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
   double stiffest = 360;                                         // upper limit on the shear modulus of soft tissue, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // material of tets of bone; shear modulus in kPa
@@ -43,15 +50,15 @@ struct TissueModel {
   std::vector<std::uint8_t> joint;  // #T: 1 for tets between two bones, which form a joint
 };
 
-// Returns the regions to mesh as labels: 0 for air and tissue that is not meshed, 1 for soft tissue, 2 + bone for bone
-// tissue (bone: an index as in moves_as).
+// Returns the regions to mesh as labels: 0 for air and tissue that is not meshed, 1 for soft tissue, 2 + b for tissue
+// of bone b. Bones that move alike count as one: b is an entry of DeformingRegion::moves_as.
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
                             const SkinWeights& weights, const DeformingRegion& moving);
 
 // Builds the model of the meshed tissue.
 //   weights  must give each voxel of bone tissue to one bone with weight 1
-//   mesh     of the labels that regions_to_mesh() returns; bone b, an index into DeformingRegion::moves_as, is region 1
-//   + b
+//   mesh     mesh of the regions that regions_to_mesh() returns. Its tets of bone b have the region 1 + b, its tets of
+//            soft tissue the region 0
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                          const SkinWeights& weights, const DeformingRegion& moving, TetMesh mesh,
                          const TissueModelSettings& settings = {});

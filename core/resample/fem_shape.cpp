@@ -18,37 +18,42 @@ namespace limber {
 
 namespace {
 
-// Thickness, mm, of the adult elbow for which the lengths below were chosen. They are scaled by the thickness of the
-// thinnest limb that the pose bends, relative to this, so that bodies of any size are posed alike.
+// Thickness in mm of an adult's elbow, for which the lengths below were chosen. These lengths are multiplied by (the
+// thickness of the thinnest limb that the pose bends) / kThickness, so that bodies of any size are posed alike.
 constexpr double kThickness = 93;
-// Edge length of the tets in such an elbow, mm, by quality: 8 and 12 tets across the limb.
+// Edge length in mm of the tets in an adult's elbow, for draft and for normal quality: 8 and 12 tets across the elbow.
 constexpr double kDraft = 12, kUsual = 8;
-// Upper limit on the number of meshed cells, cubes with a tet's edge length as edge: about those of a seated adult at
-// kUsual, and accordingly fewer in a draft. A pose that bends both fingers and hips would exceed it, so its tets are
-// made larger than requested.
+// Upper limit on the volume to mesh, in cubes with the tets' edge length as edge. A seated adult at kUsual needs about
+// as many; for draft quality the limit is lower. A pose that bends both fingers and hips would exceed the limit, so its
+// tets are made larger than requested.
 constexpr double kMostCells = 40'000;
-// How far the mesh reaches beyond tissue whose weights blend several bones, mm: skin creases further out than that.
+// Width of the margin that is meshed around tissue whose weights blend several bones, mm. It is needed because skin
+// creases also beyond that tissue.
 constexpr double kMargin = 24;
 // Width of the margin that is meshed around tissue that the pose brings into contact, mm. It is smaller than kMargin,
 // because pressed flesh deforms less far out than a crease.
 constexpr double kGive = 16;
-// Width of the rim of held nodes around the tissue that may deform, in tet edge lengths: at least two layers of tets.
+// Width of the rim around the tissue that may deform, in tet edge lengths: at least two layers of tets. The nodes of
+// the rim move rigidly with a bone.
 constexpr double kRim = 2.5;
 // Distance from another bone, in tet edge lengths, below which the end of a bone is part of a joint and may slide.
 constexpr double kJoint = 2;
-// Upper limit on the distance of a bone's node from its exact position, mm. Coarse tets, whose bones are rough, have a
-// larger limit.
+// Distance between two bones in a pose, in tet edge lengths, below which both are part of a joint there.
+constexpr double kClosing = 1;
+// Upper limit on the distance of a bone's node from its exact position, mm. With coarse tets, which follow a bone's
+// shape only roughly, the limit is larger.
 constexpr double kDrift = 2;
-constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; smaller where tets are small
+constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
-constexpr double kBent = 0.9997;  // cosine of half an angle of 3 degrees: fine quality has smaller tets about the joint
+// Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
+constexpr double kBent = 0.9997;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Returns the joints that turn by more than an angle in any of the poses.
-//   cosine  of half the angle
+// Returns the positions at rest of the joints that turn by more than a given angle in at least one pose.
+//   cosine  the cosine of half the angle
 std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<Pose>& poses, double cosine) {
   std::vector<glm::dvec3> joints;
   for (size_t b = 0; b < armature.bones.size(); ++b)
@@ -59,8 +64,8 @@ std::vector<glm::dvec3> bent_joints(const Armature& armature, const std::vector<
   return joints;
 }
 
-// Returns the thickness of the thinnest limb at these joints as a multiple of kThickness. Joints outside all tissue do
-// not count; without any other it is 1.
+// Returns the thickness of the thinnest limb at these joints as a multiple of kThickness. Joints outside all tissue are
+// left out; if no joint remains, the result is 1.
 double limb_size(const TissueVoxels& tissue, const Grid& grid, const std::vector<glm::dvec3>& joints) {
   const TissueDepth depth(tissue, grid.spacing);
   std::optional<double> thinnest;
@@ -70,7 +75,7 @@ double limb_size(const TissueVoxels& tissue, const Grid& grid, const std::vector
   return thinnest.value_or(kThickness) / kThickness;
 }
 
-// Returns the edge length of tets, mm. The smallest tets are not smaller than a voxel, which holds no more detail.
+// Returns the edge length of tets in mm. No tet is smaller than a voxel, since voxels show no smaller detail.
 double spacing_of(FemQuality quality, double size, const Grid& grid) {
   const double voxel = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   return std::max(size * (quality == FemQuality::Draft ? kDraft : kUsual),
@@ -104,8 +109,8 @@ std::vector<double> places_of(std::size_t poses) {
   return places;
 }
 
-// Returns the nodes that a bone still holds on one leg of the path (the way from one pose to the next). Their release
-// point `until` is converted from the whole path to that leg.
+// Returns the nodes that still wait to become free on one leg of the path (the way from one pose to the next). Their
+// path position `until` is converted from a position on the whole path to a position on that leg.
 std::vector<FemModel::Waiting> on_leg(std::vector<FemModel::Waiting> waiting, std::size_t leg, std::size_t legs) {
   for (FemModel::Waiting& each : waiting) each.until = each.until * double(legs) - double(leg);
   std::erase_if(waiting, [](const FemModel::Waiting& each) { return each.until <= 0; });
@@ -176,9 +181,10 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   size_ = limb_size(tissue, volume.grid, bent_joints(armature, poses_, 1));
   DeformingRegion& moving = last_.moving;
   const double asked = fem_.spacing_mm.value_or(spacing_of(fem_.quality, size_, volume.grid));
+  const BonePath way = way_through(poses_, weights, armature);
   const auto find_moving = [&](double spacing) {
     spacing_ = spacing;
-    moving = moving_tissue(volume, tissue, weights, way_through(poses_, weights, armature),
+    moving = moving_tissue(volume, tissue, weights, way,
                            {.margin_mm = size_ * kMargin + spacing,
                             .rim_mm = kRim * spacing,
                             .contact = fem_.contact,
@@ -200,6 +206,11 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
     last_.mesh.fallback = note;
   }
 
+  const auto motions_on = [&](const BonePath& path) {
+    std::vector<std::vector<RigidTransform>> motions;
+    for (const double place : places_of(poses_.size())) motions.push_back(path(place));
+    return motions;
+  };
   const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, moving);
   MeshSettings settings{
       .spacing_mm = spacing_, .mesher = fem_.mesher, .fine_radius_mm = size_ * MeshSettings().fine_radius_mm};
@@ -208,7 +219,8 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   TissueMesh meshed = mesh_tissue(regions, settings, progress);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   last_.model =
-      tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh), {.joint_mm = kJoint * spacing_});
+      tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
+                   {.joint_mm = kJoint * spacing_, .motions = motions_on(way), .closing_mm = kClosing * spacing_});
   waiting_ = last_.model.fem.waiting;
   last_.V = last_.model.fem.mesh.V;
   last_.seconds_mesh = seconds_since(meshing);
@@ -229,7 +241,8 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                                .size = size_};
   const SolvedPose solved =
       solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
-  if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)  // no node is held by a moving bone
+  // The solve needs no step although the pose bends joints if no bone that moves holds a node of the mesh.
+  if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
                 "choose a finer quality, or blend instead");
   const bool ends = solved_ == poses_.size();
@@ -246,11 +259,12 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   });  // bone voxels move rigidly, even inside tets that stretch
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
-  // The next leg starts from another pose than planned, so the release points of held nodes are not valid any more.
+  // If the solve stopped early, the way to the next pose differs from the planned path, and the positions until which
+  // nodes wait are not valid on it. So all nodes become free.
   if (shape->reached < 1) waiting_.clear();
   last_.V = shape->V;
   last_.pose = shape->pose;
-  last_.seconds_mesh = 0;  // only the first shape reports the time for meshing
+  last_.seconds_mesh = 0;  // only the first pose's report contains the time for meshing
   return shape;
 }
 

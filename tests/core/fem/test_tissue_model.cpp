@@ -299,3 +299,59 @@ TEST_CASE("stretch: a turn stretches nothing, a pull and a press show as they ar
   CHECK(fat.most[1] == doctest::Approx(1));
   CHECK(fat.least[1] == doctest::Approx(1));
 }
+
+TEST_CASE("tissue model: where a pose brings bones close together they are not held, and the rest of them is") {
+  const Body body;
+  const DeformingRegion moving = body.moving(50);
+  const LabelVolume regions = regions_to_mesh(body.tube.volume, body.tissue, body.is_bone, body.tube.weights, moving);
+  const auto held_by = [&](const TissueModelSettings& settings) {
+    return tissue_model(body.tube.volume, body.tissue, body.tube.tissues, body.tube.weights, moving,
+                        test::kuhn_mesh_of(regions, 2), settings)
+        .fem;
+  };
+  // Only the pose decides: at rest no distance between bones is below 0.
+  const FemModel apart = held_by({.joint_mm = 0});
+  std::vector<int> of_bone[2];
+  for (Eigen::Index t = 0; t < apart.mesh.T.rows(); ++t)
+    if (apart.mesh.region[t] != TetMesh::kSoft)
+      for (const int node : apart.mesh.T.row(t)) of_bone[TetMesh::bone_of(apart.mesh.region[t])].push_back(node);
+  for (auto& nodes : of_bone) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    REQUIRE(nodes.size() > 20);
+  }
+  double gap = INFINITY;
+  const auto place = [&](int node) {
+    return glm::dvec3(apart.mesh.V(node, 0), apart.mesh.V(node, 1), apart.mesh.V(node, 2));
+  };
+  for (const int a : of_bone[0])
+    for (const int b : of_bone[1]) gap = std::min(gap, glm::distance(place(a), place(b)));
+  const double towards = place(of_bone[1][0]).z < place(of_bone[0][0]).z ? 1 : -1;
+
+  for (const double into : {-4.0, 0.0, 3.0}) {  // how deep the second bone enters the first one, mm
+    CAPTURE(into);
+    RigidTransform motion;
+    motion.translation = {0, 0, towards * (gap + into)};
+    const double closing = 3;
+    const FemModel model = held_by({.joint_mm = 0,
+                                    .motions = {{RigidTransform{}, RigidTransform{}}, {RigidTransform{}, motion}},
+                                    .closing_mm = closing});
+    int freed = 0;
+    for (int side = 0; side < 2; ++side) {
+      std::size_t of_this = 0;
+      for (const int node : of_bone[side]) {
+        double nearest = INFINITY;
+        for (const int other : of_bone[1 - side])
+          nearest = std::min(nearest, glm::distance(place(node) + (side == 1 ? motion.translation : glm::dvec3(0)),
+                                                    place(other) + (side == 0 ? motion.translation : glm::dvec3(0))));
+        if (apart.held_by[node] < 0) continue;
+        const bool is_held = model.held_by[node] >= 0;
+        if (nearest >= closing) CHECK(is_held);
+        of_this += !is_held;
+      }
+      CHECK(of_this <= of_bone[side].size() / 2);
+      freed += static_cast<int>(of_this);
+    }
+    CHECK((freed > 0) == (into > -closing));
+  }
+}
