@@ -14,12 +14,14 @@ namespace limber::render {
 
 struct Image {
   glm::ivec2 size{0};
-  std::vector<std::uint8_t> rgba;  // size.x * size.y * 4
+  std::vector<std::uint8_t> rgba;  // size.x * size.y * 4 bytes, rows from top to bottom
 };
 
 void write_png(const Image& image, const Path& path);  // atomic: never leaves a partial file
-Image read_png(const Path& path);        // throws Error if it is no PNG, or has a side of more than 16384 pixels
+// Throws Error if the file is no PNG, or is wider or higher than 16384 pixels.
+Image read_png(const Path& path);
 std::string png_of(const Image& image);  // returns the bytes of a PNG file
-Image parse_png(const std::string& bytes, const std::string& where);  // the same as read_png, from memory
+// Reads the bytes of a PNG file as read_png() does. `where` names them in the message of an Error.
+Image parse_png(const std::string& bytes, const std::string& where);
 
 }  // namespace limber::render

@@ -15,7 +15,7 @@ namespace limber::render {
 
 namespace {
 
-constexpr double kRest = 0.1;          // seconds without a change after which the picture is refined
+constexpr double kRest = 0.1;          // time without a change after which the picture is refined, seconds
 constexpr double kFrame = 0.028;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
@@ -114,7 +114,7 @@ struct BodyKey {
   std::optional<std::array<glm::dvec3, 2>> box, plane;
   Camera camera;
   glm::ivec2 size{0};
-  bool places = false;  // whether the rest positions of pixels are needed
+  bool places = false;  // true: the rest position of each pixel is needed, to look up its weights
 
   bool operator==(const BodyKey&) const = default;
 };
@@ -122,7 +122,7 @@ BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size,
   return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size, places};
 }
 
-// These functions return whether two scenes have the same posed bones, the same bone highlights, and the same overlays
+// These functions return true if two scenes have the same posed bones, the same bone highlights, and the same overlays
 // on top of the body.
 bool same_pose(const std::vector<RigidTransform>& a, const std::vector<RigidTransform>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
@@ -141,8 +141,8 @@ bool same_overlay(const Scene& a, const Scene& b) {
          a.transparent_background == b.transparent_background && a.outlined == b.outlined && a.mesh == b.mesh;
 }
 
-// Returns the colour and width of the lines of a mesh on tissue, or on a slice that shows only outlines. Lines are
-// fainter where the tets appear smaller, since they would hide what is below.
+// Returns the colour and width of the lines of a tet mesh, drawn on tissue colours or (on_tissue = false) on a slice
+// that shows only outlines. Lines are fainter where the tets appear smaller, since they would hide what is below.
 LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue,
                           double millimetres_per_pixel) {
   // Mean length of the lines at which they are faintest and clearest, pixels at line scale 1.
@@ -177,13 +177,13 @@ double halton(int i, int base) {
   for (; i > 0; i /= base) f /= base, result += f * (i % base);
   return result;
 }
-// Returns the offset of a sample from the centre of its pixel, pixels. The first sample is at the centre.
+// Returns the offset of the rays of averaged picture `sample` from the pixel centres, pixels; 0 for the first picture.
 glm::dvec2 jitter_of(int sample) {
   return sample == 0 ? glm::dvec2(0) : glm::dvec2(halton(sample, 2) - 0.5, halton(sample, 3) - 0.5);
 }
 
-// Returns the offset of the positions at which a sample reads labels, voxels. Averaging pictures with different offsets
-// blends the borders between voxels.
+// Returns the offset of the positions at which averaged picture `sample` reads labels, voxels. Averaging pictures with
+// different offsets blends the borders between voxels.
 glm::vec3 label_shift_of(int sample) {
   constexpr float kReach = 0.8f;  // largest offset along each axis, voxels
   if (sample == 0) return glm::vec3(0);
@@ -198,20 +198,20 @@ struct View3D::Impl {
   PassResources& resources;
   Target output, body, average;
   using Layers = std::array<GBuffer, kMostLayers>;
-  Layers shown;     // hits of the rays of the picture, the outermost layer first
-  Layers jittered;  // hits of the rays of the sample that is being averaged
+  Layers shown;     // hits of the rays of the shown picture, the outermost layer first
+  Layers jittered;  // hits of the rays of the picture that will be averaged next
   BodyKey key;
   Scene scene;  // the scene that was drawn last
   bool drawn = false;
   double changed_at = 0;
   int moving_scale = 3;  // the body is drawn at every n-th pixel while something moves
   int shown_scale = 0;   // scale at which the body was drawn (every n-th pixel); 0: no body
-  int sample = 0;        // number of samples in the average so far
-  int next_tile = 0;     // index of the next tile of the current sample
-  bool refines = false;  // whether the picture is to be refined to full resolution and averaged (scale 0)
-  PixelRect rect;        // the rectangle that the body covers, in pixels at its scale
+  int sample = 0;        // number of pictures in the average so far
+  int next_tile = 0;     // index of the next tile of the picture that will be averaged next
+  bool refines = false;  // true: the picture will be refined to full resolution and averaged (scale 0)
+  PixelRect rect;        // the rectangle that the body covers, in pixels of the picture drawn at shown_scale
   std::int64_t rays_followed = 0;
-  int weight_changes = 0;  // WeightTexture::changes() at the last drawing
+  int weight_changes = 0;  // value of WeightTexture::changes() when the picture was drawn last
   bool has_all_weights = true;
 
   struct Source {
@@ -300,7 +300,7 @@ struct View3D::Impl {
     shown_scale = scale;
   }
 
-  // Draws some tiles of the current sample. Returns true when the sample is complete and the picture has changed.
+  // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged.
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
@@ -332,7 +332,7 @@ struct View3D::Impl {
     return true;
   }
 
-  // Shades the stored hits of the rays again, with other weights or another display of weights.
+  // Shades the stored hits of the rays again, with other weights or with another display of the weights.
   //   only_weights  true: nothing but the weights themselves has changed
   void recolour(const Source& source, bool only_weights) {
     if (only_weights && source.weights->changes() == weight_changes) return;
@@ -345,7 +345,7 @@ struct View3D::Impl {
           part, VolumePass::covered(glm::vec3(changed->low), glm::vec3(changed->high), rays, shown[0].size()));
     shade(source, rays, shown, part);
     if (sample == 0) return;
-    // In the changed rectangle the average is replaced, and it is then refined again.
+    // Replaces the average in the changed rectangle by the new picture, and starts to refine it again.
     average.bind();
     resources.compose.accumulate(body.texture(), key.size, 1, part);
     sample = 1;
@@ -359,7 +359,7 @@ struct View3D::Impl {
     return intersection({{0, 0}, key.size}, {rect.low * shown_scale - margin, rect.high * shown_scale + margin});
   }
 
-  // The lines along which the clip cuts the mesh, cached with the inputs from which they were computed.
+  // The lines along which the clip plane and box cut the mesh, cached with the inputs from which they were computed.
   struct {
     CutMesh mesh;
     Clip clip;
@@ -433,8 +433,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
     my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
     if (scale == 0 && my.resources.pictures_at_rest > 0) {
       glFinish();
-      // The time is proportional to the number of pixels. A finer scale is tried when its time would be within the
-      // limit with some margin.
+      // Tries a finer scale if its expected time, which is proportional to its pixels, is below 85 % of kFrame.
       const double cost = seconds() - begin;
       const int at = my.moving_scale;
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
@@ -466,7 +465,7 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
                       (my.key.size.y - 1 - pixel.y) * buffer_size.y / my.key.size.y);
 
   const KeepFramebuffer keep;
-  // In X-ray this returns the bone under the ghost, if there is one.
+  // Returns the hit that the buffer of one layer stores at the pixel.
   const auto hit_in = [&](const GBuffer& buffer) -> std::optional<Hit> {
     float depth = 0;
     std::uint16_t label = 0;
@@ -493,7 +492,8 @@ std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
         glm::dvec3(normal & 1023, normal >> 10 & 1023, normal >> 20 & 1023) / 1023.0 * 2.0 - 1.0;
     if (!cap) hit.normal = my.key.camera.world_from_view * glm::normalize(view_normal);
 
-    // Finds the voxel with the hit's label at the surface, by small steps inward at rest as in the shader.
+    // Finds the voxel of the hit: the first one with the hit's label, in small steps inward from the hit. Labels are
+    // read at rest, as in the shader.
     const AffineTransform to_voxel = voxel_from_world(my.scene.volume->grid);
     const glm::dvec3 inward = to_voxel.linear * (cap ? ray.direction : -hit.normal);
     const glm::dvec3 step = inward / std::max({std::abs(inward.x), std::abs(inward.y), std::abs(inward.z)}) * 0.25;

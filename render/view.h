@@ -64,14 +64,14 @@ struct Hit {
 // A 3D picture that is refined over several calls: coarse while something moves, in full resolution when nothing moves.
 class View3D {
  public:
-  // Coarsest scale of a moving picture. With one ray for 5 x 5 pixels, each pixel is at most two pixels from the one
-  // whose ray it shows.
+  // Coarsest scale of a moving picture. At scale 5 there is one ray for 5 x 5 pixels, so each pixel shows the ray of a
+  // pixel that is at most two pixels away.
   static constexpr int kCoarsest = 5;
 
   explicit View3D(Renderer& renderer);
   ~View3D();
 
-  // Draws as much as fits the time limit; call it again while !complete().
+  // Draws as much as fits the time limit. The caller draws again until complete() returns true.
   //   scale  1: full resolution; n: every n-th pixel along each axis. 0: while something moves, the scale adapts to the
   //          time of the last pictures, up to kCoarsest, so that a frame takes about 33 ms; full resolution after 100
   //          ms at rest
@@ -79,12 +79,13 @@ class View3D {
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale = 0);
   bool complete() const;
   int scale() const;  // scale at which the last picture drew the body; 0: no body
-  // Returns the number of rays in all pictures so far. All pixels of the rectangles that bodies cover are counted.
+  // Returns the number of rays in all pictures so far. A picture counts one ray for each pixel of the rectangle that
+  // the body covers.
   std::int64_t rays_followed() const;
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
 
-  // Return what the last picture shows at a pixel. Pixels are counted from the top left corner.
+  // These functions return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;
   std::optional<int> pick_bone(const glm::ivec2& pixel) const;
   std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all bones under the pixel
@@ -99,7 +100,7 @@ class SliceView {
   explicit SliceView(Renderer& renderer);
   ~SliceView();
   void draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size);
-  bool complete() const;  // whether all weights that the last picture shows were uploaded
+  bool complete() const;  // true if all weights that the last picture shows were uploaded
   unsigned texture() const;
   Image read() const;
 

@@ -21,14 +21,16 @@ namespace limber {
 
 namespace {
 
-// Weight of all data together: that of kPairs pairs of points with a standard deviation of kPairSpread mm.
+// Total weight of all point pairs in the fit, against the priors: the weight of kPairs pairs whose distances have a
+// standard deviation of kPairSpread mm.
 constexpr double kPairs = 1000, kPairSpread = 5;
-// Standard deviations of differences of log stretches (logarithms of scale factors): between neighbouring bones, and
-// between the directions along and across one bone.
+// Standard deviations of the prior on bone sizes. A log stretch is the logarithm of a bone's scale factor; the prior
+// limits its difference between neighbouring bones, and between the directions along and across one bone.
 constexpr double kNeighbourStretch = 0.07, kRoundStretch = 0.12;
-constexpr double kHingeAside = 0.1;  // standard deviation of a hinge's rotation about other axes, radians
-constexpr double kWringing = 1.5;    // standard deviation of a hand's twist against the forearm's upper end, radians
-// Upper limits on the change of a bone in one step: rotation in radians, and log stretch.
+constexpr double kHingeAside = 0.1;  // prior standard deviation of a hinge joint's rotation off its axis, radians
+// Prior standard deviation of a hand's twist relative to the elbow end of its forearm, radians.
+constexpr double kWringing = 1.5;
+// Upper limits on the change of a bone in one Gauss-Newton step: rotation (radians) and log stretch.
 constexpr double kLargestTurn = 0.35, kLargestStretch = 0.15;
 
 std::string without_side(const std::string& name) {
@@ -39,7 +41,7 @@ std::string without_side(const std::string& name) {
   return name;
 }
 
-// Returns the standard deviation of a joint's rotation from the atlas's rest pose, radians.
+// Returns the prior standard deviation of a joint's rotation away from the atlas's rest pose, radians.
 double spread_of_turn(const std::string& bone) {
   const std::string name = without_side(bone);
   if (name == "Spine" || name == "Chest") return 0.15;
@@ -130,13 +132,13 @@ namespace {
 
 struct Pair {
   int bone;
-  glm::dvec3 rest, place;   // atlas point at rest, and its present position
-  glm::dvec3 goal, normal;  // nearest point of the surface, and its normal
+  glm::dvec3 rest, place;   // position of the atlas point at rest, and in the present pose, mm
+  glm::dvec3 goal, normal;  // the matched point of the volume's surface, and its normal
   double weight;
 };
 
-// The points that one stage of the fit uses: atlas points, for which it searches the nearest surface points, and
-// surface points, for which it searches the nearest atlas points.
+// The points that one stage of the fit matches. Each atlas point (`rest`; in the present pose `here`) is matched with
+// its nearest surface point, and each surface point in `goals` with its nearest atlas point.
 struct Asked {
   Asked(const Mannequin& mannequin, const std::vector<AtlasPoint>& points, const FitSurface& surface,
         const FitStage& stage) {
@@ -192,7 +194,8 @@ void add_pairs(const Mannequin& mannequin, const std::vector<AtlasPoint>& points
   });
 }
 
-// The normal equations of one Gauss-Newton step, with the sums over all pairs of points and over the priors.
+// Builds and solves the normal equations of one Gauss-Newton step, summed over all matched pairs of points and the
+// priors.
 class Step {
  public:
   Step(const Mannequin& mannequin, const FitStage& stage) : m_(mannequin) {
@@ -209,17 +212,17 @@ class Step {
   }
 
   void add(const Pair& pair) {
-    // The distance of a pair counts across the surface, and a little along it: otherwise points could move along the
-    // surface without limit.
+    // The part of a pair's distance along the surface normal has full weight. The part along the surface has the small
+    // weight kAlong: points can slide along the surface, but not without limit.
     constexpr double kAlong = 0.15;
     add(pair, kAlong * glm::dmat3(1) + (1 - kAlong) * glm::outerProduct(pair.normal, pair.normal));
   }
 
-  // Adds a pair whose distance counts equally in all directions.
+  // Adds a pair whose distance has the same weight in all directions.
   void add_free(const Pair& pair) { add(pair, glm::dmat3(1)); }
 
-  // Adds the priors on rotations and stretches.
-  //   share  factor on their usual weight
+  // Adds the priors on the rotations and stretches of bones.
+  //   share  factor on the priors' normal weight
   void add_likings(double share = 1) {
     const Armature& rig = m_.atlas().rig;
     for (int b = 0; b < m_.bone_count(); ++b) {
@@ -227,7 +230,8 @@ class Step {
       if (turn_at_[b] < 0 || parent < 0) continue;
       const glm::dvec3 r = rotation_vector(glm::transpose(m_.turn[parent]) * m_.turn[b]);
       const double spread = spread_of_turn(rig.bones[b].name), w = share / (spread * spread);
-      const auto like = [&](const glm::dvec3& direction, double weight) {  // `direction` is in the parent's rest frame
+      // `direction`: unit vector in the parent's rest frame
+      const auto like = [&](const glm::dvec3& direction, double weight) {
         const glm::dvec3 row = m_.turn[parent] * direction;
         for (int i = 0; i < 3; ++i) {
           g_[turn_at_[b] + i] += weight * row[i] * glm::dot(r, direction);
@@ -239,7 +243,7 @@ class Step {
         direction[axis] = 1;
         like(direction, w);
       }
-      // The prior of a hinge: it rotates about its axis only, and not below its minimum.
+      // Prior of a hinge joint: the joint rotates about its axis only, and not below the minimum of its limits.
       if (const JointLimits& limits = rig.bones[b].limits; limits.type == JointLimits::Type::Hinge) {
         const glm::dvec3 side = glm::normalize(
             glm::cross(limits.axis, std::abs(limits.axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
@@ -302,9 +306,9 @@ class Step {
   }
 
  private:
-  // The degrees of freedom that move a bone's points, with the first column of each: the shift of the bone's joint (0),
-  // its rotation (3), its two stretches, along and across (6, 7), and the twist that a forearm takes over from its hand
-  // (8).
+  // The degrees of freedom that move the points of one bone, each with its first column in the Jacobian: translation of
+  // the bone's joint (0), rotation (3), stretch along and across the bone (6, 7), and the twist that a forearm takes
+  // over from its hand (8).
   static constexpr int kWays = 9;
   using Ways = Eigen::Matrix<double, 3, kWays>;
   struct BoneSum {
@@ -339,8 +343,8 @@ class Step {
     sums_[b].has_pairs = true;
   }
 
-  // Adds the sums of all bones to the equations of the free variables. A bone depends on the variables of all its
-  // ancestors.
+  // Adds each bone's sums over its point pairs to the normal equations, by the chain rule: a bone's points depend on
+  // the variables of the bone and of all its ancestors.
   void gather() {
     const Armature& rig = m_.atlas().rig;
     for (int b = 0; b < m_.bone_count(); ++b) {
@@ -395,8 +399,8 @@ class Step {
   std::vector<int> turn_at_;
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
-  std::vector<BoneSum> sums_;      // per bone, sums over its pairs
-  std::map<int, Column> columns_;  // derivatives of the current bone's local variables by the free variables
+  std::vector<BoneSum> sums_;      // sums over the point pairs of each bone
+  std::map<int, Column> columns_;  // derivatives of the current bone's degrees of freedom by each variable of the fit
 };
 
 }  // namespace
@@ -420,10 +424,11 @@ void fit(Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, c
 
 namespace {
 
-// A line segment of a rig: a bone, or the link from the pelvis to a thigh, which does not start at the pelvis's tail.
+// A line segment of a rig: a bone, or the link from the pelvis's head to a thigh's head. The link is needed because a
+// thigh does not begin at the pelvis's tail.
 struct Segment {
   int bone;
-  glm::dvec3 a, b;  // end points at rest
+  glm::dvec3 a, b;  // end points at rest, mm
 };
 
 std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uint8_t>& free) {
@@ -438,8 +443,8 @@ std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uin
   return segments;
 }
 
-// Returns a byte per bone, 1 for bones that can be fitted to the axis of a rod. Hands and the jaw cannot: hands are too
-// short and have too many bones.
+// Returns a byte per bone: 1 for bones that can be fitted to the axis of a rod (a bone that the volume draws as a round
+// bar). Hands, fingers and the jaw get 0: hands are too short and have too many bones.
 std::vector<std::uint8_t> without_hands(const Armature& rig) {
   std::vector<std::uint8_t> kept;
   for (const Bone& bone : rig.bones) {
@@ -506,7 +511,7 @@ void fit_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& all_cells, co
 
 namespace {
 
-// Sums over points that give their best-fit line and the mean squared distance from it.
+// Sums over points, from which the points' best-fit line and their mean squared distance from the line follow.
 struct Cloud {
   double count = 0;
   glm::dvec3 sum{0};
@@ -527,7 +532,8 @@ struct Cloud {
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread(), Eigen::EigenvaluesOnly).eigenvalues();
     return std::max(values[0] + values[1], 1e-3);
   }
-  // Returns the point of the best-fit line with a given coordinate along `axis`.
+  // Returns the point of the best-fit line whose coordinate along `axis` is `coordinate`; the mean of the points if the
+  // line runs nearly across `axis`.
   glm::dvec3 point(const glm::dvec3& axis, double coordinate) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread());
     const Eigen::Vector3d v = solver.eigenvectors().col(2);
@@ -537,8 +543,8 @@ struct Cloud {
   }
 };
 
-// Returns the position of a joint between a and b at which the cells along the limb split best into two straight lines;
-// none where there are too few cells.
+// Returns the best position of the joint in a limb that runs from `a` to `b`. There the bone cells on either side fit
+// best to a straight line each. Returns none if there are too few cells.
 std::optional<glm::dvec3> parting(const std::vector<glm::dvec3>& cells, const glm::dvec3& a, const glm::dvec3& joint,
                                   const glm::dvec3& b) {
   const glm::dvec3 axis = glm::normalize(b - a);
@@ -575,7 +581,8 @@ void split_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& cells) {
     int upper, lower, end;
     glm::dvec3 joint, goal;
   };
-  // By group of the upper bone: the limbs of both sides share their stretch.
+  // The limbs to change, by the group of their upper bone. The left and the right limb are in one group, because they
+  // share their stretch.
   std::map<int, std::vector<Limb>> limbs;
   for (int b = 0; b < mannequin.bone_count(); ++b) {
     const std::string name = without_side(rig.bones[b].name);

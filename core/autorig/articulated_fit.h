@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fits a jointed body to surfaces. The bones of an atlas carry its points rigidly; the rotation and two stretches
-// (along and across) of each bone are found by Gauss-Newton on pairs of nearest points, from the atlas to the volume
-// and back. The residual is the distance at right angles to the surface, with a robust weight that narrows from coarse
-// to fine [articulated iterative closest points: Besl & McKay 1992, Chen & Medioni 1991, Geman & McClure 1987]. Left
-// and right share their stretches, neighbours along a limb prefer equal stretches, and rotations are pulled weakly
-// towards the atlas's own pose.
+// Fits a jointed body of known shape (an atlas) to the surfaces of a volume. The atlas's points move with its bones;
+// the rotation and two stretches (along and across) of each bone are found by Gauss-Newton on pairs of nearest points,
+// from the atlas to the volume and back. The residual is the distance at right angles to the surface, with a robust
+// weight that narrows from coarse to fine [articulated iterative closest points: Besl & McKay 1992, Chen & Medioni
+// 1991, Geman & McClure 1987]. Left and right bones share their stretches, neighbouring bones of a limb prefer equal
+// stretches, and rotations are pulled weakly towards the atlas's own pose.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@
 
 namespace limber {
 
-// The body of an atlas in some pose and with some proportions.
+// A body that can be posed and stretched: an atlas (body of known shape) in some pose and with some proportions.
 class Mannequin {
  public:
   explicit Mannequin(const BodyAtlas& atlas);  // the atlas must outlive the mannequin
@@ -26,23 +26,25 @@ class Mannequin {
   int group_of(int bone) const { return group_[bone]; }
   int group_count() const { return static_cast<int>(along.size()); }
 
-  // The free variables of the fit. After changing them, call settle() to update the positions.
+  // The variables that the fit changes. After a change, call settle() to update the positions of joints.
   glm::dvec3 root{0};
-  std::vector<glm::dmat3> turn;       // per bone, rotation from the atlas at rest to the world
-  std::vector<double> along, across;  // per group of bones, logarithms of the stretches
-  double alike = 1;  // factor on the stiffness that keeps the stretches of neighbouring bones of a limb equal
+  std::vector<glm::dmat3> turn;  // rotation of each bone from the atlas's rest pose to world axes
+  // Logarithms of the stretches along and across a bone, per group (left and right pair).
+  std::vector<double> along, across;
+  double alike = 1;  // factor on the stiffness that keeps the lengthwise stretches of neighbouring bones equal
 
   void settle();
   const glm::dvec3& joint(int bone) const { return joint_[bone]; }
-  // Returns the present position of a bone's point that is given at rest. A forearm is wrung (twisted along its
-  // length): each of its points takes a share of the hand's twist that grows from the elbow to the wrist.
+  // Returns the present position of a point that moves with a bone; `place` is the point's position at rest. A forearm
+  // is wrung (twisted along its length): each of its points takes a share of the hand's twist, which grows from the
+  // elbow to the wrist.
   glm::dvec3 carried(int bone, const glm::dvec3& place) const;
   glm::dmat3 turn_at(int bone, const glm::dvec3& place) const;
-  // Returns the bone whose twist wrings this one (the hand of a forearm), or -1. wrung_share() returns a rest point's
-  // share of the twist, [0, 1].
+  // Returns the hand whose twist wrings the forearm `bone`; -1 for other bones. wrung_share() returns the share of the
+  // twist that a rest point of the forearm takes, [0, 1].
   int wrung_by(int bone) const { return wrung_by_[bone]; }
   double wrung_share(int bone, const glm::dvec3& place) const;
-  // Returns a vector of the rest pose, rotated and stretched with the bone.
+  // Returns a vector of the rest pose after the rotation and stretch of a bone.
   glm::dvec3 direction(int bone, const glm::dvec3& v) const { return moved_[bone] * v; }
   glm::dvec3 rest_axis(int bone) const { return axis_[bone]; }
 
@@ -52,13 +54,13 @@ class Mannequin {
  private:
   const BodyAtlas* atlas_;
   std::vector<int> group_, wrung_by_;
-  std::vector<double> wrung_;  // twist at the far end of each bone, radians
+  std::vector<double> wrung_;  // twist of the hand at the end of each forearm, radians; 0 for other bones
   std::vector<glm::dvec3> axis_, joint_;
   std::vector<glm::dmat3> moved_;
 };
 
-// A surface that the atlas is fitted to. Beyond the planes at which the volume is cut off nothing is known, so atlas
-// points that lie there are ignored.
+// A surface of the volume to which the atlas is fitted. Atlas points beyond the planes at which the volume cuts the
+// body off are ignored, because nothing is known of the surface there.
 struct FitSurface {
   explicit FitSurface(std::vector<SurfacePoint> all, double step, std::vector<TissueCut> where = {})
       : cuts(std::move(where)),
@@ -66,54 +68,56 @@ struct FitSurface {
         sparse(thinned(points, step)),
         tree(points) {}
   std::vector<TissueCut> cuts;
-  // All points, and the thinned points for which the nearest atlas points are searched.
+  // All points of the surface, and the thinned-out points that are matched with their nearest atlas points.
   std::vector<SurfacePoint> points, sparse;
   PointTree tree;
 };
 
 struct FitStage {
   int iterations = 10;
-  double wide = 60, narrow = 10;  // distance at which a pair's weight is a quarter, in the first and last iteration, mm
-  std::vector<std::uint8_t> turns;  // per bone, 1: free to rotate; empty: all are
-  bool stretches = true;            // true: the bones' stretches are fitted too
-  double bone_share = 0.5;          // weight of the bone surface, where there is one, [0, 1]; the skin gets the rest
-  int stride = 1;                   // n: only every n-th point is used
-  // Limits the fit to the atlas points of bones with a 1 in `points` (empty: all bones), and to surface points within
-  // `reach` mm of `around` (0: all points).
+  // Distance at which a point pair's weight has dropped to a quarter, in the first and last iteration, mm.
+  double wide = 60, narrow = 10;
+  std::vector<std::uint8_t> turns;  // a byte per bone, 1: the bone is free to rotate; empty: all bones are free
+  bool stretches = true;            // true: the fit may also stretch bones
+  // Weight of the bone surface against the skin, [0, 1]; without a bone surface the skin gets all weight.
+  double bone_share = 0.5;
+  int stride = 1;  // n: only every n-th point of a surface is used
+  // Selects the points to fit: atlas points of the bones that have a 1 in `points` (empty: of all bones), and surface
+  // points within `reach` mm of `around` (reach 0: all surface points).
   std::vector<std::uint8_t> points;
   glm::dvec3 around{0};
   double reach = 0;
 };
 
-// Fits the mannequin to the surfaces; skin or bone may be null.
+// Fits the mannequin to the surfaces of a volume; skin or bone may be null.
 void fit(Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, const FitStage& stage);
 
-// Fits the mannequin to bones that a volume draws as rods (round bars along a rig). Every bone cell pulls the nearest
-// point of the rig's segments towards itself, so that each segment runs through the middle of its rod and joints lie
-// where rods bend. The skin keeps the other bones in place.
-//   cells  centres of bone cells, mm
+// Fits the mannequin to bones that a volume draws as rods (round bars along a rig). Every cell of bone tissue pulls the
+// nearest point of the rig's segments towards itself, so that each segment runs through the middle of its rod and
+// joints lie where rods bend. The skin determines the remaining bones.
+//   cells  centres of the cells of bone tissue, mm
 void fit_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& cells, const FitSurface& skin,
               const FitStage& stage);
 
-// Moves the elbows and knees of a body whose bones are drawn as rods to where a limb's rod bends or changes its
-// thickness: there two straight lines, one on each side, fit the cells along the limb best.
+// Moves the elbows and knees of a body whose bones are drawn as rods. In each limb the joint is moved to where the rod
+// bends or changes its thickness: two straight lines, one on each side of that point, fit the limb's bone cells best.
 void split_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& cells);
 
 struct RodShare {
-  double near = 0;    // share of the bone cells within `reach` mm of a segment
-  double inside = 0;  // share of the limbs' long segments that lies in bone
+  double near = 0;    // share of the bone cells that lie within `reach` mm of a segment of the rig
+  double inside = 0;  // share of the length of upper arms, forearms, thighs and shanks that lies in bone tissue
 };
 RodShare rod_share(const Mannequin& mannequin, const std::vector<glm::dvec3>& cells, const Occupancy& bone,
                    double reach);
 
-// Returns the mean squared distance between atlas and surface in both directions, mm^2. Distances are limited to `cap`
-// mm.
+// Returns the mean squared distance between atlas and surfaces, mm^2: from atlas points to the surfaces and back. Each
+// distance is capped at `cap` mm.
 //   within  selects the points by its stride, points, around and reach
 double residual(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
                 const FitStage& within);
 
-// Returns for each bone of the atlas the share of its points, [0, 1], that lie within `near` mm of the surface; -1 for
-// a bone without points.
+// Returns for each bone of the atlas the share of its points that lie within `near` mm of the surface, [0, 1]; -1 for a
+// bone without points.
 std::vector<double> share_near(const Mannequin& mannequin, const FitSurface& surface, bool bones, double near);
 
 }  // namespace limber

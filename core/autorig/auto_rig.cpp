@@ -43,7 +43,7 @@ std::vector<std::uint8_t> without_digits(const Armature& rig) {
   return free;
 }
 
-// Fits every initial guess roughly and the best of them more exactly, and keeps the best result.
+// Fits every initial guess of the pose roughly and the kInEarnest best ones more exactly, and keeps the best result.
 void take_best_start(Fitted& result, const FitTarget& target, std::vector<Mannequin> starts) {
   constexpr size_t kInEarnest = 5;
   const auto main = without_digits(result.atlas->rig);
@@ -70,13 +70,14 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
   result.residual = std::sqrt(least);
 }
 
-// Fits the body's segments to the axes of bones that are drawn as rods along a rig. Returns false and changes nothing
-// unless nearly all bone then lies close to the segments, and the segments of long bones run inside bone. Anatomical
-// bones do not pass this test.
+// Fits the body's segments to bones that the volume draws as rods (round bars along a rig). Returns false and changes
+// nothing unless nearly all bone then lies close to the segments, and the segments of long bones run inside bone.
+// Anatomical bones do not pass this test.
 bool follow_rods(Mannequin& m, const FitTarget& target) {
   const double L = target.length;
   Mannequin rods = m;
-  // Ribs, skull and hip bones lie far from the lines of any rig. A few iterations are enough to find that out.
+  // Anatomical bones are recognised after a few iterations: ribs, skull and hip bones lie far from the lines of any
+  // rig.
   constexpr double kNearlyAll = 0.9;
   FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
   fit_rods(rods, target.bone_cells, *target.skin, stage);
@@ -91,10 +92,11 @@ bool follow_rods(Mannequin& m, const FitTarget& target) {
   return true;
 }
 
-// Fits the segments of a body of which only the rig is known to the volume's bones. Returns false and changes nothing
-// unless most of the bone lies close to the segments after the fit, and no less than before it.
+// Fits the segments of a body whose shape comes from the rig alone to the volume's bone tissue. Returns false and
+// changes nothing unless most of the bone then lies close to the segments, and no less of it than before the fit.
 bool follow_bones(Mannequin& m, const FitTarget& target) {
-  // Distance that counts as close, as a share of the tissue's diagonal; least share of bone that must be close.
+  // kClose: distance from a segment up to which bone counts as close, as a share of the tissue's diagonal. kMost: least
+  // share of the bone that must be close.
   constexpr double kClose = 0.025, kMost = 0.8;
   const double L = target.length;
   Mannequin drawn = m;
@@ -121,7 +123,8 @@ void refine_by_skin(Fitted& result, const FitTarget& target) {
 void finish(Mannequin& m, const FitTarget& target, const FitSurface* bone, bool is_rods) {
   const double L = target.length;
   try_hands(m, target, bone);
-  // Where voxels are larger than finger bones are thick, the skin is more exact than the bones.
+  // Where voxels are larger than the thickness of finger bones, the skin is more exact than the bones and gets more
+  // weight.
   const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
   if (is_rods) return;
   for (const auto& [iterations, stride, wide, narrow] :
@@ -151,8 +154,8 @@ void refine(Fitted& result, const FitTarget& target, Progress& progress) {
   progress.update("fitting", 0.6);
   const Mannequin before = m;
   finish(m, target, bone, result.is_rods);
-  // A hand may be rotated the wrong way if the share of its fingers' points near the skin is below kLittle. Another
-  // rotation is preferred if it multiplies this share by kBetter or more.
+  // A hand may be rotated the wrong way if less than the share kLittle of its fingers' points lies near the skin.
+  // Another rotation is preferred if it multiplies this share by kBetter or more.
   constexpr double kLittle = 0.78, kBetter = 1.05;
   double most = hands_near(m, target);
   for (double twist : {0.0, 3.14, 1.57, -1.57}) {
@@ -185,7 +188,8 @@ std::string_view to_string(JointFit::How how) {
 
 namespace {
 
-// Returns the kinds of body that a rig may belong to; none when its names mean nothing or it is four-legged.
+// Returns the kinds of atlas body that may match a rig; none for a rig whose bone names have no known meaning, or for a
+// four-legged one.
 std::vector<AtlasKind> kinds_for(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   std::set<BodyPart> parts;
@@ -200,7 +204,7 @@ std::vector<AtlasKind> kinds_for(const Armature& rig) {
   return {};
 }
 
-// Returns the best fit of several kinds of body. Single limbs are tried as right and as left ones.
+// Returns the best fit among several kinds of body. A single limb is tried both as a right and as a left one.
 Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, Progress& progress) {
   Fitted best;
   int done = 0;
@@ -219,7 +223,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, 
   return best;
 }
 
-// Returns the bones of a limb, from the first one at the trunk down to `last` at its end.
+// Returns the bones of the limb that ends with the bone `last`, from the first one at the trunk outwards.
 std::vector<int> limb_to(const Armature& rig, int last) {
   std::vector<int> children(rig.bones.size(), 0), limb{last};
   for (const Bone& bone : rig.bones)
@@ -230,17 +234,16 @@ std::vector<int> limb_to(const Armature& rig, int last) {
   return limb;
 }
 
-// Rotates and stretches limbs that do not reach the ends of the tissue, or reach beyond them, until they end there.
-// Left and right limbs get the same stretch.
+// Rotates and stretches limbs so that each one ends at an end of the tissue. Left and right limbs get the same stretch.
 void reach_ends(Mannequin& m, const Occupancy& body) {
-  // Upper limits on the log stretch, and on the distance from a limb's end to the tissue's end (share of the limb's
-  // length).
+  // Upper limits: kMost on the change of a limb's log stretch; kNear on the distance from a limb's end to the end of
+  // the tissue, as a share of the limb's length.
   constexpr double kMost = 0.6, kNear = 0.7;
   const Armature& rig = m.atlas().rig;
   std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
   for (const Bone& bone : rig.bones)
     if (bone.parent >= 0) is_last[bone.parent] = 0;
-  // By group of bones: sum of log stretches, and their number.
+  // For each group of bones (left and right pair): the sum of log stretches, and their number.
   std::map<int, std::pair<double, int>> stretch;
   struct Aim {
     int root, last;
@@ -272,7 +275,7 @@ void reach_ends(Mannequin& m, const Occupancy& body) {
   }
 }
 
-// Returns the fit of a body of which only the rig is known: its flesh is a round limb about each bone.
+// Returns the fit of a body whose shape comes from the rig alone: its flesh is a round limb about each bone.
 Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& progress) {
   progress.update("starting", 0);
   Fitted tried{.atlas = std::make_shared<BodyAtlas>(capsule_atlas(rig)), .body = std::nullopt, .is_capsules = true};
@@ -283,7 +286,8 @@ Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& pro
   return tried;
 }
 
-// Gives each bone without visible tissue the rotation of its mirror image on the other side, or else that of the atlas.
+// Sets the rotation of each bone without visible tissue: that of its counterpart on the other side, mirrored, or else
+// the one that the atlas has at rest relative to the parent.
 void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
@@ -305,8 +309,8 @@ void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   m.settle();
 }
 
-// Returns the labels that are bone by the tissue table. Where the table knows no label, returns the label that lies
-// along the long bones of the body as fitted to the skin, and adds a warning.
+// Returns the labels that are bone according to the tissue table. If the table gives no kinds, returns the label that
+// runs along the long bones of the fitted body, and adds a warning.
 LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted,
                      std::vector<std::string>& warnings) {
   LabelSet labels(65536, 0);
@@ -332,7 +336,7 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   return labels;
 }
 
-// Finds the joints between bones that labels name, fits the body to them, and returns them.
+// Finds the joints between bones that are named by labels, moves the fitted body onto these joints, and returns them.
 std::vector<NamedJoint> joints_by_name(Fitted& fitted, const FitTarget& target, const LabelVolume& volume,
                                        const TissueTable& tissues) {
   Mannequin& m = *fitted.body;
@@ -382,8 +386,8 @@ void warn_of_joints(AutoFit& result) {
 }  // namespace
 
 double error_by_extents(const LabelVolume& volume) {
-  // Estimated error of a joint, as a share of the tissue's diagonal: in a body that is upside down, joints lie at the
-  // other end.
+  // Estimated error of a joint of a rig that was only scaled to the tissue, as a share of the tissue's diagonal. It is
+  // that large because the body may be upside down, with every joint at the other end.
   constexpr double kShare = 0.35;
   return kShare * glm::length(glm::dvec3(tissue_box(volume).size) * volume.grid.spacing);
 }
@@ -403,7 +407,7 @@ Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig) {
     for (const glm::dvec3& p : {bone.head, bone.tail}) least = glm::min(least, p), most = glm::max(most, p);
   const glm::dvec3 sides = high - low, own = most - least;
   const int longest = own.x >= own.y && own.x >= own.z ? 0 : own.y >= own.z ? 1 : 2;
-  constexpr double kInside = 0.96;  // ratio of the rig's size to the tissue's: bones end below the skin
+  constexpr double kInside = 0.96;  // ratio of the rig's size to the tissue's, below 1 because bones end below the skin
   const double scale = own[longest] > 0 ? kInside * sides[longest] / own[longest] : 1;
   return moved_rig(rig, glm::dmat3(1), scale, (least + most) / 2.0, (low + high) / 2.0);
 }
@@ -441,18 +445,19 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
       const int match = placed.joint_of[b];
       JointFit joint;
       if (match >= 0) joint = found.how[match];
-      // The joint of a bone that only moves along with its parent is a little less certain than the parent's joint.
+      // A bone without a found joint moves along with its parent. Its joint is a little less certain than the parent's.
       else if (rig.bones[b].parent >= 0)
         joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence,
         joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
-    // Upper limit on the shift of a joint that lies outside the tissue, as a multiple of its estimated error.
+    // Upper limit on how far a joint outside the tissue is moved to get inside, as a multiple of the joint's estimated
+    // error.
     constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
     result.armature = with_fitted_limits(drawn_inside(placed.armature, volume, target.cuts, free), rig);
-    // Misfit above which a warning is added, as a share of the tissue's diagonal.
+    // Distance of the fitted body from the volume above which a warning is added, as a share of the tissue's diagonal.
     constexpr double kUnlike = 0.016;
     if (result.misfit_mm > kUnlike * target.length)
       result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
@@ -465,7 +470,8 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 std::string suggest_template(const LabelVolume& volume, Progress& progress) {
   const FitTarget target = make_fit_target(volume);
   if (!has_shape(target)) return "arm";
-  // A body has five prominent ends (head, hands and feet), or at least three where the arms lie against the trunk.
+  // A whole body has five prominent tissue ends (head, hands and feet), or at least three where the arms lie against
+  // the trunk.
   const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
   if (ends >= 5) {
     const double whole = best_start({AtlasKind::Body}, target, progress).residual;

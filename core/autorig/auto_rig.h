@@ -6,18 +6,18 @@
 //   2  the skin gives pose and proportions (core/autorig/articulated_fit.h);
 //   3  where labels name bones, joints lie where two bones meet (core/autorig/named_joints.h), and the body is laid
 //      along them;
-//   4  where the tissue table says what is bone, the bones' surfaces give the joints; bones that are drawn as rods are
-//      followed along their axes instead. Without a table, bone is the label that the long bones run through
-//      (core/bones/guess_bone_labels.h);
+//   4  where the tissue table says what is bone, the bones' surfaces give the joints. Bones that the volume draws as
+//      rods are followed along their axes instead. Without a table, the label through which the long bones run counts
+//      as bone (core/bones/guess_bone_labels.h);
 //   5  where the skin differs from that of the known body, landmarks of the volume's own shape correct the joints
 //      (core/autorig/joint_landmarks.h).
-// Of a body that is cut off (core/autorig/cut_planes.h) only the present part is fitted. The joints beyond the cut are
-// placed by proportion, and a warning says so.
+// If the body is cut off (core/autorig/cut_planes.h), only the part in the volume is fitted. The joints beyond the cut
+// are placed by proportion, and a warning says so.
 //
 // The joints of the given rig are then moved to the body's joints, matched by the meaning of their names
-// (core/rig/joint_names.h); joints between and below them move along. A rig whose names mean nothing, such as an
-// animal's, becomes a body of round limbs itself (core/autorig/capsule_atlas.h), which is fitted to the skin. A rig
-// without a trunk is scaled to the tissue's extents.
+// (core/rig/joint_names.h); joints between and below matched ones move along. For a rig whose names have no known
+// meaning, such as an animal's, a body is built from the rig itself: a round limb about each bone
+// (core/autorig/capsule_atlas.h), fitted to the skin. A rig without a trunk is scaled to the tissue's extents.
 //
 // The result is the same, bit for bit, for any number of threads.
 #pragma once
@@ -47,30 +47,32 @@ struct JointFit {
   };  // Unseen: the joint lies beyond a cut
   How how = How::Carried;
   double confidence = 0;  // [0, 1]
-  double error = 0;       // estimated error, mm: on bodies with known joints, nine of ten joints lay within it
+  double error = 0;       // estimated error, mm: on bodies with known joints, nine of ten joints were off by less
 };
 std::string_view to_string(JointFit::How how);  // such as "bone surface"
 
 struct AutoFit {
   Armature armature;
-  std::vector<JointFit> joints;       // how the head of each bone was found
-  RigCheck check;                     // where the fitted rig leaves the tissue
-  double misfit_mm = 0;               // root mean square distance of the fitted body from the volume; 0 without a body
+  std::vector<JointFit> joints;  // how the joint at the head of each bone was found
+  RigCheck check;                // where the fitted rig leaves the tissue
+  double misfit_mm = 0;  // root mean square distance of the fitted body from the volume; 0 if no body was fitted
   std::vector<std::string> warnings;  // sentences about what failed or is uncertain
 };
 
-// Returns the rig moved, rotated and scaled to the tissue. Its joint limits rotate along and count from the fitted rest
-// pose (core/autorig/fitted_limits.h). Throws Error for a volume without tissue.
+// Returns the rig moved, rotated and scaled to the tissue. The axes of joint limits rotate along with their bones, and
+// limit angles are adapted to the fitted rest pose (core/autorig/fitted_limits.h). Throws Error for a volume without
+// tissue.
 AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig,
                  Progress& progress = no_progress());
 
 // Returns the rig scaled to the tissue's size and moved to its middle, without rotation.
 Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig);
 
-// Returns the estimated error of a joint where the rig was only scaled to the tissue, mm.
+// Returns the estimated error, mm, of the joints of a rig that was only scaled to the tissue (scaled_to_tissue()).
 double error_by_extents(const LabelVolume& volume);
 
-// Returns the name of the template that fits the volume best, one of core/rig_io/rig_templates.h.
+// Returns the name of the rig template that fits the volume best; the templates are those of
+// core/rig_io/rig_templates.h.
 std::string suggest_template(const LabelVolume& volume, Progress& progress = no_progress());
 
 }  // namespace limber

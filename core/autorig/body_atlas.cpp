@@ -15,7 +15,7 @@ namespace {
 
 using namespace phantom;
 
-// Distance between skin points, mm: on the body, and on hands and feet.
+// Distance between atlas points on the skin, mm: on most of the body, and on hands and feet.
 constexpr double kSkinStep = 13, kFineSkinStep = 5;
 constexpr double kBoneStep = 9, kFineBoneStep = 3.2;
 constexpr double kFar = 1e30;
@@ -36,7 +36,8 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
     }
     return g;
   };
-  // Blocks of cells far from the surface are skipped. The factor allows for distances that are wrong by a quarter.
+  // Blocks of kBlock^3 cells that lie far from the surface are skipped. The factor 1.25 allows for signed distances
+  // that are wrong by a quarter.
   constexpr int kBlock = 4;
   const glm::ivec3 blocks = (cells + kBlock - 1) / kBlock;
   const double far = 1.25 * step * (0.5 + 0.5 * std::sqrt(3.0) * kBlock);
@@ -56,7 +57,7 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
             double d = distance(p);
             if (std::abs(d) > 0.5 * step) continue;
             glm::dvec3 g = gradient(p);
-            constexpr double kOn = 0.05;  // distance at which a point counts as on the surface, mm
+            constexpr double kOn = 0.05;  // distance from the surface within which a point counts as on it, mm
             for (int k = 0; k < 3 && std::abs(d) > kOn; ++k) {
               for (int step = 0; step < 2; ++step) {
                 p -= g * (d / std::max(glm::dot(g, g), 0.25));
@@ -74,7 +75,8 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
   return points;
 }
 
-// Finds the rig bone beside which a point lies. The pelvis counts as wide as the hips.
+// Finds the rig bone that lies nearest to a point. The pelvis bone also includes links to both hips, so that it is as
+// wide as the hips.
 class Carriers {
  public:
   explicit Carriers(const Armature& rig) {
@@ -97,7 +99,7 @@ class Carriers {
     }
     return best;
   }
-  // Returns the rig bone that is nearest to most of the points.
+  // Returns the rig bone that is the nearest one for most of the points.
   int carrier(const std::vector<AtlasPoint>& points) const {
     std::map<int, int> votes;
     for (const AtlasPoint& point : points) ++votes[nearest(point.place, {})];
@@ -114,8 +116,8 @@ bool is_fine(const std::string& bone) {
   return false;
 }
 
-// Returns the signed distance to the union of the flesh, as voxelize() forms it. Sets `part` to the part of the flesh
-// that the point belongs to.
+// Returns the signed distance from `p` to the skin: the union of all parts of the flesh, blended as by voxelize(). Sets
+// `part` to the index of the flesh part to which `p` belongs.
 double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nullptr) {
   constexpr double kReach = 60;
   const Box here = Box{p, p}.grown(kReach);
@@ -135,14 +137,15 @@ double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nu
   return least;
 }
 
-// Adds the skin points. A limb's points are carried by the limb's bone or its children, the trunk's by the nearest
-// bone.
+// Adds the skin points to the atlas. A point on a limb is carried by the limb's bone or its children, a point on the
+// trunk by the nearest bone.
 void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers, const Box& region) {
   for (int f = 0; f < std::ssize(anatomy.flesh); ++f) {
     const Box box = anatomy.flesh[f].solid.box.grown(8);
     const auto of_this = [&](const glm::dvec3& p) {
       if (!region.touches({p, p})) return kFar;
-      // Far from this part of the flesh, the part's own distance suffices, and the union is not computed.
+      // Far from a part of the flesh, the distance to this part alone suffices, and the union of all parts is not
+      // computed.
       const double own = anatomy.flesh[f].solid.distance(p);
       return own > 45 ? own : skin_distance(anatomy, p);
     };
@@ -164,7 +167,7 @@ void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers
       for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
         if (atlas.rig.bones[b].parent == main) among.push_back(b);
       if (is_fine(atlas.rig.bones[main].name)) points = keep(points_on(box, kFineSkinStep, of_this));
-      // The flesh of a digit is one part, but several bones carry it.
+      // The flesh of a finger or toe is a single part, but several rig bones carry its points.
       if (is_fine(atlas.rig.bones[main].name)) {
         for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
           if (std::find(among.begin(), among.end(), atlas.rig.bones[b].parent) != among.end() &&
@@ -186,8 +189,8 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
     if (!part.solid.box.touches(region)) continue;
     const auto distance = [&](const glm::dvec3& p) { return part.solid.distance(p); };
     const Box box = part.solid.box.grown(4);
-    // Each bone part is carried by one rig bone as a whole: the kneecap by the thigh, the heel by the foot, and
-    // phalanges and metacarpals by their own segments.
+    // One rig bone carries all points of an anatomical bone: the thigh carries the kneecap, the foot the heel, and each
+    // phalanx or metacarpal has its own rig bone.
     std::vector<AtlasPoint> points = points_on(box, kBoneStep, distance);
     if (points.empty() || is_fine(atlas.rig.bones[carriers.carrier(points)].name))
       points = points_on(box, kFineBoneStep * 1.5, distance);
@@ -200,10 +203,11 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
   }
 }
 
-// Returns the atlas of everything that the rig bone `root` and its descendants carry (empty: the whole body). Shapes
-// far from these bones are skipped.
+// Returns an atlas with the whole rig, but with points only near the rig bone `root` and its descendants (`root` empty:
+// with all points).
 BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
-  constexpr double kAround = 150;  // margin around the bones, mm: more than the thickness of flesh
+  // Margin around the bones of the root and its descendants, mm: more than the thickness of flesh.
+  constexpr double kAround = 150;
   Box region{glm::dvec3(kFar), glm::dvec3(-kFar)};
   std::vector<std::uint8_t> below;
   for (const Bone& bone : anatomy.armature.bones) {
@@ -221,7 +225,8 @@ BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
   return atlas;
 }
 
-// Returns the part of an atlas below a bone, which becomes the root; "Right" is removed from the names.
+// Returns the part of an atlas that the bone `root` and its descendants carry. Removes "Right" from the names of the
+// bones.
 BodyAtlas branch(const BodyAtlas& whole, const std::string& root) {
   BodyAtlas part;
   std::vector<int> number(whole.rig.bones.size(), -1);
@@ -258,7 +263,7 @@ BodyAtlas mirrored(const BodyAtlas& atlas) {
   const glm::dvec3 across(-1, 1, 1);
   for (Bone& bone : result.rig.bones) {
     bone.head *= across, bone.tail *= across;
-    bone.limits.axis *= -across;  // a mirror reverses the sense of rotation
+    bone.limits.axis *= -across;  // the minus is needed because a mirror reverses the sense of rotation
   }
   for (auto* points : {&result.skin, &result.bone})
     for (AtlasPoint& point : *points) point.place *= across, point.normal *= across;

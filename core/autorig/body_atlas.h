@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The known bodies of automatic rigging: the skin and the bones of the procedural phantoms as points on their surfaces,
-// each with the rig bone that carries it. The points lie on the exact surfaces (the phantoms are signed distances), so
-// they do not depend on any voxel size. They are denser on hands and feet.
+// The bodies of known shape (atlases) to which automatic rigging compares a volume: the skin and the bones of the
+// procedural phantoms as points on their surfaces, each with the rig bone that carries it. The points lie on the exact
+// surfaces (the phantoms are signed distances), so they do not depend on any voxel size. They are denser on hands and
+// feet.
 #pragma once
 
 #include <vector>
@@ -12,7 +13,7 @@ namespace limber {
 
 struct AtlasPoint {
   glm::dvec3 place{0}, normal{0};  // position in mm, and unit outward normal
-  int bone = 0;                    // index in the atlas's rig
+  int bone = 0;                    // index of the bone in the atlas's rig that carries the point
 };
 
 struct BodyAtlas {
@@ -22,7 +23,8 @@ struct BodyAtlas {
 
 enum class AtlasKind { Body, Arm, ArmWithShoulder, Leg, Hand };
 
-// Makes the atlas of a body or a right limb. An arm alone ends at the shoulder, a hand at the wrist, a leg at the hip.
+// Makes the atlas of a whole body or of a single right limb. An arm alone ends at the shoulder, a hand at the wrist, a
+// leg at the hip.
 BodyAtlas make_atlas(AtlasKind kind);
 
 // Returns the atlas mirrored at x = 0, with the same bone names.

@@ -12,7 +12,7 @@ namespace {
 
 double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
 
-// Returns for each bone the length of the longest path from its head through its descendants to a tail, mm.
+// Returns for each bone the length of the longest path that runs from its head through its descendants to a tail, mm.
 std::vector<double> reach_below(const Armature& rig) {
   std::vector<double> reach(rig.bones.size(), 0);
   for (int b = static_cast<int>(std::ssize(rig.bones)); b-- > 0;) {
@@ -23,8 +23,8 @@ std::vector<double> reach_below(const Armature& rig) {
   return reach;
 }
 
-// Returns a byte per bone, 1 for the trunk: the bones that carry two limbs or more, and those between them and the
-// root.
+// Returns a byte per bone: 1 for bones of the trunk, which are the bones that carry at least two limbs, and all their
+// ancestors.
 std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double>& reach) {
   constexpr double kLimb = 0.2;  // least length of a limb as a share of the longest path from the root
   const double whole = *std::max_element(reach.begin(), reach.end());
@@ -45,9 +45,9 @@ std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double
 }
 
 std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t>& trunk) {
-  // Factors for the radii of the flesh: kTrunk times the trunk's length, and kLimb times a limb bone's length. A radius
-  // is at least kThinnest / 4 times the length of all bones together, and in a limb at most kTaper times the parent's
-  // radius.
+  // Radius of the flesh about a bone. kTrunk and kLimb: radius as a share of the trunk's length, and of a limb bone's
+  // length. kThinnest / 4: least radius as a share of the length of all bones together. kTaper: upper limit in a limb,
+  // as a share of the parent's radius.
   constexpr double kTrunk = 0.2, kLimb = 0.2, kThinnest = 0.012, kTaper = 0.85;
   double trunk_length = 0, whole = 0;
   for (size_t b = 0; b < rig.bones.size(); ++b)
@@ -63,7 +63,7 @@ std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t
   return radii;
 }
 
-// Adds the points of a capsule in rows across its axis.
+// Adds points on the surface of a capsule about a bone, in rings around the bone's axis.
 void add_capsule(std::vector<AtlasPoint>& points, const Bone& bone, int number, double radius, double step) {
   const double length = length_of(bone);
   const glm::dvec3 axis = length > 0 ? (bone.tail - bone.head) / length : glm::dvec3(0, 0, 1);
@@ -74,7 +74,7 @@ void add_capsule(std::vector<AtlasPoint>& points, const Bone& bone, int number, 
   const int rows = std::max(4, static_cast<int>(whole / step));
   for (int r = 0; r < rows; ++r) {
     const double s = (r + 0.5) * whole / rows;
-    // The rows run over one hemisphere, the cylinder and the other hemisphere.
+    // `s` runs along the profile of the capsule: over one hemisphere, the cylinder and the other hemisphere.
     const double angle = s < arc ? (s - arc) / radius : s > arc + length ? (s - arc - length) / radius : 0;
     const double along = std::clamp(s - arc, 0.0, length) + radius * std::sin(angle), around = radius * std::cos(angle);
     const int count = std::max(4, static_cast<int>(6.283185307179586 * around / step));
@@ -100,7 +100,7 @@ BodyAtlas capsule_atlas(const Armature& rig) {
   atlas.rig = rig;
   for (int b = 0; b < std::ssize(rig.bones); ++b)
     add_capsule(atlas.skin, rig.bones[b], b, radii[b], std::min(whole / 45, 0.7 * radii[b] + whole / 200));
-  // Points inside another bone's flesh do not lie on the skin.
+  // Removes points inside the flesh of another bone, because they do not lie on the skin.
   constexpr double kInside = 0.97;
   std::erase_if(atlas.skin, [&](const AtlasPoint& point) {
     for (int b = 0; b < std::ssize(rig.bones); ++b)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds where a body is cut off, since volumes often hold only a part of one. A cut lies in the outermost layer of
-// tissue along an axis of the grid, at the grid's border or behind a padding of air. It is recognised in two ways: the
-// layer has labels that are rare on the rest of the surface (muscle, bone), or its cross-section is as large as the one
-// a little deeper, where a sole or a crown would be rounded.
+// Finds the planes at which a body is cut off, since volumes often hold only a part of a body. A cut lies in the
+// outermost layer of tissue along an axis of the grid, at the grid's border or behind a padding of air. It is
+// recognised in two ways: the layer has labels that are rare on the rest of the surface (muscle, bone), or its
+// cross-section is as large as the one a little deeper, where a sole or a crown would be rounded.
 #pragma once
 
 #include <vector>
@@ -14,17 +14,18 @@ namespace limber {
 
 struct TissueCut {
   glm::dvec3 normal{0};  // unit vector out of the tissue, world
-  double offset = 0;     // dot(normal, p) of every point p on the cut, mm
+  double offset = 0;     // dot(normal, p) for every point p on the cut, mm
 };
 
-// Returns the cuts, at most one for each face of the tissue's box.
+// Returns the planes at which the body is cut off, at most one for each face of the tissue's bounding box.
 std::vector<TissueCut> tissue_cuts(const LabelVolume& volume);
 
-// Returns the largest signed distance by which a point lies beyond any of the cuts, mm: negative inside all cuts,
-// -infinity without cuts.
+// Returns how far a point lies beyond the planes at which the body is cut off, mm: the largest signed distance from any
+// of the planes. Negative on the body's side of all planes, -infinity without planes.
 double beyond(const std::vector<TissueCut>& cuts, const glm::dvec3& place);
 
-// Removes the points within `near` mm of a cut that face it: they belong to the cut and not to the body's own surface.
+// Removes the surface points that lie within `near` mm of a cut and whose normals point out of it: they belong to the
+// cut and not to the body's own surface.
 void drop_cut_faces(std::vector<SurfacePoint>& points, const std::vector<TissueCut>& cuts, double near);
 
 }  // namespace limber

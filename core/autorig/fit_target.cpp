@@ -12,12 +12,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kCells = 380;  // number of cells along the longest side of the tissue
+constexpr double kCells = 380;  // number of cells along the longest side of the tissue's bounding box
 constexpr double kRoughCells = 190;
-constexpr double kLeastBone = 0.004;  // share of all tissue below which bone tissue is too little for a skeleton
+constexpr double kLeastBone = 0.004;  // least share of bone in all tissue; less bone tissue than this is no skeleton
 constexpr std::int64_t kBoneCells = 6000;
 
-// Returns the centres of at most `most` filled cells, evenly spread over all of them.
+// Returns the centres of at most `most` cells that are filled with tissue, evenly spread over all such cells.
 std::vector<glm::dvec3> filled_cells(const Occupancy& occupancy, std::int64_t most) {
   std::vector<std::int64_t> filled;
   for (std::int64_t i = 0; i < std::ssize(occupancy.share); ++i)

@@ -12,16 +12,16 @@ namespace limber {
 
 namespace {
 
-// Angle in radians. A hinge whose range begins within this angle of straight counts as bending one way only, and such a
-// limb never rests overextended by more than this angle.
+// Largest angle, radians, by which a hinge may bend backwards beyond straight and still count as bending one way only.
+// Such a limb also never rests bent backwards by more than this angle.
 constexpr double kBentBack = 15 * std::numbers::pi / 180;
-// Angle between a hinge's axis and the axis of its bend above which the hinge's axis counts as wrong, radians. The axis
-// of a forearm that points sideways deviates by less.
+// Largest angle, radians, between a hinge's axis and the axis about which the resting limb is bent. Above it, the
+// hinge's axis counts as wrong. The axis of a forearm that points sideways deviates by less.
 constexpr double kFarOff = 35 * std::numbers::pi / 180;
 
-// Returns the hinge axis of an elbow or knee. `carried` is the axis that was rotated along with the bone. If the limb
-// rests clearly bent and `carried` is far from the axis at right angles to its two bones, returns that one: only the
-// bend shows how a limb is rotated about its own length.
+// Returns the hinge axis of an elbow or knee. This is `carried`, the old axis rotated along with the bone, unless the
+// limb rests clearly bent and `carried` is far from the normal of the plane of its two bones. Then it is that normal,
+// because only the bend shows how a limb is rotated about its own length.
 glm::dvec3 axis_of_bend(const Armature& rig, int index, const glm::dvec3& carried) {
   const Bone& bone = rig.bones[index];
   const Bone& parent = rig.bones[bone.parent];

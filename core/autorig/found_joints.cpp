@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// Returns the confidence in the joint at the head of each bone, [0, 1]. It is the geometric mean of two shares: that of
-// the bone's surface, and that of its parent's surface, which lie near the volume's surface.
+// Returns the confidence in the joint at the head of each bone, [0, 1]. It is the geometric mean of two shares: of the
+// bone's points and of its parent's points that lie near the volume's surface.
 std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
@@ -32,9 +32,9 @@ std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   return result;
 }
 
-// Limits on the distance of two surfaces by which strangeness() compares their shapes, mm. Up to `same`, the surface
-// has the atlas's shape; from `other` mm more on, it has another one. `of_cell` is the distance that voxels alone
-// cause, as a share of a cell's size.
+// Limits by which strangeness() compares the shapes of two surfaces, mm. Up to the distance `same`, the surfaces have
+// the same shape; from `same` + `other` on, their shapes differ entirely. `of_cell`: distance that voxels alone cause,
+// as a share of a cell's size.
 struct Likeness {
   double same, other, of_cell;
 };
@@ -69,8 +69,9 @@ std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint
   return result;
 }
 
-// Returns for each bone how much the body's skin differs in shape from the atlas's, [0, 1]. Where bone tissue is known
-// and has the shape of the atlas's bones, the difference counts as small, whatever fat lies over them.
+// Returns for each bone how much the shape of the body differs from the atlas's, [0, 1]. It is measured on the skin,
+// and where bone tissue is known, also on the bones; the smaller value counts, so that fat over the bones does not
+// matter.
 std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   std::vector<double> result =
@@ -82,10 +83,11 @@ std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
   return result;
 }
 
-// Returns how much the whole body differs in shape from the atlas, [0, 1]: the mean over the bones of limbs and trunk,
-// and 1 where voxels are too coarse to tell.
+// Returns how much the shape of the whole body differs from the atlas's, [0, 1]: the mean over all bones except fingers
+// and jaw, but 1 where voxels are too coarse to compare shapes.
 double whole_strangeness(const Fitted& fitted, const std::vector<double>& strange, const FitTarget& target) {
-  // Sizes of a cell up to which shapes can be compared, and from which on they cannot be compared at all, mm.
+  // Cell sizes for the comparison of shapes, mm in a body of the atlas's size: up to kFine the comparison is exact,
+  // from kCoarse on it is impossible.
   constexpr double kFine = 5, kCoarse = 9;
   double sum = 0;
   int bones = 0;
@@ -95,11 +97,11 @@ double whole_strangeness(const Fitted& fitted, const std::vector<double>& strang
   return std::max(bones ? sum / bones : 1.0, std::clamp((target.cell / size - kFine) / (kCoarse - kFine), 0.0, 1.0));
 }
 
-// Sets the errors of joints for a body of which only the rig is known. The skin shows the direction and the ends of
-// limbs, but not where along them they bend. A limb that lies on no skin may lie anywhere around its root.
+// Sets the errors of joints for a body whose shape comes from the rig alone. The skin shows the direction and the ends
+// of limbs, but not where along them they bend. A limb that does not lie on any skin may lie anywhere around its root.
 void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const FitTarget& target) {
-  // Errors: kOfWhole as a share of the tissue's diagonal, kOfBone of a bone's length, and kLost of the length of a bone
-  // in a lost limb. A limb is not lost where its confidence reaches kEnough.
+  // Parts of a joint's error: kOfWhole of the tissue's diagonal, kOfBone of a bone's length, and up to kLost of a
+  // bone's length in a limb that does not lie on the skin. From a confidence of kEnough on, a limb lies on the skin.
   constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75, kEnough = 0.8;
   const Armature& rig = m.atlas().rig;
   std::vector<double> lost(rig.bones.size(), 0);
@@ -115,13 +117,13 @@ void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const M
 }  // namespace
 
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target) {
-  constexpr double kLeast = 0.3;  // share of a bone's skin points inside the cuts from which on the bone is seen
+  constexpr double kLeast = 0.3;  // share of a bone's skin points that are not cut off, from which on the bone is seen
   const Mannequin& m = *fitted.body;
   std::vector<double> all(m.bone_count(), 0), inside(all);
   for (const AtlasPoint& point : m.atlas().skin)
     ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
-  // The connected group of seen bones that each bone belongs to; -1: not seen. A group is numbered by its topmost
-  // bone's unseen parent, or by the root.
+  // Number of the connected group of seen bones that each bone belongs to; -1: the bone is not seen. The number is the
+  // index of the unseen parent of the group's topmost bone, or of the root.
   std::vector<int> piece(m.bone_count(), -1);
   std::vector<double> weight(m.bone_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -139,9 +141,9 @@ std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& targ
 
 FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   using How = JointFit::How;
-  // Errors in mm within which nine of ten joints lay on segmented adults. kLeastError is that for a body of the atlas's
-  // shape; the others are added to it for a body of another shape. For hips even the authors of rigs differ by 5 cm
-  // where only skin is known.
+  // Errors in mm below which nine of ten joints stayed on segmented adults. kLeastError holds for a body of the atlas's
+  // shape; in a body of another shape, one of the other values is added. kHipsBySkin is that large because even the
+  // authors of rigs place hips 5 cm apart where only skin is known.
   constexpr double kLeastError = 4, kByBone = 14, kCollarByBone = 28, kFingerByBone = 14, kBySkin = 22,
                    kShoulderBySkin = 26, kCollarBySkin = 36, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15,
                    kNeckByGirth = 22, kByBall = 9, kByAxis = 16;
@@ -150,8 +152,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
   const std::vector<double> near = shares_near(fitted, target);
   const std::vector<double> strange = strangeness(fitted, target);
-  // A body of another build has its joints in other positions, even where the surface at a single bone looks alike, as
-  // it always does at thin bones.
+  // The shape of the whole body counts for every joint. A body of another build has its joints in other positions, even
+  // where the surface at a single bone looks alike, as it always does at thin bones.
   const double whole = whole_strangeness(fitted, strange, target);
   FoundJoints found;
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -179,15 +181,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
-    // Where the girth landmark and the fit to the skin disagree, the error grows. The fit to the skin may be shifted
-    // along a limb, and neither of the two supports a joint between their positions.
+    // The error grows where the girth landmark (from the limb's cross-sections) and the fit to the skin disagree. The
+    // fit may be shifted along the limb, and neither of the two supports a joint between their positions.
     if (how == How::Girth && joint.how == How::Skin)
       joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
     if (weight > 0.5) joint.how = how;
   };
-  // Returns the weight of a landmark by its distance from the fitted joint. The fit to the skin is off along a limb by
-  // up to a tenth of the bone above, rarely more, so a waist farther away does not belong to this joint. A fit to rods
-  // does not locate the hand, which may be far off, so there the distance does not count.
+  // Returns the weight of a girth landmark by its distance from the fitted joint, [0, 1]. The fit to the skin is off
+  // along a limb by up to a tenth of the bone above, rarely more, so a landmark farther away does not belong to this
+  // joint. In a fit to rods the distance does not count, because that fit does not locate the hand.
   const auto believable = [&](const JointLandmark& mark) {
     constexpr double kSlides = 0.12, kNever = 0.24;
     const int above = rig.bones[mark.bone].parent;
@@ -198,14 +200,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   };
   for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
     const std::string& name = rig.bones[mark.bone].name;
-    // Weight of the landmark, which is a waist of the limb. The surface of bones locates elbow and wrist without it. At
-    // the knee, bones show the middle of the condyles and skin the gap below them; rigs bend halfway between.
+    // Weight of a girth landmark (the narrowest cross-section of a limb). Where the bones' surface is known, elbow and
+    // wrist need no such landmark. At the knee, bones show the middle of the condyles and skin the gap below them; rigs
+    // bend halfway between.
     const double share = name == "Neck"   ? 1
                          : by_bone        ? (name.ends_with("Shank") ? 0.5 : 0)
                          : fitted.is_rods ? double(name.ends_with("Hand"))
                                           : 1;
-    // In a bent limb the flesh folds, so that the waist lies further down. kBent is the error in mm that a right angle
-    // adds, and kHardlyBent the sine of the largest bend that adds no error.
+    // In a bent limb the flesh folds, so that the narrowest cross-section lies further down. kBent: error that a right
+    // angle adds, mm. kHardlyBent: sine of the largest bend that adds no error.
     constexpr double kBent = 45, kHardlyBent = 0.09;
     const double bent = kBent * std::max(0.0, std::sin(mark.bend) - kHardlyBent);
     take(mark, How::Girth, share * strange[mark.bone] * believable(mark),
@@ -214,8 +217,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                    : kByGirth) +
              bent);
   }
-  // Error of a hand that lies against other tissue, mm. The skin has no waist there, so the joint may be off along the
-  // limb.
+  // Error of a wrist whose hand lies against other tissue, mm, in a body of another shape. The skin has no narrowest
+  // cross-section there, so the joint may be off along the limb.
   constexpr double kHandSlides = 38;
   for (int b = 0; b < m.bone_count(); ++b)
     if (found.how[b].how == How::Skin && rig.bones[b].name.ends_with("Hand"))
@@ -223,13 +226,14 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone))
       take(mark, How::Ball, strange[mark.bone], kByBall);
-  // Where little of the surface fits, no joint is certain, whatever it was found by. Confidences below kFew, kFewOfLimb
-  // and kFewOfHand add an error of kFarOff or kLimbFarOff mm times the missing share. The limits differ since limb
-  // bones of different bodies are much alike, trunk bones are not, and a ball is recognised by itself.
+  // Where little of the surface fits, no joint is certain, whatever evidence it was found by. A confidence below kFew,
+  // kFewOfLimb or kFewOfHand gives an error of kFarOff or kLimbFarOff mm times the difference. The limits differ
+  // because limb bones of different bodies are much alike, trunk bones are not, and a ball joint is recognised by
+  // itself.
   constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;
-  // A residual above kUnlike, as a share of the tissue's diagonal, adds an error. Measured residuals: 0.011 at most on
-  // whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off, and more
-  // on limbs that were fitted the wrong way round.
+  // Residual, as a share of the tissue's diagonal, above which every joint gets an error. Measured residuals: 0.011 at
+  // most on whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off,
+  // and more on limbs that were fitted the wrong way round.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
   const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.residual) / target.length - kUnlike);
   const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
@@ -241,7 +245,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                                                  : kFewOfLimb;
     return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
   };
-  // Fingers far from the skin may belong to a hand that is rotated the wrong way, so the error of their joints grows.
+  // Fingers far from the skin may belong to a hand that was fitted with the wrong rotation, so the error of finger
+  // joints grows.
   constexpr double kHandShare = 0.85, kHandFarOff = 120;
   if (!fitted.is_capsules) {
     const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
@@ -249,7 +254,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
       if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
   }
   if (fitted.is_capsules) doubt_capsules(found, near, m, target);
-  // Error that halves the confidence, mm: the thickness of a joint.
+  // Error of a joint that halves its confidence, mm; about the thickness of a joint.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
     JointFit& joint = found.how[b];
@@ -261,8 +266,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
 }
 
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
-  // Part of a joint's shift that the joints below do not follow, as a share of the tissue's diagonal. It is only
-  // another convention for the position of the joint between the same two bones.
+  // Part of a joint's shift that the joints below it do not follow, as a share of the tissue's diagonal. A shift this
+  // small is only another convention for where the joint lies between the same two bones.
   constexpr double kElsewhere = 0.009;
   std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
   std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
@@ -282,11 +287,12 @@ void take_named(FoundJoints& found, const Armature& rig, const std::vector<Named
 
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings) {
-  // Distance from a cut below which a joint is near it, as a share of the tissue's diagonal; and error in mm above
-  // which the body at a joint does not have the atlas's shape.
+  // kNear: distance from a cut plane within which a joint counts as near it, as a share of the tissue's diagonal.
+  // kStrange: error of a joint, mm, above which the body does not have the atlas's shape there.
   constexpr double kNear = 0.05, kStrange = 5;
-  constexpr double kLeast = 36, kGrowth = 0.33;  // error at the cut in mm, and its growth per mm beyond the cut
-  constexpr double kSureBall = 12;               // error below which a ball joint is certain even near a cut, mm
+  // Error of a joint that lies in a cut plane, mm, and growth of the error per mm beyond the plane.
+  constexpr double kLeast = 36, kGrowth = 0.33;
+  constexpr double kSureBall = 12;  // error below which a ball joint counts as certain even near a cut, mm
   const Armature& rig = fitted.atlas->rig;
   const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
   std::string unseen, doubted;
@@ -301,7 +307,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       const double from_cut = out > 0 ? out : 0.1 * target.length;
       joint = {
           .how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
-      // Each unseen bone between a joint and the seen bones may be rotated differently, which adds to the error.
+      // Each unseen bone between a joint and the seen bones adds to the joint's error, because it may have another
+      // rotation.
       if (parent >= 0 && !seen[parent])
         joint.error = std::max(
             joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));
@@ -314,7 +321,7 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       if (!is_digit(rig.bones[b].name)) list(doubted, b);
     }
   }
-  // The joints next to an uncertain joint are uncertain too: they take a share of its error, and less confidence.
+  // A joint next to an uncertain joint is uncertain too: it gets a share of the neighbour's error, and less confidence.
   constexpr double kShareOfNeighboursError = 0.35, kMaxErrorMm = 100, kLessConfidence = 0.6;
   const std::vector<JointFit> own = found.how;
   const auto is_doubted = [&](int b) {
@@ -332,8 +339,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
     found.how[b].error = std::max(own[b].error, kShareOfNeighboursError * std::min(kMaxErrorMm, beside));
     found.how[b].confidence *= kLessConfidence;
   }
-  // A single limb that is cut off at its upper end may be longer or shorter than it looks. So the error of a joint is
-  // at least this share of its distance from the limb's free end.
+  // Error of a joint as a share of its distance from the limb's free end. It applies to a single limb that is cut off
+  // at its upper end, because such a limb may be longer or shorter than it looks.
   constexpr double kLimbLengthUncertainty = 0.13;
   const auto upper = std::find_if(rig.bones.begin(), rig.bones.end(),
                                   [](const Bone& bone) { return bone.name == "UpperArm" || bone.name == "Thigh"; });

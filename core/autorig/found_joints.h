@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the joint positions of a fitted body, by which evidence and how exactly each was found. The estimated error
+// Finds the joints of a fitted body: their positions, the evidence for each joint, and its estimated error. The error
 // follows from how much the body differs in shape from the fitted atlas, from whether landmarks of the body agree, and
 // from the share of the surface that lies close to the atlas.
 #pragma once
@@ -18,22 +18,22 @@ struct FoundJoints {
   std::vector<JointFit> how;
 };
 
-// Returns the joints of a fitted body. The more the body's shape differs from the atlas, the more the landmarks of the
-// body itself count.
+// Returns the joints of a fitted body. The more the body's shape differs from the atlas, the more weight landmarks of
+// the body itself get.
 FoundJoints found_joints(const Fitted& fitted, const FitTarget& target);
 
-// Replaces joints by those that were found between named bones. The joints below a replaced one move along.
+// Replaces joints by those that were found between bones named by labels. The joints below a replaced joint move along.
 //   size  diagonal of the tissue's extent, mm
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size);
 
-// Raises the errors of joints near and beyond cuts: beyond a cut they are placed by proportion alone, and a limb that
-// is cut off looks short. Adds a warning that names them.
+// Raises the errors of joints near and beyond the planes at which the body is cut off. Joints beyond a cut are placed
+// by proportion alone, and a limb that is cut off looks too short. Adds a warning that names these joints.
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings);
 
-// Returns a byte per bone, 1 for the bones of the largest connected part of the body with enough skin inside the cuts.
-// A hand whose forearm is cut away is not among them. Both legs of a body without hips are among them, since they have
-// the same parent.
+// Returns a byte per bone: 1 for the bones of the largest connected part of the body with enough skin left by cuts. A
+// hand whose forearm is cut away does not belong to it. The two legs of a body without hips count as connected, since
+// they have the same parent.
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target);
 
 }  // namespace limber

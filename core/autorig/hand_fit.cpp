@@ -10,9 +10,10 @@ namespace limber {
 
 namespace {
 
-// The bones of a hand, and the settings of its fit.
+// The bones of one hand in the rig, and the settings for fitting the hand.
 struct HandFit {
-  int hand = 0, knuckle = 0, index = 0, little = 0;  // the hand, and the proximal bones of three fingers
+  // Bone indices: hand, first phalanx of the middle, the index and the little finger.
+  int hand = 0, knuckle = 0, index = 0, little = 0;
   FitStage stage;
   double palm = 0;  // distance from the wrist to the middle knuckle, mm
 };
@@ -37,12 +38,12 @@ std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
   return fit;
 }
 
-// Bends the hand of one side like the mirrored hand of the other side.
+// Gives one hand the mirrored bend of the other hand.
 void bend_alike(Mannequin& m, int hand, int other) {
   const Armature& rig = m.atlas().rig;
   const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
   const std::vector<std::uint8_t> below = branch_of(rig, hand);
-  // The bones of both hands have the same order in the rig.
+  // The rig lists the bones of both hands in the same order.
   for (int b = hand; b < m.bone_count(); ++b)
     if (below[b]) {
       const int there = other + b - hand;
@@ -52,8 +53,8 @@ void bend_alike(Mannequin& m, int hand, int other) {
   m.settle();
 }
 
-// Returns the body with open hands in the scale of its limbs. Hands that were fitted to the wrong fingers are bent and
-// shrunk, so their fit starts again from open hands.
+// Returns the body with hands that are open and have the scale of its arms and legs. A fit to the wrong fingers bends
+// and shrinks a hand, so a new fit starts from open hands.
 Mannequin with_fresh_hands(const Mannequin& m) {
   Mannequin fresh = m;
   const Armature& rig = m.atlas().rig;
@@ -77,7 +78,7 @@ Mannequin with_fresh_hands(const Mannequin& m) {
 
 void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
   const Armature& rig = m.atlas().rig;
-  std::vector<std::pair<int, double>> hands;  // each hand with its residual
+  std::vector<std::pair<int, double>> hands;  // bone index of each hand, and the hand's residual, mm^2
   const auto keep_better = [&](Mannequin& best, double& least, Mannequin tried, const HandFit& hand, double share) {
     fit(tried, &*target.skin, bone, hand.stage);
     const double off = residual(tried, &*target.skin, bone, 0.25 * hand.palm, hand.stage);
@@ -96,7 +97,7 @@ void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
         if (std::abs(twist) > 1 && aside != 0) continue;
         Mannequin tried = m;
         tried.turn_branch(b, glm::mat3_cast(glm::angleAxis(twist, along) * glm::angleAxis(aside, normal)));
-        // A rotated hand must be clearly better: its residual must be lower by 3 %.
+        // A rotated hand must be clearly better than the best one so far: its residual must be lower by 3 %.
         keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);
       }
     m = best;
@@ -127,7 +128,7 @@ Mannequin with_turned_hands(const Mannequin& m, double twist, const FitTarget& t
                               left ? -twist : twist, glm::normalize(turned.joint(hand->knuckle) - turned.joint(b)))));
     fit(turned, &*target.skin, nullptr, stage);
   }
-  // Only the arms may change: position and sizes of the rest of the body are restored.
+  // Only the arms may change in this fit, so position and sizes of the rest of the body are restored.
   turned.root = m.root;
   std::vector<std::uint8_t> of_arm(m.group_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b)

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// The bones of a limb without its digits, and the bone whose tail is the limb's end.
+// The main bones of a limb (without fingers or toes), and the bone at whose tail the limb ends.
 struct Chain {
   std::vector<int> bones;
   int last = 0;
@@ -55,7 +55,7 @@ double length_from(const Armature& rig, const Chain& chain, size_t k) {
   return length;
 }
 
-// Rotates the bones of a chain so that they follow a path, which begins at the chain's far end.
+// Rotates the bones of a limb so that they follow a path along the limb. The path begins at the limb's free end.
 void lay_chain(Mannequin& m, const Chain& chain, const LimbPath& path, double scale) {
   const Armature& rig = m.atlas().rig;
   for (size_t k = 0; k < chain.bones.size(); ++k) {
@@ -85,7 +85,7 @@ Chain chain_for(AtlasKind kind, const Armature& rig) {
   return chain_of(rig, {"UpperArm", "Forearm", "Hand"}, "MiddleDistal");
 }
 
-// Returns the lowest and highest coordinates of the filled cells; world, mm.
+// Returns the corners of the bounding box of the cells that are filled with tissue; world, mm.
 std::pair<glm::dvec3, glm::dvec3> extent_of(const Occupancy& body) {
   glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
   const AffineTransform to_world = world_from_voxel(body.grid);
@@ -103,22 +103,23 @@ std::pair<glm::dvec3, glm::dvec3> extent_of(const Occupancy& body) {
 
 namespace {
 
-// Sizes of the atlas, mm: heights of crown and hips above the soles, and distance from the middle to a hand.
+// Sizes of the whole-body atlas, mm: heights of the crown and of the hips above the soles, and distance from the body's
+// middle to a hand.
 constexpr double kStature = 1748, kHips = 925, kHalfSpan = 610;
 
 bool is_cut(const std::vector<TissueCut>& cuts, const glm::dvec3& way) {
   return std::any_of(cuts.begin(), cuts.end(), [&](const TissueCut& cut) { return glm::dot(cut.normal, way) > 0.9; });
 }
 
-// Returns `steps` evenly spaced numbers from `from` to `to`; only `from` for one step.
+// Returns `steps` evenly spaced numbers from `from` to `to`; for one step, only `from`.
 std::vector<double> ladder(double from, double to, int steps) {
   std::vector<double> rungs;
   for (int k = 0; k < steps; ++k) rungs.push_back(steps > 1 ? from + (to - from) * k / (steps - 1) : from);
   return rungs;
 }
 
-// Adds guesses for a cut body that stands upright in LPS axes: a whole body is placed so that the part of it that the
-// cuts leave fills the tissue, in every way that the cuts allow.
+// Adds guesses for a body that is cut off and stands upright in LPS axes. Each guess places a whole body so that the
+// part between the cuts fills the tissue, in several sizes, heights and arm poses that the cuts allow.
 void add_cut_bodies(const BodyAtlas& atlas, const glm::dvec3& low, const glm::dvec3& high,
                     const std::vector<TissueCut>& cuts, std::vector<Mannequin>& starts) {
   const bool no_feet = is_cut(cuts, {0, 0, -1}), no_head = is_cut(cuts, {0, 0, 1});
@@ -166,7 +167,8 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
   }
   if (paths.size() < 3) return starts;
 
-  // Of the five ends, the head is the nearest to the body's centre, and the feet are the two farthest down from it.
+  // Of the five tissue ends, the head is the one nearest to the body's centre. The feet are the two lowest ends, where
+  // up points from the centre to the head.
   std::vector<LimbPath> ends(paths.begin(), paths.begin() + std::min<size_t>(paths.size(), 5));
   const glm::dvec3 centre = ends[0].points.back();
   const auto head = std::min_element(ends.begin(), ends.end(), [](auto& a, auto& b) { return a.length < b.length; });
@@ -178,7 +180,7 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
   });
   const LimbPath feet[2] = {ends[0], ends[1]};
   const double whole = crown.length + (feet[0].length + feet[1].length) / 2, scale = whole / 1960;
-  // Length of the leg from the toes to the hip: foot, shank and thigh.
+  // Length of a leg from the toes to the hip (foot, shank and thigh), mm.
   const double leg = scale * 1040;
   const glm::dvec3 hips = (feet[0].at(leg) + feet[1].at(leg)) / 2.0;
   const glm::dvec3 up = crown.points.front() - hips, across = feet[0].at(leg * 0.75) - feet[1].at(leg * 0.75);
@@ -190,7 +192,7 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
     lay_chain(m, chain_of(rig, {"LeftThigh", "LeftShank", "LeftFoot"}, "LeftToes"), feet[facing], scale);
     lay_chain(m, chain_of(rig, {"RightThigh", "RightShank", "RightFoot"}, "RightToes"), feet[1 - facing], scale);
     for (size_t k = 2; k < ends.size(); ++k) {
-      // An arm belongs to the side on which it leaves the trunk.
+      // An arm is left or right by the side on which it leaves the trunk.
       const glm::dvec3 shoulder = ends[k].at(scale * 700);
       const bool left = glm::dot(axes[0], shoulder - hips) > 0;
       const std::string side = left ? "Left" : "Right";
@@ -204,10 +206,10 @@ std::vector<Mannequin> body_starts(const BodyAtlas& atlas, const Occupancy& body
 
 namespace {
 
-// Extends a path straight by `by` mm before its first point or beyond its last one.
+// Lengthens a path by `by` mm along a straight line: at its first point if `before` is true, else at its last point.
 void extend(LimbPath& path, double by, bool before) {
   if (path.points.size() < 2) return;
-  constexpr size_t kSteps = 8;  // steps of the path over which its direction is measured
+  constexpr size_t kSteps = 8;  // number of path steps over which the direction at the path's end is measured
   if (before) std::reverse(path.points.begin(), path.points.end());
   const glm::dvec3 last = path.points.back(),
                    out = last - path.points[path.points.size() - 1 - std::min(path.points.size() - 1, kSteps)];
@@ -221,7 +223,7 @@ void extend(LimbPath& path, double by, bool before) {
 
 std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body, AtlasKind kind,
                                    const std::vector<TissueCut>& cuts) {
-  // Flesh reaches this far beyond the joint at which a limb begins, mm.
+  // Distance by which flesh reaches beyond the joint at which a limb begins, mm.
   constexpr double beyond_root = 40;
   const Chain chain = chain_for(kind, atlas.rig);
   std::vector<Mannequin> starts;
@@ -230,8 +232,8 @@ std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body
   LimbPath path = paths[0];
   const Armature& rig = atlas.rig;
   const double length = beyond_root + length_from(rig, chain, 0);
-  // An assumption about the limb: it is as long as the tissue, or it has an adult's size and its tip or root is cut
-  // off.
+  // An assumption about the limb's size: the limb is as long as the tissue, or it has an adult's size and its tip or
+  // root is cut off.
   struct Lie {
     double scale;
     bool no_tip;
@@ -286,7 +288,7 @@ Extent extent_of(const std::vector<glm::dvec3>& points) {
   return extent;
 }
 
-// Returns the 24 rotations that map coordinate axes to coordinate axes.
+// Returns the 24 rotations by right angles, which map the coordinate axes to each other.
 std::vector<glm::dmat3> axis_turns() {
   std::vector<glm::dmat3> turns;
   for (int x = 0; x < 3; ++x)
@@ -313,7 +315,8 @@ std::vector<Mannequin> turned_starts(const BodyAtlas& atlas, const Occupancy& bo
   for (const AtlasPoint& point : atlas.skin) skin.push_back(point.place);
   std::vector<Mannequin> starts;
   if (tissue.empty() || skin.empty()) return starts;
-  // A round limb does not show where it bends, so the lengths of its bones are kept in proportion.
+  // Factor on the prior that keeps the lengths of bones in proportion. A round limb does not show where it bends, so
+  // its surface does not give these lengths.
   constexpr double kAlike = 4;
   const Extent there = extent_of(tissue), here = extent_of(skin);
   std::vector<glm::dmat3> turns = axis_turns();

@@ -21,21 +21,25 @@ namespace limber {
 
 namespace {
 constexpr double kDegree = std::numbers::pi / 180;
-// Step between the angles of the fit, degrees. The margin covers the angles in between.
+// Step between the joint angles at which the fit measures collisions, degrees. The margin around bones covers the
+// angles in between.
 constexpr double kFitStep = 3;
-constexpr double kVerifyStep = 1;  // step between the angles at which colliding voxels are counted, degrees
-constexpr double kLever = 100;     // lever arm by which a tilt of the axis is converted to a shift, mm
-constexpr double kRound = 0.2;     // depth below which the cost is quadratic and above which it is linear, mm
-constexpr double kNear = 20;       // bone farther than this from the other side at all angles is ignored, mm
+constexpr double kVerifyStep = 1;  // step between the joint angles at which colliding voxels are counted, degrees
+constexpr double kLever = 100;     // shift of the axis that costs as much as a tilt by one radian, mm
+// Collision depth, mm, below which the cost is about quadratic and above which it is linear.
+constexpr double kRound = 0.2;
+// Bone that stays farther than this from the bones of the other side at all angles is ignored, mm.
+constexpr double kNear = 20;
 
-// A motion of the axis: shifts along its two normals, and tilts (radians) towards them times kLever; all in mm.
+// A change of the joint's axis, all in mm: shifts along the two directions across the axis, and tilts towards them
+// (radians times kLever).
 using Motion4 = Eigen::Vector4d;
 
 struct Axis {
-  glm::dvec3 place, direction;  // a point in world coordinates, mm, and the unit direction
+  glm::dvec3 place, direction;  // a point on the axis (world, mm), and the axis's unit direction
 };
 
-// The unmoved axis and the two directions along which it may move.
+// The joint's axis before the fit, and two unit vectors across it along which it may be shifted or tilted.
 struct AxisFrame {
   Axis axis;
   glm::dvec3 across[2];
@@ -60,16 +64,16 @@ AffineTransform operator*(const AffineTransform& a, const AffineTransform& b) {
   return {a.linear * b.linear, a.linear * b.offset + a.offset};
 }
 
-// Returns the transform, in voxel coordinates, of a rotation by `radians` about the axis.
+// Returns a rotation by `radians` about the axis as a transform of voxel coordinates.
 AffineTransform turned_voxel(const Grid& grid, const Axis& axis, double radians) {
   const RigidTransform turn = rotation_about(axis.place, glm::angleAxis(radians, axis.direction));
   return voxel_from_world(grid) * affine(turn) * world_from_voxel(grid);
 }
 
-// The bone voxels of one side of the joint: the fixed or the turning bones.
+// The bone voxels on one side of the joint: those of the fixed bones, or those of the rotating bones.
 struct Side {
-  VoxelBox box;                      // around the voxels, with a margin of three voxels
-  std::vector<std::uint8_t> inside;  // one byte per voxel of the box
+  VoxelBox box;                      // bounding box of the voxels, with a margin of three voxels
+  std::vector<std::uint8_t> inside;  // 1 for each voxel of the box that belongs to this side
   std::vector<glm::ivec3> voxels;
 
   bool has(const glm::ivec3& v) const { return box.contains(v) && inside[box.index(v)]; }
@@ -88,8 +92,9 @@ Side gather_side(const std::vector<glm::ivec3>& voxels) {
   return side;
 }
 
-// Decides which side of the joint owns a rest point, by the same rule by which rigid bones are written
-// (core/deform/inverse_map.h): the label read there is bone, and the side of the nearest bone voxel owns the point.
+// Decides which side of the joint owns the bone at a rest point. The rule is that by which rigid bones are written into
+// a posed volume (core/deform/inverse_map.h): the label read at the point is bone, and the side of the nearest bone
+// voxel owns the point.
 class PaintedBone {
  public:
   PaintedBone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts, const Side& fixed,
@@ -126,16 +131,16 @@ class PaintedBone {
   const Side &fixed_, &turning_;
 };
 
-// Returns the signed distance of each voxel of the box to the surface of a side, mm, negative inside.
+// Returns the signed distance of each voxel of the box to the surface of one side's bones, mm, negative inside.
 std::vector<float> surface_distance(const Side& side, const glm::dvec3& spacing, Progress& progress) {
   std::vector<float> distance = signed_distance(side.box, side.inside, spacing, progress);
-  // Converts distances between voxel centres to distances to the border between voxels.
+  // Converts distances between voxel centres to distances from the face between a bone voxel and its neighbour.
   const auto half = static_cast<float>(std::min({spacing.x, spacing.y, spacing.z}) / 2);
   for (float& d : distance) d += d > 0 ? -half : half;
   return distance;
 }
 
-// An interpolated value, and its gradient: the change per voxel.
+// An interpolated value of a field, and the field's gradient per voxel.
 struct Sampled {
   double value;
   glm::dvec3 gradient;
@@ -162,7 +167,7 @@ std::optional<Sampled> sample(const VoxelBox& box, const std::vector<float>& fie
   return result;
 }
 
-// Returns the value of the nearest voxel; infinity outside the box.
+// Returns the field's value at the voxel nearest to a point; infinity outside the box.
 float nearest_value(const VoxelBox& box, const std::vector<float>& field, const glm::dvec3& point) {
   const glm::dvec3 at = point - glm::dvec3(box.lowest) + 0.5;
   const bool inside =
@@ -180,7 +185,8 @@ std::vector<double> angles_between(double minimum_degrees, double maximum_degree
   return angles;
 }
 
-// The cost of all depths of collision beyond the margin, with its Gauss-Newton derivatives.
+// The summed cost of all collisions (surface voxels closer to the other bone than the margin), with its gradient and
+// Gauss-Newton Hessian.
 struct Collision {
   double cost = 0;
   Motion4 gradient = Motion4::Zero();
@@ -214,7 +220,8 @@ class JointProblem {
 
   const AxisFrame& frame() const { return frame_; }
 
-  // The number of voxels that both sides would fill: at the worst angle of the range, and summed over all angles.
+  // Number of voxels that would be filled by bones of both sides: at the worst angle of the range, and summed over all
+  // angles.
   struct Overlap {
     std::int64_t most = 0, sum = 0;
   };
@@ -231,7 +238,8 @@ class JointProblem {
             std::accumulate(count.begin(), count.end(), std::int64_t{0})};
   }
 
-  // Returns the rest voxels of both sides that collide at some angle; each once, x fastest.
+  // Returns the voxels, at rest, of both sides that collide at some angle. Each voxel is listed once, in grid order (x
+  // fastest).
   std::vector<glm::ivec3> colliding(const Motion4& motion) const {
     const Axis axis = frame_.moved(motion);
     std::vector<glm::ivec3> all;
@@ -252,7 +260,8 @@ class JointProblem {
     return all;
   }
 
-  // Minimizes the squared motion plus `weight` times the collisions, starting from `motion`.
+  // Returns the motion of the axis that minimizes its own square plus `weight` times the cost of collisions. The search
+  // starts at `motion`.
   Motion4 solve(Motion4 motion, double weight, double margin) const {
     constexpr int kIterations = 12;
     double damping = 1e-3;
@@ -280,8 +289,8 @@ class JointProblem {
   }
 
  private:
-  // Selects the voxels of both sides that come near the other side at some angle. Of the turning side, only surface
-  // voxels are selected.
+  // Selects the voxels of each side that come near the bones of the other side at some angle: all such voxels of the
+  // fixed side, but only surface voxels of the rotating side.
   void choose_points() {
     std::vector<AffineTransform> there, back;
     for (double angle : fit_angles_) {
@@ -298,7 +307,7 @@ class JointProblem {
       if (comes_near(v, back, turning_.box, from_turning_)) exposed_.push_back(v);
   }
 
-  // Returns whether bone of the turning side enters a voxel of the fixed side.
+  // Returns true if bone of the rotating side enters a voxel of the fixed side.
   //   rest  the voxel's position rotated back: the rest point that the rotation takes to the voxel
   bool is_entered(const glm::dvec3& rest) const {
     return nearest_value(turning_.box, from_turning_, rest) < reach_ && painted_.by_turning(rest);
@@ -319,7 +328,7 @@ class JointProblem {
   Collision collision(const Motion4& motion, double margin) const {
     const Axis axis = frame_.moved(motion);
     std::array<Axis, 4> stepped;
-    constexpr double kStep = 1e-4;  // step of the finite differences, mm
+    constexpr double kStep = 1e-4;  // step of the finite differences of a motion, mm
     for (int j = 0; j < 4; ++j) stepped[j] = frame_.moved(motion + kStep * Motion4::Unit(j));
 
     std::vector<Collision> parts(fit_angles_.size());
@@ -357,10 +366,10 @@ class JointProblem {
   AxisFrame frame_;
   Progress& progress_;
   std::vector<double> fit_angles_, verify_angles_;
-  std::vector<float> from_fixed_, from_turning_;  // signed distances in the sides' boxes, mm
+  std::vector<float> from_fixed_, from_turning_;  // signed distances to each side's bones in that side's box, mm
   double reach_;                                  // diagonal of a voxel, mm
-  std::vector<glm::dvec3> points_;                // surface voxels of the turning side that may enter the fixed side
-  std::vector<glm::ivec3> exposed_;               // voxels of the fixed side that may be entered
+  std::vector<glm::dvec3> points_;   // surface voxels of the rotating side that may enter bone of the fixed side
+  std::vector<glm::ivec3> exposed_;  // voxels of the fixed side that bone of the rotating side may enter
 };
 
 struct Fit {
@@ -373,14 +382,15 @@ bool within(const Motion4& motion, const FitJoint& settings) {
          std::atan(motion.tail<2>().norm() / kLever) <= settings.most_turned_degrees * kDegree;
 }
 
-// Returns whether fit a has fewer collisions than b, or as many and a smaller motion.
+// Returns true if fit `a` has fewer collisions than fit `b`, or equally many and a smaller motion.
 bool better(const Fit& a, const Fit& b) {
   if (a.overlap.sum != b.overlap.sum) return a.overlap.sum < b.overlap.sum;
   return a.motion.squaredNorm() < b.motion.squaredNorm();
 }
 
-// Removes the last collisions and shortens the motion by trying steps along each pair of the four directions, halved
-// when none helps [Hooke & Jeeves 1961]: voxel counts are not differentiable.
+// Improves a fit by trying steps along one or two of the four variables of the motion; the step is halved when none
+// helps [Hooke & Jeeves 1961]. First the last collisions are removed, then the motion is shortened. Derivatives cannot
+// be used, because voxel counts are not differentiable.
 Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
   for (double step = 2; step > 0.2; step /= 2) {
     for (bool moved = true; moved;) {
@@ -404,10 +414,12 @@ Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
   return best;
 }
 
-// Returns the smallest motion found without collisions, or the one with the fewest collisions.
+// Returns the smallest motion of the axis found without collisions; if none was found, the motion with the fewest
+// collisions.
 Fit least_motion(const JointProblem& problem, double voxel, const FitJoint& settings) {
   Fit best{Motion4::Zero(), problem.overlap(Motion4::Zero())};
-  // The smaller margin moves the axis least; where voxels still collide, the larger one opens the joint more.
+  // A smaller margin around bones moves the axis less. Where voxels still collide, the larger margin opens the joint
+  // more.
   for (const double margin : {0.375 * voxel, 0.75 * voxel}) {
     Motion4 motion = Motion4::Zero();
     for (double weight = 1.0 / 16; weight <= 256 && best.overlap.sum; weight *= 8) {
@@ -422,7 +434,7 @@ Fit least_motion(const JointProblem& problem, double voxel, const FitJoint& sett
   return best;
 }
 
-// Returns the bones that rotate with `bone`: itself and its descendants.
+// Returns the bones that rotate with `bone`: the bone itself and its descendants.
 std::vector<bool> turning_bones(const Armature& armature, int bone) {
   std::vector<bool> turns(armature.bones.size());
   turns[bone] = true;
@@ -475,9 +487,9 @@ AxisFit fit_axis(const LabelVolume& volume, const TissueVoxels& tissue, const Bo
   return fitted;
 }
 
-// Moves the head of a bone, and the parent's tail with it where the two coincided.
+// Moves the head of a bone. If the parent's tail coincided with the head, moves the tail as well.
 void move_head(Armature& armature, int bone, const glm::dvec3& head) {
-  constexpr double kMet = 0.1;  // distance below which head and tail coincide, mm
+  constexpr double kMet = 0.1;  // distance below which a head and a tail coincide, mm
   const int parent = armature.bones[bone].parent;
   if (parent >= 0 && glm::length(armature.bones[parent].tail - armature.bones[bone].head) < kMet)
     armature.bones[parent].tail = head;

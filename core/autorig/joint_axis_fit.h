@@ -20,31 +20,33 @@
 namespace limber {
 
 struct FitJoint {
-  double minimum_degrees = 0, maximum_degrees = 90;  // range of the flexion that must stay free of collisions
+  // Range of flexion angles in which the joint must be free of collisions.
+  double minimum_degrees = 0, maximum_degrees = 90;
   double reach_mm = 120;            // bone farther than this from the joint is ignored: no axis could separate it
   double most_moved_mm = 30;        // upper limit on the shift of the axis
   double most_turned_degrees = 20;  // upper limit on the tilt of the axis
 };
 
 struct FittedJoint {
-  // The rig with the bone's head moved, and with its parent's tail where the two coincided. The joint limits hold the
-  // hinge.
+  // The fitted rig: the bone's head is moved, and its parent's tail with it where the two coincided. The bone's joint
+  // limits are a hinge about the fitted axis.
   Armature armature;
-  double moved_mm = 0;                                 // shift of the head, across the axis
-  double turned_degrees = 0;                           // tilt of the axis
-  std::int64_t overlap_before = 0, overlap_after = 0;  // colliding bone voxels at the worst angle of the range
-  // Rest voxels of both sides that collide at some angle.
+  double moved_mm = 0;        // shift of the bone's head, at right angles to the axis
+  double turned_degrees = 0;  // tilt of the axis
+  // Number of voxels that bones of both sides fill, at the worst angle of the range.
+  std::int64_t overlap_before = 0, overlap_after = 0;
+  // Voxels, at rest, of both sides of the joint that collide at some angle: before and after the fit.
   std::vector<glm::ivec3> colliding_before, colliding_after;
 };
 
-// Fits the hinge through the bone's head along its flex_axis().
+// Fits the axis of a hinge joint. The fit starts from the axis through the bone's head along flex_axis().
 // throws Error when the bone has no flex axis, the range is not within +-180 degrees, or one side has no bone tissue
 FittedJoint fit_joint(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                       const Armature& armature, int bone, const FitJoint& settings = {},
                       Progress& progress = no_progress());
 
-// The result of fit_joints(). Every joint that a pose rotates by more than 5 degrees is fitted for that rotation,
-// parents first. A joint without bone tissue on one side stays as it is.
+// The result of fit_joints(), which fits the axis of every joint that a pose rotates by more than 5 degrees, parents
+// first. The fitted range is that rotation. A joint without bone tissue on one side stays as it is.
 struct FittedPose {
   struct Joint {
     std::string bone;
@@ -52,9 +54,10 @@ struct FittedPose {
     std::int64_t overlap_before = 0, overlap_after = 0;
   };
   Armature armature;
-  Pose pose;                          // the same angles, rotated about the fitted axes
-  std::vector<Joint> joints;          // joints that collided or moved
-  std::vector<std::string> warnings;  // one line per joint that still collides, with the number of voxels
+  Pose pose;                  // the given pose with the same joint angles, but about the fitted axes
+  std::vector<Joint> joints;  // joints that collided before the fit or whose axis moved
+  // One line per joint whose bones still collide, with the number of colliding voxels.
+  std::vector<std::string> warnings;
 };
 FittedPose fit_joints(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                       const Armature& armature, const Pose& pose, Progress& progress = no_progress());

@@ -13,23 +13,23 @@ namespace limber {
 
 namespace {
 
-// --- girth landmarks
+// --- landmarks at the narrowest cross-sections of limbs
 
 struct Section {
   double area = 0;  // mm^2; 0: no tissue
   glm::dvec3 centre{0};
-  double depth = 0;  // extent along `forward`, four times the standard deviation, mm
-  // true: the section reaches the edge of the examined square, since the limb lies against other tissue.
+  double depth = 0;  // extent of the section along `forward`, mm: four times the standard deviation
+  // true: the section reaches the edge of the examined square, because the limb touches other tissue.
   bool is_open = false;
 };
 
-// Returns the cross-section of the tissue in a plane: the connected tissue nearest to the plane's middle.
+// Returns the cross-section of the tissue in a plane. Only the connected region nearest to `middle` counts.
 Section section_at(const Occupancy& body, const AffineTransform& to_cell, const glm::dvec3& middle,
                    const glm::dvec3& normal, const glm::dvec3& forward, double reach) {
   const double step = std::max({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z, reach / 40});
   const int half = static_cast<int>(reach / step), side = 2 * half + 1;
   const glm::dvec3 u = glm::normalize(forward - normal * glm::dot(forward, normal)), v = glm::cross(normal, u);
-  std::vector<std::uint8_t> filled(side * side);  // 1: tissue, 2: tissue that was counted
+  std::vector<std::uint8_t> filled(side * side);  // 1: tissue, 2: tissue that belongs to the section
   std::pair<int, int> seed(1 << 30, -1);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
@@ -67,8 +67,9 @@ Section section_at(const Occupancy& body, const AffineTransform& to_cell, const 
   return section;
 }
 
-// A line along a limb that bends once, at its corner, with the orientation and size of its cross-sections. Positions
-// along it are in mm from the corner.
+// The middle line of a limb, which bends once: from `above` straight to `corner` (the joint), then straight to `below`.
+// `forward` and `reach` give the orientation and half width of its cross-sections. Positions along the line are in mm
+// from the corner, negative above it.
 struct Bend {
   glm::dvec3 above{0}, corner{0}, below{0};
   glm::dvec3 forward{0};
@@ -106,8 +107,9 @@ Profile profile_of(const Occupancy& body, const Bend& bend, double from, double 
   return profile;
 }
 
-// Returns the position of a limb's waist (smallest cross-section), as the middle of the sections that are hardly
-// larger. Returns none unless the sections grow on both sides of the waist before the limb touches other tissue.
+// Returns the position of a limb's waist (its smallest cross-section): the middle of all sections that are hardly
+// larger than the smallest. Returns none unless the sections grow on both sides of the waist before the limb touches
+// other tissue.
 std::optional<double> waist(const Profile& profile, double least_bulge) {
   constexpr double kHardly = 1.03;
   const auto& area = profile.area;
@@ -129,16 +131,19 @@ std::optional<double> waist(const Profile& profile, double least_bulge) {
   return profile.from + profile.step * (first + last) / 2.0;
 }
 
-// The position of a joint relative to the waist of a limb near it.
+// Where a joint lies relative to the waist of the limb (the smallest cross-section near the joint).
 struct Waist {
-  const char* bone;     // the bone whose head is the joint
-  double above, below;  // range in which the waist is searched, as shares of the bones above and below
-  double beyond;        // distance of the joint beyond the waist, as a share of the bone above
-  double forward;       // distance of the joint in front of the section's middle, as a share of its depth
+  const char* bone;  // name, without side, of the bone whose head is the joint
+  // Range of the search for the waist, as shares of the lengths of the bones above and below the joint.
+  double above, below;
+  double beyond;  // distance along the limb from the waist to the joint, as a share of the bone above
+  // Distance of the joint in front of the middle of its cross-section, as a share of the section's depth.
+  double forward;
 };
 constexpr Waist kWaists[] = {
     {"Forearm", 0.35, 0.30, 0.07, 0},
-    {"Shank", 0.28, 0.32, 0.01, 0.12},  // forward, since the heads of calf and hamstrings lie behind the knee
+    // The knee lies in front of its section's middle, since the heads of calf and hamstrings lie behind the knee.
+    {"Shank", 0.28, 0.32, 0.01, 0.12},
     {"Hand", 0.35, 0.6, 0.04, 0},
 };
 
@@ -156,7 +161,7 @@ struct Limb {
   int bone = 0, child = -1;
   Bend bend;
   Profile profile;
-  std::optional<double> along;  // position of the waist from the corner, mm
+  std::optional<double> along;  // position of the waist along the middle line, mm from the joint
 };
 
 std::optional<Limb> limb_at(const Mannequin& m, const Occupancy& body, int bone, const Waist& known) {
@@ -176,7 +181,8 @@ std::optional<Limb> limb_at(const Mannequin& m, const Occupancy& body, int bone,
   const double upper_length = glm::distance(limb.bend.above, limb.bend.corner),
                lower_length = glm::distance(limb.bend.corner, limb.bend.below);
   if (!(upper_length > 0) || !(lower_length > 0)) return std::nullopt;
-  constexpr double kMostBent = 0.5;  // cosine of 60 degrees; a limb bent by more has no cross-section at its joint
+  // Cosine of 60 degrees: in a limb that bends by more, the joint has no clear cross-section.
+  constexpr double kMostBent = 0.5;
   if (glm::dot(limb.bend.corner - limb.bend.above, limb.bend.below - limb.bend.corner) <
       kMostBent * upper_length * lower_length)
     return std::nullopt;
@@ -197,8 +203,8 @@ void add_waists(const Mannequin& m, const Occupancy& body, const Waist& known, s
   double mean = 0;
   for (const Limb& limb : limbs) mean += *limb.along / double(limbs.size());
   for (const Limb& limb : limbs) {
-    // Largest difference between the waist of one side and the mean of both sides, as a share of the length of the bone
-    // above. A side that differs by more keeps its own waist.
+    // Largest difference between the waist's position in one limb and the mean of left and right, as a share of the
+    // length of the bone above. A limb that differs by more uses its own waist instead of the mean.
     constexpr double kUnlike = 0.15;
     const double upper = glm::distance(limb.bend.above, limb.bend.corner);
     const double along = (std::abs(*limb.along - mean) < kUnlike * upper ? mean : *limb.along) + known.beyond * upper;
@@ -232,7 +238,8 @@ void add_neck(const Mannequin& m, const Occupancy& body, std::vector<JointLandma
   constexpr double kGrown = 2;
   const auto grown = std::find_if(least, area.end(), [&](double a) { return a > kGrown * *least; });
   if (grown == area.end()) return;
-  // Distance of the neck joint above the section that has grown, as a share of the length of neck and head.
+  // Distance of the neck joint above the section whose area has grown to kGrown times the smallest, as a share of the
+  // length of neck and head.
   constexpr double kAbove = 0.05;
   const auto k = std::max<std::ptrdiff_t>(0, (grown - area.begin()) - std::lround(kAbove * whole / profile.step));
   found.push_back({*neck, profile.sections[k].centre});
@@ -247,11 +254,11 @@ std::vector<JointLandmark> girth_landmarks(const Mannequin& mannequin, const Occ
   return found;
 }
 
-// --- ball landmarks
+// --- landmarks at the spherical heads of humerus and femur
 
 namespace {
 
-// Radii of the heads of adults' humerus and femur, mm; scaled with the body.
+// Radii of the spherical heads of an adult's humerus and femur, mm; they are scaled with the body.
 constexpr double kSmallest = 17, kLargest = 29;
 
 struct Ball {
@@ -259,7 +266,8 @@ struct Ball {
   double radius = 0;
 };
 
-// Returns the sphere that fits points best, by least squares of the differences of squared distances.
+// Returns the sphere that fits the points best: the least squares of the differences between squared distances and the
+// squared radius.
 std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const glm::dvec3& near) {
   glm::dmat4 A(0);
   glm::dvec4 b(0);
@@ -276,8 +284,9 @@ std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const 
   return Ball{near + glm::dvec3(x), std::sqrt(squared)};
 }
 
-// Returns the ball near `start` whose centre and radius most points vote for. The votes of each ball are divided by its
-// squared radius, so that the visible share of its surface counts.
+// Returns the sphere near `start` that gets the most votes. Every surface point votes, for each radius, for the centre
+// that lies behind it along its normal. The votes for a sphere are divided by its squared radius, so that the visible
+// share of its surface counts.
 std::optional<Ball> voted(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale) {
   const double cell = 3 * scale, reach = 30 * scale;
   double most = 0;
@@ -317,7 +326,8 @@ std::optional<Ball> ball_at(const std::vector<SurfacePoint>& points, const glm::
     for (const SurfacePoint& p : points) {
       const glm::dvec3 out = p.place - ball->centre;
       const double d = glm::length(out);
-      // The vote gives the centre more exactly than the radius, so the tolerances of the first rounds are wide.
+      // The votes give the centre more exactly than the radius, so the first rounds accept points farther from the
+      // sphere.
       if (std::abs(d - ball->radius) < std::max(0.12, 0.3 - 0.03 * k) * ball->radius &&
           glm::dot(out, p.normal) > 0.85 * d)
         on.push_back(p.place);

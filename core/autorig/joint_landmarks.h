@@ -22,16 +22,16 @@ struct JointLandmark {
   double bend = 0;      // bend of the limb at the joint, radians
 };
 
-// Returns the elbows, knees, wrists and the neck, as far as they can be found. Left and right use the mean of their
-// distances along the limb, unless these differ much.
+// Returns the landmarks of elbows, knees, wrists and neck that can be found. A left and a right joint both get the mean
+// of their two distances along the limb, unless these differ much.
 std::vector<JointLandmark> girth_landmarks(const Mannequin& mannequin, const Occupancy& body);
 
-// Returns the shoulders and hips, as far as they can be found.
+// Returns the landmarks of shoulders and hips that can be found.
 //   bone  the surface of bone tissue
 std::vector<JointLandmark> ball_landmarks(const Mannequin& mannequin, const FitSurface& bone);
 
-// Returns the centre of the ball that most surface points lie on. Its radius is an adult's times `scale`, and its
-// centre lies within 35 mm times `scale` of `start`.
+// Returns the centre of the sphere that most surface points near `start` lie on. Its radius is that of an adult's
+// humerus or femur head times `scale`, and its centre lies within 35 mm times `scale` of `start`.
 std::optional<glm::dvec3> ball_near(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale);
 
 }  // namespace limber

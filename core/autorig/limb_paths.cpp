@@ -14,8 +14,9 @@ namespace limber {
 namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::max();
-constexpr double kStep = 8;           // distance between points of a path, mm
-constexpr double kLeastShare = 0.12;  // least prominence of an end as a share of the longest path's length
+constexpr double kStep = 8;  // distance between points of a path, mm
+// Least prominence of a body end (see limb_paths.h), as a share of the longest path's length.
+constexpr double kLeastShare = 0.12;
 constexpr size_t kMostEnds = 12;
 
 class Body {
@@ -51,8 +52,8 @@ class Body {
     return best;
   }
 
-  // Computes for each cell its distance through the tissue from the cell `from`, and its predecessor on the shortest
-  // path.
+  // Computes for each cell the shortest distance through the tissue from the cell `from`, and the cell before it on
+  // that shortest path.
   void measure(std::int32_t from) {
     distance_.assign(cell_.size(), kUnseen);
     before_.assign(cell_.size(), -1);
@@ -80,15 +81,17 @@ class Body {
   }
   double distance(std::int32_t i) const { return distance_[i]; }
 
-  // Returns the maxima of the distance with their prominence. Cells are visited from the farthest inwards. Where the
-  // regions of two maxima meet, the lower maximum gets its prominence and its region joins the other.
+  // Returns the local maxima of the distance, each with its prominence (see limb_paths.h). Cells are visited from the
+  // farthest inwards and join regions, one per maximum. Where two regions meet, the lower maximum's prominence is
+  // known, and its region joins the other.
   std::vector<std::pair<double, std::int32_t>> summits() const {
     std::vector<std::int32_t> order;
     for (std::int32_t i = 0; i < size(); ++i)
       if (distance_[i] != kUnseen) order.push_back(i);
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return distance_[a] > distance_[b] || (distance_[a] == distance_[b] && a < b); });
-    std::vector<std::int32_t> parent(cell_.size(), -1);  // union-find; the root of a region is its maximum
+    // Forest of a union-find structure; the root of a region is its maximum.
+    std::vector<std::int32_t> parent(cell_.size(), -1);
     const auto root = [&](std::int32_t i) {
       while (parent[i] != i) i = parent[i] = parent[parent[i]];
       return i;
@@ -112,7 +115,7 @@ class Body {
   }
 
   // Returns the path from the cell `end` to the cell that distances are measured from. Every point is moved to the
-  // middle of the cells that are equally far from that cell.
+  // middle of the limb: the mean of the cells that are equally far from that cell.
   LimbPath path(std::int32_t end, double reach) const {
     std::vector<glm::dvec3> way;
     std::vector<double> far;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds the ends of a body and the paths to them. The ends (head, hands, feet) are the maxima of the distance through
-// the tissue from its thickest point; the prominence of an end is how far one must go back from it before the way to a
+// the tissue from its thickest point. The prominence of an end is the distance back from it to where the path to a
 // farther end branches off. Each path is the middle line of the tissue from an end inwards [Lazarus & Verroust 1999,
 // level sets of the geodesic distance].
 #pragma once
@@ -12,19 +12,19 @@
 namespace limber {
 
 struct LimbPath {
-  std::vector<glm::dvec3> points;  // world, from the end inwards, evenly spaced
-  double step = 0;                 // distance between points, mm
-  double prominence = 0;           // prominence of the end, mm
+  std::vector<glm::dvec3> points;  // world, mm; from the end of the limb inwards, evenly spaced
+  double step = 0;                 // distance between successive points, mm
+  double prominence = 0;           // prominence of the path's end, mm
   double length = 0;               // length of the path through the tissue, mm
 
-  // Returns the point `along` mm from the end, or the last point beyond the path.
+  // Returns the point of the path at `along` mm from the end of the limb; beyond the path, its last point.
   glm::dvec3 at(double along) const;
 };
 
 enum class PathCentre { Thickest, FarthestEnd };
 
-// Returns a path from the end of each limb to the centre of the body, the end that stands out furthest first. `centre`
-// selects which centre.
+// Returns a path from each end of the body to its centre, the most prominent end first. `centre` tells what the centre
+// is: the thickest point of the tissue, or the end that is farthest away.
 std::vector<LimbPath> limb_paths(const Occupancy& body, PathCentre centre);
 
 }  // namespace limber

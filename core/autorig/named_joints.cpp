@@ -18,9 +18,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kFewest = 4;  // a bone with fewer surface voxels is ignored
+constexpr std::int64_t kFewest = 4;  // least number of surface voxels; a bone with fewer is ignored
 
-// --- names of bones
+// --- which bone a label's name means
 
 std::string finger_key(const AnatomicalName& name) {
   static const std::map<BodyPart, std::string> kFingers = {{BodyPart::Thumb, "Thumb"},
@@ -31,18 +31,19 @@ std::string finger_key(const AnatomicalName& name) {
   static const char* const kSegments[] = {"Metacarpal", "Proximal", "Middle", "Distal"};
   const auto finger = kFingers.find(name.finger);
   if (finger == kFingers.end() || name.segment < 0 || name.segment > 3) return "";
-  // A thumb's metacarpal is segment 1, and a thumb has no middle phalanx.
+  // A thumb's metacarpal has segment number 1 in its anatomical name, since a thumb has no middle phalanx.
   const int segment = name.finger == BodyPart::Thumb && name.segment < 3 ? name.segment - 1 : name.segment;
   return segment < 0 ? "" : finger->second + kSegments[segment];
 }
 
-// Returns whether a text contains a word, regardless of case. The word must be in lower case.
+// Returns true if a text contains a word, regardless of case. The word must be given in lower case.
 bool says_word(const std::string& text, const char* word) {
   return std::search(text.begin(), text.end(), word, word + std::char_traits<char>::length(word),
                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; }) != text.end();
 }
 
-// Returns the piece of the skeleton that a label holds, named like the atlas's bone where there is one; "" for none.
+// Returns the part of the skeleton that a label's name means. The part has the name of the atlas's bone where the atlas
+// has one. Returns "" for other labels.
 std::string piece_of(const std::string& label_name) {
   const AnatomicalName name = anatomical_name(label_name);
   std::set<BoneRegion> regions = name.regions;
@@ -73,8 +74,8 @@ std::string piece_of(const std::string& label_name) {
   return "";
 }
 
-// Returns the bone of a limb's pair that forms the hinge, where the label holds it alone: the ulna, hinged to the
-// humerus, or the tibia, hinged to femur and talus; else "".
+// Returns "Ulna" for a label that holds the ulna without the radius, and "Tibia" for one that holds the tibia alone;
+// else "". These bones form the hinges of their limbs: the ulna with the humerus, the tibia with femur and talus.
 std::string hinged_bone_of(const std::string& label_name, const std::string& piece) {
   const auto says = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* word) { return says_word(label_name, word); });
@@ -84,13 +85,15 @@ std::string hinged_bone_of(const std::string& label_name, const std::string& pie
   return "";
 }
 
-// The two pieces of the skeleton that meet at the head of one of the atlas's bones.
+// A joint at the head of one of the atlas's bones, and the two parts of the skeleton that meet in it.
 struct Meeting {
-  const char* bone;           // name without side
-  const char *above, *below;  // pieces; "Ulna" and "Tibia" mean the whole forearm or shank where they have no label
-  bool along = false;         // true: only surfaces that face along the limb count, as a kneecap lies before the knee
-  bool ball = false;          // true: the bone below begins with a ball (a spherical head)
-  double aside = 0;           // difference between the conventions of rig authors for this joint, mm
+  const char* bone;  // name of the atlas's bone, without side
+  // Names of two parts of the skeleton; "Ulna" and "Tibia" mean the whole forearm or shank where they have no label.
+  const char *above, *below;
+  // true: only surfaces that face along the limb count, because a kneecap lies in front of the knee
+  bool along = false;
+  bool ball = false;  // true: the bone below begins with a ball (a spherical head)
+  double aside = 0;   // distance between the positions that different rig authors choose for this joint, mm
 };
 constexpr Meeting kMeetings[] = {
     {"Spine", "Hips", "Spine"},
@@ -107,7 +110,8 @@ constexpr Meeting kMeetings[] = {
     {"Toes", "Foot", "Toes", false, false, 5},
 };
 
-// Returns the two pieces that meet at a finger's joint; none for other bones.
+// Returns the two parts of the skeleton that meet at the head of a finger's bone; none for other bones. `above` stores
+// the name to which the result points.
 std::optional<Meeting> finger_meeting(const std::string& bone, std::string& above) {
   for (const char* finger : {"Thumb", "Index", "Middle", "Ring", "Little"}) {
     const std::string f = finger;
@@ -122,12 +126,12 @@ std::optional<Meeting> finger_meeting(const std::string& bone, std::string& abov
   return std::nullopt;
 }
 
-// --- pieces of the skeleton
+// --- parts of the skeleton that labels hold
 
 struct Piece {
-  std::vector<SurfacePoint> points;  // surface voxels, without normals
+  std::vector<SurfacePoint> points;  // surface voxels of the part, without normals
   LabelSet labels;
-  double length = 0;  // diagonal of the extent, mm
+  double length = 0;  // diagonal of the part's bounding box, mm
   glm::dvec3 middle{0};
 };
 
@@ -141,7 +145,8 @@ std::string without_side(const std::string& bone) {
   return bone.starts_with("Left") ? bone.substr(4) : bone.starts_with("Right") ? bone.substr(5) : bone;
 }
 
-// Returns the side of the body on which the mannequin's bone for a piece of the skeleton is nearer to a point.
+// Returns the side of the body on which a point lies: that of the mannequin's nearer bone, of the left and right bones
+// that belong to `piece`, a part of the skeleton.
 BodySide nearer_side(const Mannequin& m, const std::string& piece, const glm::dvec3& place) {
   double least = 1e300;
   BodySide side = BodySide::Middle;
@@ -217,16 +222,17 @@ Pieces pieces_of(const LabelVolume& volume, const TissueTable& tissues, const Ma
   return pieces;
 }
 
-// --- joints between pieces
+// --- joints between two parts of the skeleton
 
 struct Contact {
   glm::dvec3 place{0};
   double gap = 0;  // smallest distance between the bones, mm
 };
 
-// Returns the middle of the surface points at which two bones are nearest to each other.
-//   along   unit vector: pairs that point more than 60 degrees away from it do not count; zero: all pairs count
-//   within  pairs up to this much farther apart than the nearest pair count, mm
+// Returns the middle of the contact between two bones: the mean of the surface points at which the bones are nearest to
+// each other.
+//   along   unit vector, from which the connection of a pair may deviate by 60 degrees; zero: in any direction
+//   within  pairs of points up to this much farther apart than the nearest pair count, mm
 //   reach   largest distance of a pair, mm
 std::optional<Contact> contact_of(const Piece& above, const Piece& below, const glm::dvec3& along, double within,
                                   double reach) {
@@ -255,9 +261,10 @@ std::optional<Contact> contact_of(const Piece& above, const Piece& below, const 
   return contact;
 }
 
-// Returns the centre of the ball (spherical head) of a femur or humerus, near its contact with the bone above.
+// Returns the centre of the ball (spherical head) of a femur or humerus. The ball is searched near the bone's contact
+// with the bone above.
 std::optional<glm::dvec3> ball_of(const LabelVolume& volume, const Piece& bone, const glm::dvec3& near, double scale) {
-  constexpr double kAround = 75;  // search radius for an adult, mm
+  constexpr double kAround = 75;  // search radius around the contact for an adult, mm
   std::vector<SurfacePoint> points = surface_points(occupancy_of(volume, bone.labels, 0));
   std::erase_if(points, [&](const SurfacePoint& p) { return glm::distance(p.place, near) > kAround * scale; });
   return ball_near(points, near, scale);
@@ -279,12 +286,12 @@ struct Finder {
   }
 
   std::optional<NamedJoint> joint(const Meeting& meeting, BodySide side) const {
-    // Pairs of surface points form the joint if they are at most kFacing farther apart than the nearest pair. Bones
-    // farther apart than kApart do not meet. Both are shares of the bones' length. The other numbers are errors, in mm
-    // or as shares.
+    // kFacing: pairs of surface points form the joint if they are at most this much farther apart than the nearest
+    // pair. kApart: bones farther apart than this do not meet. Both are shares of the bones' length. The other numbers
+    // are parts of the joint's error, in mm (kLeastError) or as shares of a length.
     constexpr double kFacing = 0.028, kApart = 0.09, kLeastError = 3, kOfLength = 0.02, kOfVoxel = 0.7, kOfGap = 0.3,
                      kSpine = 0.03;
-    constexpr double kAdultFemur = 470, kAdultHumerus = 320;  // diagonal of the bone's extent, mm
+    constexpr double kAdultFemur = 470, kAdultHumerus = 320;  // diagonal of the bone's bounding box, mm
     const Piece *above = find(meeting.above, side), *below = find(meeting.below, side);
     if (!above || !below) return std::nullopt;
     const double length =
@@ -298,14 +305,17 @@ struct Finder {
         .bone = 0,
         .place = contact->place,
         .error = kLeastError + kOfLength * length + kOfVoxel * voxel + kOfGap * contact->gap + meeting.aside};
-    // Vertebrae meet along their whole discs and processes, and rig authors choose different positions for the joint.
+    // In the trunk the error is larger: vertebrae meet along their whole discs and processes, and rig authors choose
+    // different positions for the joint.
     if (side == BodySide::Middle && is_of_trunk(meeting.bone)) joint.error += kSpine * above->length;
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      // Largest distance of the ball from the contact, and errors at hip and shoulder; mm, for an adult.
+      // kBallAway: largest distance of the ball's centre from the contact of the bones. kBallError, kShoulderError:
+      // error of the joint at the hip and at the shoulder. All in mm, for an adult.
       constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;
-      // A bone that is cut off looks short, which makes its ball look large in comparison. So the scale is limited.
+      // The ball's size is expected in proportion to the bone's length. A bone that is cut off looks short, and its
+      // ball would look too large. So the scale is limited.
       const auto ball = ball_of(volume, *below, contact->place, std::clamp(scale, 0.4, 1.3));
       if (ball && glm::distance(*ball, contact->place) < kBallAway * scale)
         joint.place = *ball,
@@ -316,8 +326,8 @@ struct Finder {
   }
 };
 
-// Adds the joint at the head of the pelvis: between the hips, with half the offset from their middle that it has in the
-// mannequin, since some rigs have it in the middle itself.
+// Adds the joint at the head of the pelvis bone. It lies between the hips. Its offset from their midpoint is half of
+// that in the mannequin, because some rigs place the joint in the midpoint itself.
 void add_hips(const Mannequin& m, std::vector<NamedJoint>& joints) {
   constexpr double kError = 4, kOfWidth = 0.07;
   const auto at = [&](const char* name) {
@@ -372,7 +382,8 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
   const Armature& rig = m.atlas().rig;
   std::map<int, glm::dvec3> place;
   for (const NamedJoint& joint : joints) place[joint.bone] = joint.place;
-  // Returns the child that continues a bone: for a hand the middle finger, else the first child.
+  // Returns the child that continues bone `b` and whose joint is known: for a hand the middle finger, else the first
+  // child.
   const auto next_of = [&](int b) {
     int next = -1;
     for (int c = b + 1; c < std::ssize(rig.bones); ++c)
@@ -381,7 +392,7 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
         next = c;
     return next;
   };
-  std::map<int, std::pair<double, int>> stretch;  // by group: sum of logarithms and count
+  std::map<int, std::pair<double, int>> stretch;  // for each group of bones: sum and number of the log stretches
   std::vector<std::pair<int, int>> spans;
   for (const auto& [b, here] : place)
     if (const int next = next_of(b); next >= 0 && glm::distance(here, place[next]) > 0) {
@@ -391,19 +402,21 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
       auto& [sum, count] = stretch[m.group_of(b)];
       sum += std::log(glm::distance(here, place[next]) / rest), ++count;
     }
-  constexpr double kMost = 1.2;  // largest plausible natural logarithm of a bone's length relative to the template
+  // Largest plausible change of a bone's length against the atlas, as a natural logarithm.
+  constexpr double kMost = 1.2;
   for (const auto& [group, mean] : stretch)
     if (const double s = mean.first / mean.second; std::abs(s) < kMost)
       m.across[group] += 0.5 * (s - m.along[group]), m.along[group] = s;
   m.settle();
-  // The trunk's bones carry limbs on both sides, so their rotation is left to the fit of the surface.
+  // Bones of the trunk are not rotated here: they carry limbs on both sides, and the fit of the surface rotates them
+  // later.
   for (const auto& [b, next] : spans)
     if (side_named(rig.bones[b].name) != BodySide::Middle || rig.bones[b].parent < 0 || place.size() < 2 ||
         rig.bones[0].name != "Hips") {
       const glm::dvec3 from = m.joint(next) - m.joint(b), to = place[next] - place[b];
       if (glm::length(from) > 0 && glm::length(to) > 0) m.turn_branch(b, glm::mat3_cast(shortest_turn(from, to)));
     }
-  // Moves the whole body to the mean position of its joints.
+  // Shifts the whole body so that its joints lie at the named joints on average.
   glm::dvec3 shift(0);
   for (const auto& [b, here] : place) shift += (here - m.joint(b)) / double(place.size());
   if (!place.empty()) m.root += shift, m.settle();

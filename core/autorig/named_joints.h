@@ -19,14 +19,15 @@ struct NamedJoint {
   double error = 0;     // estimated error, mm
 };
 
-// Returns at most one joint for each of the mannequin's bones, in their order; none where no label names a bone.
-//   mannequin  roughly fitted; separates left from right where names do not
+// Returns at most one joint for each bone of the mannequin, in the order of the bones. Returns no joints if no label
+// names a bone.
+//   mannequin  roughly fitted to the volume; tells left from right where the labels' names do not
 std::vector<NamedJoint> named_joints(const LabelVolume& volume, const TissueTable& tissues, const Mannequin& mannequin);
 
-// Rotates and stretches the mannequin's bones so that they run between the named joints.
+// Rotates and stretches the mannequin's bones so that they run from one named joint to the next.
 void lay_along(Mannequin& mannequin, const std::vector<NamedJoint>& joints);
 
-// Returns whether left and right joints lie on the same sides as the mannequin's; true where the joints do not show it.
+// Returns true if the left and right joints lie on the same sides as the mannequin's, or if the joints do not show it.
 bool same_sides(const Mannequin& mannequin, const std::vector<NamedJoint>& joints);
 
 }  // namespace limber

@@ -11,10 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kSure = 0.5;     // confidence from which on a found joint is certain
-constexpr double kBetter = 1.02;  // factor by which another rotation must fit better to be preferred
+constexpr double kSure = 0.5;     // confidence from which on a joint counts as found for certain
+constexpr double kBetter = 1.02;  // another rotation is preferred only if it fits better by this factor
 
-// Returns the 24 rotations by right angles: the identity first, then those that keep the vertical.
+// Returns the 24 rotations by right angles: the identity first, then the others that keep the vertical, then the
+// rest.
 std::vector<glm::dmat3> right_turns() {
   std::vector<glm::dmat3> turns;
   for (int z = 0; z < 3; ++z)
@@ -34,15 +35,16 @@ std::vector<glm::dmat3> right_turns() {
   return turns;
 }
 
-// Returns the unit direction from feet to head; none where the names do not tell.
+// Returns the unit direction from the feet to the head of a rig; none if the names of its bones do not tell it.
 std::optional<glm::dvec3> line_of(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   const auto trunk = trunk_line(skeleton);
   return trunk ? std::optional(glm::normalize(*trunk)) : std::nullopt;
 }
 
-// Returns a measure of how well a rig fits: its length in tissue times the share of its length in tissue. The length
-// rejects a rig so small that it fits anywhere, and the share rejects one that is larger than the body.
+// Returns a measure of how well a rig fits: the length of its bones in tissue, times the share of its whole length that
+// is in tissue. The length rejects a rig so small that it fits anywhere, and the share rejects one that is larger than
+// the body.
 double suits(const RigCheck& check, const Armature& rig) {
   double length = 0;
   for (const Bone& bone : rig.bones) length += glm::distance(bone.head, bone.tail);

@@ -43,7 +43,7 @@ std::vector<int> counterparts(const Armature& rig, const Armature& body) {
   std::map<JointRole, int> by_role;
   for (int b = 0; b < std::ssize(body.bones); ++b)
     if (there[b] && there[b]->part != BodyPart::Spine) by_role[*there[b]] = b;
-  // A name such as "Spine" means another vertebra in a rig with another number of vertebrae.
+  // If the two spines have different numbers of vertebrae, equal names such as "Spine" mean different vertebrae.
   const auto vertebrae = [](const auto& roles) {
     return std::count_if(roles.begin(), roles.end(),
                          [](const auto& role) { return role && role->part == BodyPart::Spine; });
@@ -79,8 +79,8 @@ glm::dmat3 shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::mat3_cast(glm::angleAxis(std::atan2(s, c), across / s));
 }
 
-// The rotation and scale that map points as near as possible to other points [Umeyama 1991]; the identity where all
-// points coincide.
+// The rotation and scale that bring a set of points as near as possible to other points [Umeyama 1991]; the identity if
+// all points coincide.
 struct Similarity {
   glm::dmat3 turn{1};
   double scale = 1;
@@ -108,7 +108,7 @@ Similarity similarity(const std::vector<glm::dvec3>& from, const std::vector<glm
   return result;
 }
 
-// Returns the point at a share of a polyline's length.
+// Returns the point of a polyline at the given share of the polyline's length.
 glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
   double length = 0;
   for (size_t i = 1; i < line.size(); ++i) length += glm::distance(line[i - 1], line[i]);
@@ -121,7 +121,8 @@ glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
   return line.back();
 }
 
-// Spreads the joints of the rig's trunk between two matched joints along the body's trunk between the same two.
+// Places the unmatched joints that lie between two matched joints of the rig's trunk. They are spread along the body's
+// trunk between the same two joints, in the proportions that they have in the rig.
 void spread_trunk(const Armature& rig, const Armature& there, const std::vector<glm::dvec3>& joints,
                   const std::vector<int>& match, std::vector<std::optional<glm::dvec3>>& place) {
   for (int top = 0; top < std::ssize(rig.bones); ++top) {
@@ -131,7 +132,8 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     while (b >= 0 && match[b] < 0) chain.push_back(b), b = rig.bones[b].parent;
     if (b < 0) continue;
     chain.push_back(b);
-    // The body's chain between the same two joints, if one of them is an ancestor of the other in the body as well.
+    // Bones of the body's chain between the same two joints. There is no chain unless one joint is an ancestor of the
+    // other in the body, too.
     std::vector<int> line;
     int a = match[top];
     while (a >= 0 && a != match[b]) line.push_back(a), a = there.bones[a].parent;
@@ -139,8 +141,8 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     line.push_back(a);
     std::reverse(chain.begin(), chain.end());
     std::reverse(line.begin(), line.end());
-    // Only the spine is similar enough in rig and body to be spread. A link beside the spine moves along with its
-    // parent.
+    // Only a spine is similar enough in rig and body to be spread. Where the body has no joint between the two, but the
+    // rig has several, the rig's bones move along with their parents instead.
     if (line.size() < 3 && chain.size() > 3) continue;
     std::vector<glm::dvec3> from, to;
     for (int c : chain) from.push_back(rig.bones[c].head);
@@ -214,7 +216,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
       bone.head = c + above.vector(before.head - a);
     }
 
-    // The bone ends at the child at its tail, or else where the body's own bone ends.
+    // The bone's new end: the new head of the child at its tail, or else the end of the bone's counterpart in the body.
     const int child = child_at_tail(rig, b);
     std::optional<glm::dvec3> end;
     if (child >= 0 && place[child]) end = place[child];
@@ -231,7 +233,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
     }
     turn_limits(bone, before, carry[b].turn);
   }
-  // A bone still ends at its child's head if it did so before.
+  // A bone that ended at its child's head ends there again.
   for (int b = 0; b < count; ++b)
     if (const int child = child_at_tail(rig, b); child >= 0)
       result.armature.bones[b].tail = result.armature.bones[child].head;

@@ -13,15 +13,16 @@ namespace limber {
 
 struct PlacedRig {
   Armature armature;
-  // Per bone, the index of the body's bone whose joint became its head; -1: it moves along with its parent.
+  // For each bone of the rig: index of the body's bone to whose joint its head was moved; -1: the bone moves along with
+  // its parent.
   std::vector<int> joint_of;
 };
 
 // Returns the rig moved to the body's joints.
-//   joints  positions of the body's joints, by its bones
+//   joints  position of the joint at the head of each of the body's bones
 PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vector<glm::dvec3>& joints);
 
-// Rotates, scales and moves all bones of a rig so that the point `from` comes to `to`.
+// Rotates and scales a whole rig, and moves it so that its point `from` comes to `to`.
 Armature moved_rig(const Armature& rig, const glm::dmat3& turn, double scale, const glm::dvec3& from,
                    const glm::dvec3& to);
 

@@ -13,21 +13,22 @@ namespace limber {
 
 namespace {
 
-// Upper limits on the shift of a joint: share of the length of each of its bones, and mm.
+// Upper limits on the shift of a joint: kShare as a share of the length of each bone that begins or ends at the joint,
+// and kMost in mm.
 constexpr double kShare = 0.5, kMost = 30;
 constexpr int kRounds = 60;
-constexpr int kMostSteps = 20;  // upper limit on the steps of the search in each direction
-constexpr double kSlide = 0.6;  // weight of a shift along a free hinge's axis
+constexpr int kMostSteps = 20;  // upper limit on the number of steps in each direction of the search for tissue
+constexpr double kSlide = 0.6;  // cost of a shift along a free hinge's axis, relative to a shift across it
 
-// Returns the cost of a joint's shift, mm. A shift along a hinge's axis costs less, since the hinge rotates its bone in
-// the same way wherever it lies on its axis.
+// Returns the cost of a joint's shift, mm. A shift along a hinge's axis costs less than one across it, since the hinge
+// rotates its bone in the same way wherever the joint lies on the axis.
 double harm(const glm::dvec3& shift, const glm::dvec3& axis) {
   const double along = glm::dot(shift, axis);
   return std::sqrt(std::max(0.0, glm::dot(shift, shift) - (1 - kSlide * kSlide) * along * along));
 }
 
-// Finds the tissue voxel near a point that a joint reaches with the least harm(). Prefers voxels that have tissue on
-// all six sides.
+// Finds the tissue voxel to which a point can be shifted with the least cost, harm(). Prefers voxels that have tissue
+// on all six sides.
 class Nearest {
  public:
   //   slide  unit axis of a free hinge (a hinge that shares no joint with another bone), or zero
@@ -83,7 +84,7 @@ class Nearest {
   std::vector<std::pair<double, glm::ivec3>> steps_;
 };
 
-// A point at which bones begin or end.
+// A point at which one or more bones begin or end.
 struct Joint {
   glm::dvec3 start{0}, place{0};
   double reach = kMost;
@@ -117,7 +118,8 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     ends.push_back({head, joint_at(bone.tail, reach)});
   }
 
-  // The searches for the nearest tissue: one for each bone that is a free hinge, and one (-1) for all other bones.
+  // The searches for the nearest tissue, by bone: a bone that is a free hinge has a search of its own, and the entry -1
+  // serves all other bones.
   std::map<int, Nearest> nearest;
   nearest.emplace(-1, Nearest(volume, glm::dvec3(0)));
   for (int b = 0; b < std::ssize(rig.bones); ++b) {
@@ -160,7 +162,7 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     if (check.whole > most) most = check.whole, best = moved;
     if (check.leaving.empty() && check.outside.empty()) return moved;
   }
-  // A bone at whose tail no other bone begins may be shortened.
+  // A bone that leaves the tissue may be shortened if no other bone begins at its tail.
   check = check_rig(volume, best);
   for (const auto& leaving : check.leaving) {
     Bone& bone = best.bones[leaving.bone];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Moves a rig whose bones leave the tissue back into it, with as little change as possible. Where a bone runs through
-// air, the middle of that stretch is moved to the nearest tissue, and the bone's two ends move by the shares of the
+// air, the middle of the stretch in air is moved to the nearest tissue; how much each end of the bone moves follows the
 // lever rule. Bones that share a joint move it together. This is repeated until no bone leaves the tissue. A hinge that
 // shares no joint with another bone, such as a jaw's, may be shifted along its axis, which does not change the rotation
 // of its bone. A bone at whose tail no other bone begins is shortened to the tissue if at least half of it is inside.
@@ -14,10 +14,11 @@
 
 namespace limber {
 
-// Returns the rig moved inside the tissue, or the rig with the largest share in tissue where that is not possible. No
-// joint moves by more than half of its shortest bone, nor by more than 30 mm (50 mm along a free hinge's axis). Parts
-// of the rig beyond a cut are not moved.
-//   free  per bone, the distance by which its head may move, mm
+// Moves joints until the rig's bones lie inside the tissue, and returns the rig. If they cannot, returns the tried rig
+// of which the largest share lies in tissue. A joint moves by at most half the length of the shortest bone that meets
+// it, and by at most 30 mm. A hinge that is no other bone's joint may move by 50 mm along its axis. Bones beyond a cut,
+// where the volume ends, are not moved.
+//   free  for each bone, the largest distance by which its head may move, mm
 Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std::vector<TissueCut>& cuts,
                       const std::vector<double>& free);
 

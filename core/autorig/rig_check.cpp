@@ -9,7 +9,7 @@
 namespace limber {
 
 namespace {
-constexpr double kStep = 0.5;  // step along a bone as a share of the smallest spacing
+constexpr double kStep = 0.5;  // step between examined points along a bone, as a share of the smallest voxel spacing
 constexpr double kMostSteps = 10'000;
 }  // namespace
 

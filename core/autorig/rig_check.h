@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Checks whether a rig lies in the tissue: how much of each bone's length does, where bones leave the tissue, and which
-// joints lie outside.
+// Checks whether a rig lies in the tissue: which share of each bone's length lies in tissue, where bones leave it, and
+// which joints lie outside.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace limber {
 struct RigCheck {
   struct Leaving {
     int bone = 0;
-    double from = 0, to = 0;  // begin and end of the bone's stretch in air, as shares of the bone's length
+    double from = 0, to = 0;  // begin and end of a stretch of the bone in air, as shares of the bone's length
     glm::dvec3 place{0};      // middle of the stretch in air, mm
   };
   struct Joint {
@@ -24,11 +24,11 @@ struct RigCheck {
   std::vector<double> share;     // per bone, the share of its length in tissue, [0, 1]
   double whole = 0;              // share of all bones' length in tissue, [0, 1]
   std::vector<Leaving> leaving;  // stretches of bones in air, in the order of bones
-  // Joints in air, each position once. Where a tail and heads coincide, only the tail is listed.
+  // Ends of bones that lie in air, each position once. Where a tail and heads coincide, only the tail is listed.
   std::vector<Joint> outside;
 };
 
-// Checks a rig. Every label but air counts as tissue; outside the grid there is none.
+// Checks where a rig lies in tissue. Every label but air counts as tissue; outside the grid there is no tissue.
 RigCheck check_rig(const LabelVolume& volume, const Armature& armature);
 
 }  // namespace limber

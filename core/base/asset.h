@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the files that belong to the program: themes, key maps, icons, samples and rig templates. They lie in the
+// Finds the files that come with the program: themes, key maps, icons, samples and rig templates. They lie in the
 // program's installation (share/limber) or in the source tree.
 #pragma once
 
@@ -9,7 +9,8 @@
 
 namespace limber {
 
-// Returns the path of an asset. Throws Error when the file does not exist: the installation is incomplete.
-Path asset(const std::string& name);  // name as in "themes/dark.json"
+// Returns the path of one of the program's own files. Throws Error when the file does not exist, because the
+// installation is incomplete.
+Path asset(const std::string& name);  // `name` is relative, as in "themes/dark.json"
 
 }  // namespace limber

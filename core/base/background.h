@@ -6,8 +6,8 @@
 
 namespace limber {
 
-// Runs `work` on a new thread of low priority and waits until it ends. Loops of parallel.h inside `work` use only that
-// one thread, unless a ThreadCount is alive. An exception that `work` throws is rethrown here.
+// Runs `work` on a new thread of low priority and waits until it ends. Parallel loops (parallel.h) inside `work` also
+// run on that thread alone, unless a ThreadCount is alive. An exception that `work` throws is rethrown here.
 void in_background(const std::function<void()>& work);
 
 }  // namespace limber

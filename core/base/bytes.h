@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes values as bytes and reads them back, bit for bit: numbers are little-endian, as in memory; texts and lists
-// start with their length. The reader does not trust the bytes: it never reads past the end, and it checks a list's
-// length against the bytes that are left before anything is allocated.
+// Writes values as bytes and reads them back, bit for bit. Numbers are little-endian, as in memory; texts and lists
+// start with their length. The reader does not trust the bytes: it never reads past the end, and before memory is
+// allocated for a list, it compares the list's length with the bytes that are left.
 #pragma once
 
 #include <bit>
@@ -38,7 +38,8 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  // The reader calls `damaged`, which must throw, when a value that it reads is not valid or the bytes end too early.
+  // Reads from `bytes`. When a value is not valid or the bytes end too early, the reader calls `damaged`, which must
+  // throw.
   ByteReader(std::string_view bytes, std::function<void()> damaged) : bytes_(bytes), damaged_(std::move(damaged)) {}
 
   template <class T>
@@ -49,14 +50,15 @@ class ByteReader {
     return value;
   }
   bool flag() { return get_below<std::uint8_t>(2) == 1; }
-  // Reads a number and requires that it lies in [0, end).
+  // Reads a number that must lie in [0, end).
   template <class T>
   T get_below(std::uint64_t end) {
     const T value = get<T>();
     require(static_cast<std::uint64_t>(value) < end);
     return value;
   }
-  // Reads the number of elements of a list whose elements take at least `least` bytes each.
+  // Reads the length of a list. Each element of the list takes at least `least` bytes, so a length that needs more
+  // bytes than are left is not valid.
   std::size_t count(std::size_t least) {
     const std::size_t value = get<std::uint32_t>();
     require(value <= bytes_.size() / least);

@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kAskMilliseconds = 20;  // interval between two checks whether the user cancelled
+constexpr int kAskMilliseconds = 20;  // interval between two checks for whether the user cancelled
 
 // Returns the size of this process's address space, in bytes.
 std::size_t mapped_bytes() {
@@ -58,8 +58,8 @@ void write_all(int to, const void* bytes, std::size_t size) {
 
 enum class Ending { closed, too_much, too_late, cancelled };
 
-// Reads from the pipe into `bytes` until the pipe closes, more than `most` bytes arrived, the time `latest` is reached
-// or the user cancels. `bytes` exceeds `most` by at most one block.
+// Reads from the pipe into `bytes`. Ends when the pipe closes, more than `most` bytes have arrived, the time `latest`
+// is reached or the user cancels. `bytes` may exceed `most` by one block.
 Ending read_all(int from, std::size_t most, Clock::time_point latest, const Progress& progress, std::string& bytes) {
   char block[1 << 16];
   while (bytes.size() <= most) {
@@ -76,8 +76,8 @@ Ending read_all(int from, std::size_t most, Clock::time_point latest, const Prog
   return Ending::too_much;
 }
 
-// Waits for the child process and returns its exit status. A child that has closed its end of the pipe but still runs
-// is killed at the time `latest`, or when the user cancels.
+// Waits for the child process and returns its exit status. If the child has closed its end of the pipe but does not end
+// by the time `latest`, or the user cancels, the child is killed.
 int status_of(pid_t child, Clock::time_point latest, const Progress& progress, Ending& ending) {
   int status = 0;
   while (ending == Ending::closed) {

@@ -13,20 +13,22 @@
 
 #include "core/base/error.h"
 
-// Functions of the OpenMP runtime that CHOLMOD is linked with.
+// Declares two functions of the OpenMP runtime with which CHOLMOD is linked.
 extern "C" void omp_set_max_active_levels(int);
 extern "C" int omp_get_max_active_levels(void);
 
 namespace limber {
 
 namespace {
-// Largest share of the nodes that an adapted ordering may move; with more, a new dissection is better.
+// Largest share of the nodes that may move when the previous elimination order is adapted to a new graph. If more had
+// to move, a new nested dissection is better.
 constexpr double kMostMended = 0.125;
-constexpr std::size_t kMostNumbers = INT32_MAX;  // upper limit on the numbers in a factor: CHOLMOD counts them by int
-constexpr double kDearer = 1.16;  // upper limit on an adapted ordering's operations, relative to the last new ordering
+// Upper limit on the count of numbers in a factor: CHOLMOD counts them by int.
+constexpr std::size_t kMostNumbers = INT32_MAX;
+constexpr double kDearer = 1.16;  // upper limit on the operations with an adapted order, relative to the last new order
 
-// Limits CHOLMOD to one thread. Debian's CHOLMOD starts four threads inside a factorization, which doubles its time on
-// few cores; OpenMP regions that are not active run on the calling thread.
+// Limits CHOLMOD to the calling thread, by forbidding active OpenMP regions. Debian's CHOLMOD would start four threads
+// inside a factorization, which doubles its time on few cores.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_active_levels()) { omp_set_max_active_levels(0); }
@@ -38,8 +40,8 @@ class OneThread {
   int before_;
 };
 
-// OpenBLAS allocates its working memory at its first call, and retries forever when memory does not suffice. So this
-// function first checks that enough memory can be mapped and then makes that first call.
+// Makes OpenBLAS allocate its working memory. OpenBLAS does so at its first call, and retries forever when memory does
+// not suffice. So this function first checks that enough memory can be mapped, and then makes the first call.
 void require_blas_memory() {
   static const bool has_memory = [] {
     constexpr std::size_t kMost = std::size_t{160} << 20;  // OpenBLAS takes 128 MB of address space
@@ -60,8 +62,8 @@ void require_blas_memory() {
   static_cast<void>(has_memory);
 }
 
-// Returns a symmetric sparse matrix without values, given by its lower triangle: `row` lists the rows of its entries
-// column by column, and column[c] is the index in `row` of the first entry of column c.
+// Returns the pattern of a symmetric sparse matrix without values, given by its lower triangle: `row` lists the rows of
+// the entries column by column, and column[c] is the index in `row` of the first entry of column c.
 cholmod_sparse pattern_of(std::vector<int>& column, std::vector<int>& row) {
   cholmod_sparse A{};
   A.nrow = A.ncol = column.size() - 1;
@@ -84,7 +86,7 @@ void BlockGraphBuilder::add(std::span<const int> element) {
 }
 
 BlockGraph BlockGraphBuilder::build(const BlockGraph& base) const {
-  // Lists for each node the elements that contain it.
+  // Lists the elements that contain each node.
   std::vector<std::int64_t> first(node_count_ + 1, 0);
   for (int node : node_) ++first[node + 1];
   for (int i = 0; i < node_count_; ++i) first[i + 1] += first[i];
@@ -124,14 +126,14 @@ struct Cholesky::Factor {
   double operations = 0;
 
   int node_count = 0;
-  std::vector<int> rank;        // #nodes: position in the ordering
-  std::vector<int> parent;      // #nodes, by rank: parent's rank in the elimination tree
-  double fresh_operations = 0;  // operations of a factorization of the node graph, at the last new ordering
-  std::vector<std::int64_t> below_first{0};  // #nodes + 1, by rank: first index into `below`
-  std::vector<int> below;                    // row ranks of the blocks below the diagonal, rising in each column
-  std::vector<int> column, row;              // positions of the matrix's entries, by rank; all nine of each block
+  std::vector<int> rank;                     // position of each node in the elimination order
+  std::vector<int> parent;                   // for each rank, the parent's rank in the elimination tree; #nodes
+  double fresh_operations = 0;               // operations of a factorization of the node graph with the last new order
+  std::vector<std::int64_t> below_first{0};  // for each rank, the first index into `below`; #nodes + 1
+  std::vector<int> below;        // ranks of the block rows below the diagonal, rising within each block column
+  std::vector<int> column, row;  // positions of the matrix's entries in compressed columns, by rank
   std::vector<double> value, right_side;
-  std::unique_ptr<double[]> room;  // memory of the factor's numbers
+  std::unique_ptr<double[]> room;  // memory for the numbers of the factor
   std::size_t room_size = 0;
 
   Factor() {
@@ -149,8 +151,8 @@ struct Cholesky::Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
-  // Throws Error after a failure of CHOLMOD (a negative status). The message names lack of memory, because no other
-  // failure depends on the input.
+  // Throws Error if the last call of CHOLMOD failed (negative status). The message speaks of too little memory, because
+  // no other failure depends on the input.
   void require(const char* what) const {
     if (common.status >= 0) return;
     throw Error("not enough memory for a system of " + std::to_string(node_count) + " mesh nodes",
@@ -170,8 +172,9 @@ struct Cholesky::Factor {
   void free_factor();
 };
 
-// Orders the nodes by the adapted previous order or by nested dissection, then by postorder of the elimination tree, so
-// that supernodes are contiguous. Returns the analysed factor of the node graph, which has one row per node.
+// Orders the nodes by the previous order, adapted to the graph, or by a new nested dissection. A postorder of the
+// elimination tree follows, so that supernodes (groups of columns with equal pattern) are contiguous. Returns the
+// analysed factor of the node graph, which has one row per node.
 Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> node_column{0}, node_row;
   node_count = graph.node_count();
@@ -190,7 +193,7 @@ Cholesky::Factor::Analysed Cholesky::Factor::order(const BlockGraph& graph) {
   std::vector<int> given;
   if (std::ssize(rank) == node_count) given = mended_order(graph, rank, parent, kMostMended);
   Analysed nodes(nullptr, FreeFactor{&common});
-  double by_nodes = INFINITY;  // operations of a factorization of the node graph
+  double by_nodes = INFINITY;  // operations of a factorization of the node graph with the chosen order
   if (!given.empty()) {
     common.method[0].ordering = CHOLMOD_GIVEN;
     nodes.reset(cholmod_analyze_p(&A, given.data(), nullptr, 0, &common));
@@ -244,8 +247,9 @@ void Cholesky::Factor::expand(const BlockGraph& graph) {
   value.assign(entries, 0);
 }
 
-// Expands the analysed factor `nodes`, which has one row per node, to three rows and columns per node. A supernode of
-// nodes is also a supernode of the nodes' rows. To analyse the nodes takes a ninth of the time.
+// Expands the analysed factor `nodes`, which has one row and column per node, to three rows and columns per node: the
+// three rows of each node have the same pattern. An analysis of the node graph takes a ninth of the time of an analysis
+// of all rows.
 void Cholesky::Factor::expand(const cholmod_factor& nodes) {
   factor = cholmod_allocate_factor(3 * nodes.n, &common);
   require("analysis");
@@ -277,10 +281,10 @@ void Cholesky::Factor::expand(const cholmod_factor& nodes) {
     for (int c = 0; c < 3; ++c) *rows++ = 3 * static_cast<const int*>(nodes.s)[k] + c;
 }
 
-// Gives the factor memory that this class owns and reuses. CHOLMOD's own memory would return to the system at each
-// analysis.
+// Gives the factor memory that this class owns and reuses. Memory that CHOLMOD allocates itself would return to the
+// system at each analysis.
 void Cholesky::Factor::take_room() {
-  constexpr std::size_t kSpare = 8;  // allocates 1/8 more than needed, because the next graph is similar
+  constexpr std::size_t kSpare = 8;  // 1/8 more memory is allocated than needed, because the next graph is similar
   if (factor->xsize > room_size) try {
       room.reset();
       room_size = factor->xsize + factor->xsize / kSpare;
@@ -345,7 +349,7 @@ void Cholesky::places(std::span<const int> nodes, Place* places) const {
               *end = factor_->below.data() + factor_->below_first[c + 1];
     const std::int64_t stride = 3 * (1 + end - begin), first = factor_->column[3 * c];
     place_of(j, j) = {first, stride};
-    const int* at = begin;  // `below` and `nodes` are both sorted by rank
+    const int* at = begin;  // moves forward only: `below` and `nodes` are both sorted by rank
     for (std::size_t i = j + 1; i < nodes.size(); ++i) {
       const int r = factor_->rank[nodes[i]];
       while (at != end && *at < r) ++at;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves symmetric sparse systems of 3x3 blocks, one row of blocks per node of a mesh, by supernodal Cholesky
-// factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection of the node graph [Karypis &
-// Kumar 1998, METIS]. A graph is ordered and analysed once, then factorized for any number of values. When the next
-// graph differs little, the previous ordering is adapted to it (elimination_tree.h); a new ordering is computed when
-// the adapted one makes factorizations more than a sixth more expensive. All work runs on one thread, so that results
-// do not depend on the number of threads.
+// Solves symmetric sparse systems of equations. The matrix consists of 3x3 blocks, one row of blocks per mesh node. The
+// method is supernodal Cholesky factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection
+// of the node graph [Karypis & Kumar 1998, METIS]. A graph is ordered and analysed once, then factorized for any number
+// of values. When the next graph differs little, the previous elimination order is adapted to it (elimination_tree.h);
+// a new order is computed when the adapted one makes factorizations more than a sixth more expensive. All work runs on
+// one thread, so that results do not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,14 @@
 
 namespace limber {
 
-// Builds the graph in which two nodes are neighbours when they share an element. An element is a list of nodes; -1
-// stands for no node.
+// Builds the graph of a mesh, in which two nodes are neighbours when they share an element. An element is a list of
+// nodes, in which -1 stands for no node.
 class BlockGraphBuilder {
  public:
   explicit BlockGraphBuilder(int node_count) : node_count_(node_count) {}
   void add(std::span<const int> element);
-  // Returns the graph of all added elements together with the edges of `base`, which is empty or has node_count nodes.
+  // Returns the graph of all added elements, together with the edges of `base`. That graph is empty or has the same
+  // number of nodes.
   BlockGraph build(const BlockGraph& base = {}) const;
 
  private:
@@ -33,44 +34,44 @@ class BlockGraphBuilder {
 
 class Cholesky {
  public:
-  // Location of a 3x3 block, of a row node and a column node, in values(). The block's entry (row, column), each 0 to
+  // Location in values() of the 3x3 block of a row node and a column node. The block's entry (row, column), each 0 to
   // 2, is values()[at + column * stride + row].
   struct Place {
     std::int64_t at;
     std::int64_t stride;
   };
 
-  // Orders and analyses `graph`. Throws Error when memory does not suffice.
+  // Computes an elimination order for `graph` and analyses it. Throws Error when memory does not suffice.
   explicit Cholesky(const BlockGraph& graph);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;
-  // Analyses another graph and reuses the memory of the factor, because to fill fresh memory would take half as much
-  // time as a factorization.
+  // Analyses another graph. Reuses the memory of the factor, because filling fresh memory would take half the time of a
+  // factorization.
   void analyse(const BlockGraph& graph);
 
   int node_count() const;
-  // Returns the node's position in the ordering that keeps the factor sparse. A block is stored only when
-  // rank(row node) >= rank(column node). Of a block on the diagonal only the lower triangle is read.
+  // Returns the node's position in the elimination order. A block is stored only when rank(row node) >= rank(column
+  // node). Of a block on the diagonal only the lower triangle is read.
   int rank(int node) const;
   // Returns the location of the block of two nodes; requires rank(row) >= rank(column). The location's `at` is -1 when
-  // the nodes are different and not neighbours in the graph.
+  // the nodes differ and are not neighbours in the graph.
   Place place(int row, int column) const;
   // Writes to `places` the locations of the blocks of all pairs of `nodes`: the lower triangle, row by row. The nodes
   // must be sorted by rank. A pair with node -1 (no node) gets `at` = -1.
   void places(std::span<const int> nodes, Place* places) const;
 
   std::span<double> values();
-  void clear();  // sets all values to zero
+  void clear();  // sets all values of the matrix to zero
 
-  // Factorizes the matrix. Returns false when it is not positive definite; solve() must not be called then.
+  // Factorizes the matrix. Returns false when the matrix is not positive definite; then solve() must not be called.
   bool factorize();
   // Solves the system in place: `b` holds the right-hand side, then the solution, 3 numbers per node in the graph's
   // order. Call it after factorize() returned true.
   void solve(std::span<double> b);
 
-  std::int64_t factor_size() const;  // numbers in the factor, 8 bytes each
-  double factor_operations() const;  // approximate floating point operations of a factorization
+  std::int64_t factor_size() const;  // count of numbers in the factor, 8 bytes each
+  double factor_operations() const;  // approximate number of floating point operations of a factorization
 
  private:
   struct Factor;

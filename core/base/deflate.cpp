@@ -10,13 +10,13 @@
 namespace limber {
 
 namespace {
-// Upper limit on the bytes per library call, because the library counts them in 32 bits.
+// Upper limit on the bytes passed in one call of the library, because the library counts them in 32 bits.
 constexpr std::size_t kMost = std::size_t{1} << 30;
 }  // namespace
 
-// The state of the stream. The library reads the gzip wrapper itself. With a zlib wrapper (RFC 1950) the library would
-// consume bytes after the stream, so this class reads that wrapper: a header of two bytes before the deflate data and
-// the Adler-32 checksum of four bytes after it.
+// The state of a stream being decompressed. The library reads a gzip wrapper itself. With a zlib wrapper (RFC 1950) the
+// library would consume bytes beyond the end of the stream, so this class reads that wrapper: a header of two bytes
+// before the deflate data and the Adler-32 checksum of four bytes after it.
 struct Inflater::State {
   inflate_state stream;
   std::array<std::uint8_t, 2> header;

@@ -16,17 +16,17 @@ class Inflater {
   ~Inflater();
 
   struct Step {
-    std::size_t taken = 0, made = 0;  // input bytes consumed, output bytes written
+    std::size_t taken = 0, made = 0;  // number of input bytes consumed, and of output bytes written
     bool damaged = false;
   };
   // Decompresses the next bytes of the stream into `to`, at most `room` bytes. The stream's first byte tells gzip from
-  // zlib. A later step may write the output of bytes that an earlier step consumed, so all output has been written only
-  // when a step without input writes no bytes.
+  // zlib. The output of consumed bytes may be written only by a later step. So call this again with no input until a
+  // step writes no bytes.
   Step inflate(std::string_view packed, void* to, std::size_t room);
-  bool ended() const { return ended_; }  // true after the end of the stream when the checksum was right
-  // Returns how many of the last consumed bytes lie behind the end of the stream; call it when ended().
+  bool ended() const { return ended_; }  // true after the end of the stream, if its checksum was right
+  // Returns how many of the bytes consumed last lie beyond the end of the stream. Call it when ended() is true.
   std::size_t behind() const { return behind_; }
-  void start_next();  // resets the reader for another stream
+  void start_next();  // resets the object for another stream
 
  private:
   struct State;
@@ -43,7 +43,7 @@ class Deflater {
   ~Deflater();
 
   void write(const void* bytes, std::size_t size);
-  void end();  // call it once, after the last byte
+  void end();  // writes the end of the stream; call it once, after the last byte
 
  private:
   void pump(const void* bytes, std::size_t size, bool last);

@@ -11,10 +11,10 @@
 namespace limber {
 
 struct Screw {
-  glm::dvec3 turn{0};       // rotation vector (direction: the axis, length: the angle), radians, at most half a turn
-  glm::dvec3 at_origin{0};  // velocity of the body's point that lies at the origin, mm per unit of time
+  glm::dvec3 turn{0};       // rotation vector (direction: the axis; length: the angle in radians, at most half a turn)
+  glm::dvec3 at_origin{0};  // velocity of the body point that lies at the origin, mm per unit of time
 
-  // Returns the velocity of the body's point that lies at p, mm per unit of time.
+  // Returns the velocity of the body point that lies at p, mm per unit of time.
   glm::dvec3 velocity(const glm::dvec3& p) const { return glm::cross(turn, p) + at_origin; }
 };
 

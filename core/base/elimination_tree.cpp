@@ -14,8 +14,8 @@ std::vector<int> inverse(const std::vector<int>& rank) {
   return node;
 }
 
-// An edge between two branches of the elimination tree: the ranks of the edge's ends, and the rank of the lowest common
-// ancestor at which the branches join (#nodes where they never join).
+// An edge of the graph between two branches of the elimination tree: the ranks of the edge's two nodes, and the rank of
+// the lowest common ancestor at which the branches join (#nodes if they never join).
 struct Joint {
   int low, high, joined_at;
 };
@@ -24,7 +24,9 @@ std::vector<Joint> edges_between_branches(const BlockGraph& graph, const std::ve
                                           const std::vector<int>& parent) {
   const int n = graph.node_count();
   std::vector<int> lowest(
-      n);  // by rank: lowest rank in the subtree; in a postorder the subtree holds every rank from it to the root's
+      // For each rank, the lowest rank in its subtree; in a postorder the subtree holds all ranks from there to its
+      // root.
+      n);
   for (int r = 0; r < n; ++r) lowest[r] = r;
   for (int r = 0; r < n; ++r)
     if (parent[r] >= 0) lowest[parent[r]] = std::min(lowest[parent[r]], lowest[r]);
@@ -64,9 +66,10 @@ std::vector<int> mended_order(const BlockGraph& graph, const std::vector<int>& r
   for (int j = 0; j < int(joints.size()); ++j)
     for (const int end : {joints[j].low, joints[j].high}) joints_of[end].push_back(j);
 
-  // Moves nodes until every edge between branches has a moved end; the node with the most uncovered edges is first.
+  // Selects the nodes to move, so that every edge between branches has a moved end. The node with the most uncovered
+  // edges (edges without a moved end) is moved first.
   std::vector<int> open(n), moved_to(n, -1);
-  std::priority_queue<std::pair<int, int>> next;  // of each node: number of its uncovered edges, -rank
+  std::priority_queue<std::pair<int, int>> next;  // for each node: number of its uncovered edges, and -rank
   for (int r = 0; r < n; ++r)
     if ((open[r] = int(joints_of[r].size())) > 0) next.emplace(open[r], -r);
   std::vector<char> covered(joints.size(), 0);

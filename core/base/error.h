@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Defines the error that a user can act on. It has three parts, shown as one line:
+// Defines Error, the exception for failures that a user can act on. It has three parts, shown as one line:
 //   limber: WHAT is wrong: WHERE (file, label, bone): WHAT TO DO
 // An Error is caught in exactly three places: the command line's main, the editor's operator runner and the end of a
 // job. An exception of a library is converted to an Error where that library is called.

@@ -19,8 +19,8 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Opens a nameless file in `folder` and returns its descriptor. When the process dies, even by SIGKILL, nothing is left
-// of the file. Returns -1 where the file system does not support nameless files.
+// Opens a nameless file in `folder` and returns its descriptor. A nameless file vanishes when the process dies, even by
+// SIGKILL. Returns -1 where the file system does not support nameless files.
 int open_nameless(const Path& folder, mode_t mode) {
   return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
 }
@@ -72,8 +72,8 @@ void check_place(const Path& path) {
 
 namespace {
 
-// Fills a new file: calls `write`, which writes to it through the path `temporary`, gives it the permissions of the
-// file `target` that it replaces, and flushes it to disk.
+// Fills a new file. Calls `write`, which writes to the file through the path `temporary`. Then gives the file the
+// permissions of `target`, the file that it will replace, and flushes it to disk.
 void fill(int descriptor, const Path& temporary, const Path& target, const Path& path,
           const std::function<void(const Path&)>& write) {
   try {
@@ -85,8 +85,8 @@ void fill(int descriptor, const Path& temporary, const Path& target, const Path&
   if (::fsync(descriptor) != 0) throw not_written(path);
 }
 
-// Returns the permissions of a new file. A file that replaces another is private at first, so that nobody can read it
-// who may not read the replaced file.
+// Returns the permissions with which a new file is created. A file that will replace another one is private at first,
+// so that nobody can read it who may not read the other one.
 mode_t first_mode(const Path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
 
 }  // namespace
@@ -103,7 +103,7 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
     fill(nameless.number, from, target, path, write);
     if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, target.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
     if (errno != EEXIST) throw not_written(path);
-    // First links the file to a temporary name and then renames it, because linkat() cannot replace an existing file.
+    // linkat() cannot replace an existing file. So the file is linked to a temporary name first and then renamed.
     const Unfinished unfinished(name);
     if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) throw not_written(path);
     if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);

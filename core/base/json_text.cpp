@@ -13,7 +13,8 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Inspects a JSON text event by event, which needs no recursion, and stops at the first problem.
+// Inspects a JSON text and stops at the first problem. It handles the parser's events one by one, which needs no
+// recursion.
 class Inspector final : public nlohmann::json_sax<Json> {
  public:
   std::string problem;
@@ -47,7 +48,8 @@ class Inspector final : public nlohmann::json_sax<Json> {
     keys_.pop_back();
     return true;
   }
-  std::vector<std::set<std::string>> keys_;  // keys seen so far in each enclosing object or array; an array has none
+  // Keys seen so far in each enclosing object; an enclosing array has an empty set.
+  std::vector<std::set<std::string>> keys_;
 };
 }  // namespace
 

@@ -11,7 +11,7 @@
 
 #include "core/base/memory_pages.h"
 
-// A build with a sanitizer keeps the sanitizer's own allocator.
+// In a build with a sanitizer, operator new is not replaced, so that the sanitizer's own allocator stays in use.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIMBER_HAS_SANITIZER
 #elif defined(__has_feature)

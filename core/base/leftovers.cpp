@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t kLongestNote = 8192;
 
-// Returns the folder of the notes: $XDG_STATE_HOME/limber/unfinished, else $HOME/.local/state/limber/unfinished. Empty
-// when neither variable is set.
+// Returns the folder of the notes that name unfinished files: $XDG_STATE_HOME/limber/unfinished, else
+// $HOME/.local/state/limber/unfinished. Empty when neither variable is set.
 Path notes_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   const char* home = std::getenv("HOME");
@@ -37,7 +37,7 @@ bool named_as_ours(const Path& path) {
 
 void remove_all_of(const Path& path) {
   std::error_code ignored;
-  fs::remove_all(path, ignored);  // removes a symbolic link itself, not its target
+  fs::remove_all(path, ignored);  // if `path` is a symbolic link, removes the link, not its target
   fs::remove(path.string() + "-journal", ignored);
 }
 
@@ -54,8 +54,8 @@ std::string read_note(int descriptor) {
   return text;
 }
 
-// Removes a note and the file that it names, unless a living process holds the note's lock. A note that does not end
-// with a line feed is incomplete; then only the note is removed.
+// Removes a note and the unfinished file that the note names, unless a living process holds the note's lock. A note
+// that does not end with a line feed is incomplete; then only the note is removed.
 void clear(const Path& note) {
   const int file = ::open(note.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return;
@@ -79,8 +79,8 @@ Unfinished::Unfinished(const Path& path) : path_(fs::absolute(path)) {
   std::error_code error;
   fs::create_directories(folder, error);
   note_ = folder / (std::to_string(::getpid()) + "-" + std::to_string(++count));
-  // The note is renamed after it is locked, because a program that starts meanwhile would take an unlocked note for
-  // that of a dead process.
+  // The note is locked under another name first, then renamed. A program that starts meanwhile would take an unlocked
+  // note for that of a dead process.
   const Path fresh = note_.string() + ".new";
   descriptor_ = ::open(fresh.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
   const std::string text = path_.string() + "\n";
@@ -109,7 +109,7 @@ void remove_leftovers() try {
   std::error_code error;
   if (folder.empty()) return;
   for (const auto& entry : fs::directory_iterator(folder, error)) clear(entry.path());
-} catch (const std::exception&) {  // the next start of the program tries again
+} catch (const std::exception&) {  // the next start of the program tries again to remove the files
 }
 
 }  // namespace limber

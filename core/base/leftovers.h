@@ -15,10 +15,10 @@ namespace limber {
 // "limber-XXXXXX", "...edits.new").
 class Unfinished {
  public:
-  // Writes a note that names `path`; call it before the file is created. When the note cannot be written, a later start
-  // of the program removes nothing.
+  // Writes a note that names `path`. The note must exist before the file does. When the note cannot be written, a later
+  // start of the program removes nothing.
   explicit Unfinished(const Path& path);
-  // Removes what exists at the path (a file with its "-journal" file, or a folder with its contents), then the note.
+  // Removes the file at the path with its "-journal" file, or the folder with its contents, and then the note.
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
@@ -31,8 +31,8 @@ class Unfinished {
 // Returns ".limber-PID-NAME" beside `path`, the temporary name of a file that will be renamed to `path`.
 Path temporary_name(const Path& path);
 
-// Removes the unfinished files that killed processes of this user left, and their notes. Files of a living process
-// stay. Never throws.
+// Removes the unfinished files that killed processes of this user left behind, and their notes. Files of a living
+// process stay. Never throws.
 void remove_leftovers();
 
 }  // namespace limber

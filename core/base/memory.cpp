@@ -10,8 +10,8 @@
 namespace limber {
 
 namespace {
-// Returns the number that follows `key` at the start of a line of a file. Returns -1 when there is no number; a control
-// group without a limit has the word "max" there.
+// Returns the number that follows `key` at the start of a line of a file. Returns -1 when there is no number; without a
+// limit, the memory file of a control group holds the word "max" instead.
 std::int64_t number_in_file(const char* path, std::string_view key) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {

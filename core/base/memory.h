@@ -5,8 +5,8 @@
 
 namespace limber {
 
-// Returns how many bytes this process may still allocate: the smaller of the machine's free memory and what the limit
-// of the process's control group leaves. It is an estimate, because other processes allocate memory too.
+// Returns how many bytes this process may still allocate: the smaller of the machine's free memory and what remains
+// below the limit of the process's control group. It is an estimate, because other processes allocate memory too.
 std::int64_t available_memory();
 
 }  // namespace limber

@@ -13,8 +13,9 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Returns the folders that may hold Limber's modules and helper programs: the program's folder, ../lib/limber relative
-// to it, and where Limber is installed. The last one serves another program that uses Limber as a library.
+// Returns the folders that may hold Limber's modules and helper programs: the folder of the running program,
+// ../lib/limber relative to it, and where Limber was installed. The last one serves another program that uses Limber as
+// a library.
 std::vector<Path> own_folders() {
   std::error_code error;
   const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();

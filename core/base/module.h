@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds code to load and programs to start, always by an absolute path. For a bare name the loader would also search
-// the folders of LD_LIBRARY_PATH or PATH, and an empty entry there means the working folder, which may hold a
-// stranger's file.
+// Finds modules to load and programs to start, always by an absolute path. For a bare name the system would also search
+// the folders of LD_LIBRARY_PATH or PATH. An empty entry there means the working folder, which may hold a stranger's
+// file.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,9 @@
 
 namespace limber {
 
-// Opens the module NAME.so, a shared library, in the program's folder, in ../lib/limber relative to it or where Limber
-// is installed. Returns nullptr when none of them can be opened. The module stays open until the program ends.
+// Opens the module NAME.so, a shared library. Searches the program's folder, ../lib/limber relative to it and where
+// Limber was installed. Returns nullptr when no folder has a module that can be opened. The module stays open until the
+// program ends.
 void* open_module(const std::string& name);
 
 // Returns the path of the helper program NAME, which is a part of Limber and not a command. Searches the same folders

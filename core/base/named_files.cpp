@@ -12,9 +12,9 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr int kMostLinks = 40;  // upper limit on the symbolic links that are followed, the same as the kernel's
+constexpr int kMostLinks = 40;  // upper limit on the symbolic links that are followed, equal to the kernel's limit
 
-// Resolves the symbolic links of a path. The link's target need not exist yet.
+// Resolves the symbolic links of a path. The file that a link points to need not exist yet.
 Path place_of(Path path) {
   std::error_code error;
   for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i)
@@ -22,8 +22,8 @@ Path place_of(Path path) {
   return fs::weakly_canonical(path, error);
 }
 
-// Returns an identity that is the same for all names of one file: device and inode where it exists, else the resolved
-// path. Returns nothing for a device or a pipe, where writing destroys nothing.
+// Returns an identity that is equal for all names of one file: device and inode if the file exists, else the resolved
+// path. Returns nothing for a device or a pipe, because writing to it destroys nothing.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 std::optional<Identity> identity_of(const Path& path) {
   struct stat status;
@@ -34,7 +34,7 @@ std::optional<Identity> identity_of(const Path& path) {
 
 using Known = std::map<Identity, NamedFile>;
 
-// Returns the inputs by their identities. For an input that is a folder, the files in it are added.
+// Returns the input files by their identities. For an input that is a folder, also adds the files in it.
 Known identified(const std::vector<NamedFile>& inputs) {
   Known known;
   const auto add = [&](const NamedFile& file) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes files that belong together: when a later one fails, the earlier ones are removed.
+// Writes several files that belong together: when writing one of them fails, the new files that were written before are
+// removed.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +21,8 @@ class Outputs {
     if (!complete_)
       for (const Path& path : written_) std::filesystem::remove(path, ignored);
   }
-  // Registers files before they are written. On failure, files that already exist now are not removed.
+  // Registers files that will be written, so that they are removed on failure. Files that already exist now are not
+  // removed.
   void expect(const std::vector<Path>& paths) {
     for (const Path& path : paths)
       if (!std::filesystem::exists(path)) written_.push_back(path);

@@ -18,14 +18,16 @@
 namespace limber {
 
 namespace {
-// The TBB arena of the ThreadCount that is alive; nullptr: none. The number of threads changes speed, never results.
+// The TBB arena of the ThreadCount object that is alive; nullptr: none. The number of threads changes speed, never
+// results.
 std::atomic<tbb::task_arena*> current_arena = nullptr;
 
-// The Progress of the command or job that this thread runs; nullptr: none. Its parallel loops check it for a cancel.
+// The Progress of the command or job that this thread runs; nullptr: none. The thread's parallel loops check it to see
+// whether the user cancelled.
 thread_local const Progress* current_progress = nullptr;
 
-// Runs `run`, and converts TBB's error for a thread that cannot start to std::bad_alloc. The usual cause is lack of
-// memory for the thread's stack, and TBB reports the error only as text.
+// Calls `run`. If TBB cannot start a thread, throws std::bad_alloc: the usual cause is lack of memory for the thread's
+// stack, and TBB reports the error only as text.
 template <class Run>
 void without_thread_failures(const Run& run) {
   try {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reports the progress of a long function and tells it to stop. The function calls update() from its own thread several
-// times a second, so that a cancel takes effect within 100 ms; loops inside parallel_for may poll cancelled(), which
-// any thread may call.
+// Reports the progress of a long function and lets the user cancel the function. The function calls update() from its
+// own thread several times a second, so that a cancel takes effect within 100 ms. Loops inside parallel_for may poll
+// cancelled(), which any thread may call.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ class Progress {
   virtual ~Progress() = default;
 
   // Reports progress.
-  //   stage     the present step, in a word for the user ("weights")
+  //   stage     the present step of the work, in a word for the user ("weights")
   //   fraction  the completed share of that step, [0, 1]
   //   throws Cancelled when cancel() was called earlier
   void update(std::string_view stage, double fraction) {

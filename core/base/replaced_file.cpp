@@ -27,12 +27,13 @@ Path target_of(const Path& path) {
 void take_permissions(int descriptor, const Path& replaced) {
   struct stat status {};
   if (::stat(replaced.c_str(), &status) != 0) return;
-  // Sets the owner before the permissions, because a change of owner clears some of them. Only root may set the owner;
-  // a process of another user sets only the group.
+  // The owner is set before the permissions, because a change of owner clears some permissions. Only root may set the
+  // owner; a process of another user sets only the group.
   if (::fchown(descriptor, status.st_uid, status.st_gid) != 0 &&
       ::fchown(descriptor, static_cast<uid_t>(-1), status.st_gid) != 0)
     status.st_mode &= ~static_cast<mode_t>(S_ISUID | S_ISGID);
-  // A file system without permissions refuses. Then the file keeps the restrictive permissions that it was opened with.
+  // On a file system without permissions fchmod() fails. Then the file keeps the restrictive permissions that it was
+  // opened with.
   [[maybe_unused]] const int refused = ::fchmod(descriptor, status.st_mode & 07777);
 }
 

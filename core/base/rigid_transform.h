@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rotation followed by a translation, p' = R p + t, in mm. A variable's name states the result and the argument, so
-// that code reads as a product:
+// A rigid transform: a rotation followed by a translation, p' = R p + t, in mm. A variable of this type is named
+// RESULT_from_ARGUMENT, so that code reads as a product:
 //   posed_point = posed_from_rest * rest_point
 #pragma once
 
@@ -16,7 +16,7 @@ struct RigidTransform {
 
 inline glm::dvec3 operator*(const RigidTransform& t, const glm::dvec3& p) { return t.rotation * p + t.translation; }
 
-// Composes transforms: (a * b) p = a (b p).
+// Composes two transforms: (a * b) p = a (b p).
 inline RigidTransform operator*(const RigidTransform& a, const RigidTransform& b) {
   return {glm::normalize(a.rotation * b.rotation), a.rotation * b.translation + a.translation};
 }
@@ -26,7 +26,8 @@ inline RigidTransform inverse(const RigidTransform& t) {
   return {back, -(back * t.translation)};
 }
 
-// Returns the rotation about `point`, which stays fixed. The result is exactly the identity when `rotation` is.
+// Returns the rotation about the fixed point `point`. The result is exactly the identity when `rotation` is the
+// identity.
 inline RigidTransform rotation_about(const glm::dvec3& point, const glm::dquat& rotation) {
   if (rotation == glm::dquat(1, 0, 0, 0)) return {};
   return {rotation, point - rotation * point};

@@ -28,7 +28,7 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 #elif defined(__aarch64__)
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #else
-constexpr std::uint32_t kArchitecture = 0;  // 0: the system call filter supports no such architecture
+constexpr std::uint32_t kArchitecture = 0;  // 0: no system call filter on this processor architecture
 #endif
 
 std::size_t mapped_bytes() {
@@ -40,7 +40,7 @@ std::size_t mapped_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// Upper limit on memory, bytes: half of a process's address space, so that sums with it cannot overflow.
+// Upper limit on memory, bytes: half of a process's address space, so that sums with this limit cannot overflow.
 constexpr std::size_t kMostMemory = std::size_t{1} << 46;
 
 // Sets a resource limit of this process. Never raises a limit that is in force.
@@ -59,21 +59,21 @@ void limit_resources(const SandboxSettings& settings, std::size_t mapped) {
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_FSIZE, 0, 0);
   limit(RLIMIT_NPROC, 0, 0);
-  // Upper limit on open files. The process needs two pipe ends and two files of a volume.
+  // Upper limit on the number of open files. The process needs two pipe ends and two files of a volume.
   constexpr rlim_t kOpenFiles = 16;
   limit(RLIMIT_NOFILE, kOpenFiles, kOpenFiles);
 }
 
-// The kernel's structure of Landlock's rules. It is declared here, because linux/landlock.h may be older on the build
-// machine than the kernel that runs the program.
+// The kernel's structure for the rules of Landlock, its access control. It is declared here because linux/landlock.h
+// may be older on the build machine than the kernel that runs the program.
 struct LandlockRules {
   std::uint64_t files, network, scopes;
 };
-constexpr int kLandlockVersion = 1;  // flag that asks the system call for Landlock's version
+constexpr int kLandlockVersion = 1;  // flag by which the system call returns Landlock's version
 
 std::uint64_t first_bits(int count) { return (std::uint64_t{1} << count) - 1; }
 
-// Returns all rights that a Landlock version controls. Landlock refuses each of them, because no rule grants one.
+// Returns all rights that a version of Landlock controls. Since no rule grants any of them, Landlock refuses them all.
 LandlockRules every_right(int version) {
   const int files = version >= 5 ? 16 : version >= 3 ? 15 : version == 2 ? 14 : 13;
   return {first_bits(files), version >= 4 ? first_bits(2) : 0, version >= 6 ? first_bits(2) : 0};
@@ -94,8 +94,8 @@ int enter_landlock() {
 #endif
 }
 
-// Builds a program for the kernel's system call filter (seccomp). The program lists the system calls that are allowed,
-// some of them only with certain arguments.
+// Builds a program for the kernel's system call filter (seccomp). The program lists the system calls that are allowed;
+// some are allowed only with certain arguments.
 class Filter {
  public:
   Filter() {
@@ -108,9 +108,9 @@ class Filter {
     jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 1);
     give(SECCOMP_RET_ALLOW);
   }
-  // Allows the system call when the lower half of its argument number `argument` has the value `value`.
+  // Allows the system call when the lower 32 bits of its argument number `argument` equal `value`.
   void allow_if_equal(long call, int argument, std::uint32_t value) { allow_if(call, argument, BPF_JEQ, value, true); }
-  // Allows the system call when the lower half of its argument number `argument` has none of these bits.
+  // Allows the system call when the lower 32 bits of its argument number `argument` have none of these bits set.
   void allow_without(long call, int argument, std::uint32_t bits) { allow_if(call, argument, BPF_JSET, bits, false); }
 
   bool enter() {
@@ -152,7 +152,7 @@ bool enter_seccomp() {
     filter.allow(call);
   filter.allow_without(SYS_mmap, 2, PROT_EXEC);
   filter.allow_without(SYS_mprotect, 2, PROT_EXEC);
-  filter.allow_if_equal(SYS_prlimit64, 0, 0);  // pid 0: the limits of this process only
+  filter.allow_if_equal(SYS_prlimit64, 0, 0);  // process 0: only the limits of this process
   filter.allow_if_equal(SYS_tgkill, 0, static_cast<std::uint32_t>(::getpid()));  // abort() sends a signal to itself
   return filter.enter();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Removes this process's rights before it parses a file from a stranger. Four protections work independently: where one
-// has a gap or the kernel lacks it, the others remain.
+// Takes rights away from this process before it parses a file from a stranger. Four protections work independently:
+// where one has a gap or the kernel lacks it, the others remain.
 //   system calls  seccomp allows calls that compute, allocate memory and use open files. It refuses every other one
 //                 with EPERM: open, socket, fork, exec, ptrace and executable memory.
 //   files         Landlock refuses every path, TCP, and signals and sockets to other processes.
@@ -14,33 +14,36 @@
 namespace limber {
 
 struct SandboxSettings {
-  std::size_t memory_bytes = std::size_t{256} << 20;  // limit beyond what is mapped at the call; see allow_memory()
-  // Upper limit of allow_memory(), beyond what is mapped at the call.
+  // Limit beyond what the process has mapped at entry; see allow_memory().
+  std::size_t memory_bytes = std::size_t{256} << 20;
+  // Largest limit that allow_memory() may set, in bytes beyond what the process has mapped at entry.
   std::size_t most_memory = std::size_t{256} << 20;
   double processor_seconds = 600;
-  bool system_calls = true, files = true;  // which to use; a test switches one off to test the other alone
+  // false: without this protection; a test switches one off to test the other alone
+  bool system_calls = true, files = true;
 };
 
-// The protections that are in force.
+// The protections that are in force for a process.
 struct Protection {
   bool own_process = false;   // the work runs in a process of its own
-  bool system_calls = false;  // seccomp
-  int landlock = 0;           // version of the kernel's Landlock interface, 0: none
+  bool system_calls = false;  // seccomp, the kernel's system call filter
+  int landlock = 0;           // version of the kernel's Landlock interface that is in force; 0: none
 
   bool operator==(const Protection&) const = default;
 };
 
 struct Sandbox {
   Protection protection;
-  std::size_t mapped_bytes = 0;  // address space at entry, recorded because no file can be opened later to ask
+  // Address space at entry, bytes; recorded because no file can be opened later to find it out.
+  std::size_t mapped_bytes = 0;
 };
 
-// Enters the sandbox permanently; the process must have one thread. Open files stay open. Never fails: returns the
-// protections that are in force.
+// Puts this process into the sandbox permanently; the process must have only one thread. Files that are open stay open.
+// Never fails: the result tells which protections are in force.
 Sandbox enter_sandbox(const SandboxSettings& settings);
 
-// Sets the limit of the process's address space: `bytes` beyond what was mapped when it entered the sandbox, at most
-// SandboxSettings::most_memory.
+// Sets the limit of the process's address space: `bytes` more than the process had mapped when it entered the sandbox,
+// at most SandboxSettings::most_memory.
 void allow_memory(const Sandbox& sandbox, std::size_t bytes);
 
 }  // namespace limber

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the hashes of file.h, in a separate file so that a program that does not use them starts without OpenSSL.
+// Implements the hash functions of file.h. They are in a separate file so that a program that does not use them starts
+// without OpenSSL.
 #include <algorithm>
 #include <cerrno>
 #include <cstring>

@@ -16,7 +16,7 @@ extern char** environ;
 namespace limber {
 
 namespace {
-// Owns the two structures that posix_spawn takes.
+// Owns the two structures that posix_spawn() takes: file actions and attributes.
 struct Settings {
   posix_spawn_file_actions_t files;
   posix_spawnattr_t attributes;
@@ -61,7 +61,7 @@ pid_t spawn(const Path& program, std::vector<std::string> words, const Streams& 
   settings.place(streams.err, STDERR_FILENO);
   settings.set_signals_and_group();
   pid_t process = -1;
-  // Passes LD_LIBRARY_PATH on even when the environment is otherwise empty, so that the new program finds the same
+  // LD_LIBRARY_PATH is passed on even when the environment is otherwise empty, so that the new program finds the same
   // libraries.
   std::string libraries = "LD_LIBRARY_PATH=";
   const char* said = std::getenv("LD_LIBRARY_PATH");

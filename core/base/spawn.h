@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Starts another program. It is safe with any number of threads, because no code of this process runs in the new one
+// Starts another program. This is safe while other threads run, because no code of this process runs in the new process
 // before exec.
 #pragma once
 
@@ -18,9 +18,9 @@ struct Streams {
 };
 enum class Environment { Same, Empty };
 
-// Starts the program as the leader of its own process group, so that Ctrl+C at the terminal does not reach it and its
-// children can be ended with it. The program starts with no signal blocked, and with the default actions of SIGINT,
-// SIGTERM, SIGPIPE and SIGHUP.
+// Starts the program as the leader of its own process group. So Ctrl+C at the terminal does not reach the program, and
+// its children can be ended together with it. The program starts with no signal blocked, and with the default actions
+// of SIGINT, SIGTERM, SIGPIPE and SIGHUP.
 //   words    arguments, the program's name first
 //   what     what is started, for the error message: "a worker"
 //   returns  the process, which the caller must wait for

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parses small texts of file headers. No function throws, and none allocates more memory than its input has. Text that
-// contains more than a number gives no number.
+// Parses small texts such as file headers. No function throws, and none allocates more memory than its input has. A
+// text that has more characters than one number needs gives no number.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Converts ASCII letters to lower case, whatever the locale.
+// Converts ASCII letters to lower case, independently of the locale.
 inline std::string lower_case(std::string_view text) {
   std::string low(text);
   for (char& c : low)
@@ -61,7 +61,7 @@ std::optional<Number> number_of(std::string_view text) {
   return value;
 }
 
-// Returns the words of a text as numbers, or nothing when one of the words is not a number.
+// Returns the words of a text converted to numbers, or nothing when one of the words is not a number.
 template <class Number>
 std::optional<std::vector<Number>> numbers_of(std::string_view text) {
   std::vector<Number> numbers;
@@ -73,9 +73,9 @@ std::optional<std::vector<Number>> numbers_of(std::string_view text) {
   return numbers;
 }
 
-// Returns the shortest text that reads back as exactly this number; whole numbers have no exponent.
+// Returns the shortest text from which exactly this number can be read back. Whole numbers have no exponent.
 inline std::string text_of(double number) {
-  constexpr double kExact = 9007199254740992;  // 2^53
+  constexpr double kExact = 9007199254740992;  // 2^53: up to here a double represents every whole number exactly
   if (number >= -kExact && number <= kExact && number == static_cast<double>(static_cast<std::int64_t>(number)))
     return std::to_string(static_cast<std::int64_t>(number));
   char buffer[40];
@@ -83,7 +83,8 @@ inline std::string text_of(double number) {
   return std::string(buffer, end);
 }
 
-// Returns text from a file in quotes, for a message: at most 60 characters of it, with "?" for unprintable characters.
+// Returns text from a file in quotes, for an error message: at most 60 characters of the text, with "?" in place of
+// unprintable characters.
 inline std::string in_quotes(std::string_view text) {
   std::string shown;
   for (char c : text.substr(0, 60)) shown += c >= ' ' && c <= '~' ? c : '?';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A vector whose values are zero and use no memory until they are written. A body's grid is mostly air: where the
+// A vector whose values start as zero and use no memory until they are written. A body's grid is mostly air: where the
 // program only reads zeros, the system maps one shared page of zeros. std::vector cannot do this, because it writes
 // every value that it creates; with a custom allocator it would still visit every value to destroy it.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace limber {
 
-// A growing array of values of type T. A value of zero must consist of zero bytes.
+// A growing array of values of type T. The zero value of T must consist of zero bytes.
 template <class T>
 class ZeroedVector {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -33,7 +33,7 @@ class ZeroedVector {
   explicit ZeroedVector(std::size_t count) { resize(count); }
   ZeroedVector(std::size_t count, const T& value) { assign(count, value); }
   ZeroedVector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
-  // Copies only pages that are not zero, so that the copy uses no more memory than the original.
+  // Copies only memory pages that are not all zero, so that the copy uses no more memory than the original.
   ZeroedVector(const ZeroedVector& other) {
     constexpr std::size_t kPage = 4096 / sizeof(T);
     resize(other.size());
@@ -60,11 +60,12 @@ class ZeroedVector {
   T& operator[](std::size_t at) { return data()[at]; }
   const T& operator[](std::size_t at) const { return data()[at]; }
 
-  // Changes the size; new values are zero.
+  // Changes the number of values; new values are zero.
   void resize(std::size_t count) {
     if (count > capacity_) grow(count);
     else if (count > size_)
-      std::memset(static_cast<void*>(end()), 0, (count - size_) * sizeof(T));  // earlier values may be in this memory
+      // earlier, larger contents may have left values here
+      std::memset(static_cast<void*>(end()), 0, (count - size_) * sizeof(T));
     size_ = count;
   }
   void assign(std::size_t count, const T& value) {

@@ -12,7 +12,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
                    WeightsReport& report, const TissueTable* tissues) {
   struct Island {
     std::int64_t voxels;
-    double file_value;  // value that the volume's file has for the label of the first voxel
+    double file_value;  // file value of the label of the component's first voxel
     glm::dvec3 centre;
     int bone;
   };
@@ -21,8 +21,8 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   std::vector<std::pair<std::int64_t, glm::ivec3>> piece;
   tissue.for_each([&](std::int64_t seed, const glm::ivec3& seed_voxel) {
     if (best.covered(tissue.brick_at(seed_voxel), seed)) return;
-    // Each voxel of this connected component follows bone 0 until the nearest bone is known, so that it is visited
-    // once.
+    // Gives each voxel of this connected component to bone 0 at first. This marks the voxel as visited until the bone
+    // nearest to the whole component is known.
     piece.assign(1, {seed, seed_voxel});
     best.hold(tissue.brick_at(seed_voxel), seed, 0);
     glm::dvec3 sum(0);

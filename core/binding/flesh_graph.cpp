@@ -9,13 +9,14 @@
 namespace limber {
 
 namespace {
-// Factor of 1 / distance^2 in the heat that a soft voxel receives from its nearest bone. Factors from 1 to 4 agree
-// equally well with weights painted by hand; with a factor of 0 (conduction alone) the agreement is a fifth lower.
+// Strength of the heat that a soft voxel receives from its nearest bone at a distance: the conductance is this factor
+// times the voxel's volume / distance^2. Factors from 1 to 4 agree equally well with weights painted by hand; with a
+// factor of 0 (conduction alone) the agreement is a fifth lower.
 constexpr float kAttraction = 2;
 }  // namespace
 
 float conductivity(TissueKind kind) {
-  // Thermal conductivity of living tissue at 37 C, W/m/K, divided by that of muscle, 0.49.
+  // Thermal conductivities of living tissue at 37 C, relative to muscle (0.49 W/m/K).
   switch (kind) {
     case TissueKind::Skin: return 0.76f;
     case TissueKind::Fat: return 0.43f;
@@ -79,8 +80,8 @@ struct HeatGraph::Window {
     if (body.held_by_[its_place] == kSoft) soft[at(from_corner)] = body.conductivity_[body.volume_.at(voxel)];
   }
 
-  // Fills the layer that belongs to the neighbouring brick along an axis.
-  //   side  position of the layer along the axis, relative to this brick's lowest corner
+  // Fills the layer of voxels that lies in the neighbouring brick along an axis.
+  //   side  position of the layer along the axis, relative to this brick's lowest corner: -1 or 8
   void look_beside(const HeatGraph& body, const glm::ivec3& corner, int axis, int side) {
     glm::ivec3 first = corner;
     first[axis] += side;
@@ -98,8 +99,8 @@ struct HeatGraph::Window {
   }
 };
 
-// Returns the conductance from a soft voxel through one of its faces, to a soft voxel or to one that a bone holds at a
-// fixed temperature. Returns 0 to air or across a seam.
+// Returns the conductance of a face of a soft voxel. The voxel on the other side is soft, or a bone holds it at a fixed
+// temperature. Returns 0 if the other side is air or a seam cuts the face.
 float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
   const int there = here + Window::kTo[direction], axis = direction >> 1;
   if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
@@ -110,7 +111,8 @@ float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here
 
 float HeatGraph::attraction(std::int64_t place, const glm::ivec3& voxel) const {
   const float distance = nearest_.distance[place];
-  return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);  // zero where no bone is reached
+  // The result is 0 if the voxel has no nearest bone, since the distance is then infinite.
+  return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);
 }
 
 // Calls body(voxel, index in the list of tissue voxels, index in the window) for every soft voxel of a brick.
@@ -159,8 +161,8 @@ void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system
   });
 }
 
-// Returns for each brick which bones fix the temperature of its voxels, or give them heat at a distance. Each bone has
-// one bit; bones whose indices differ by 64 share a bit.
+// Returns for each brick the bones that fix the temperature of voxels in the brick or give heat to them at a distance.
+// Each bone has one bit; bones whose indices differ by 64 share a bit.
 std::vector<std::uint64_t> HeatGraph::bones_in_bricks() const {
   std::vector<std::uint64_t> bones(tissue_.bricks().size(), 0);
   parallel_for(std::ssize(bones), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -178,8 +180,8 @@ void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatS
   std::uint64_t wanted = 0;
   for (std::size_t bone = 0; bone < lane_of_bone.size(); ++bone)
     if (lane_of_bone[bone] >= 0) wanted |= std::uint64_t{1} << (bone & 63);
-  // A brick gets heat from a bone only if the bone fixes the temperature of voxels in the brick or its six neighbours,
-  // or gives them heat at a distance. Bricks for which this is not true for any solved bone are skipped.
+  // Returns true if some bone that is solved for can give heat to brick b: it fixes the temperature of voxels in the
+  // brick or in one of its six neighbours, or gives heat to them at a distance. All other bricks are skipped.
   const auto is_near = [&](std::int64_t b) {
     std::uint64_t near = bones_in_brick_[bricks[b]];
     for (int direction = 0; direction < 6; ++direction) {
@@ -212,8 +214,8 @@ void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatS
   });
 }
 
-// Makes each connected set of soft voxels in one octant (4^3 voxels) of a brick a cell. The cells get numbers after
-// those found before.
+// Finds the coarse cells of a brick. A coarse cell is a connected set of soft voxels in one octant (4^3 voxels) of the
+// brick. The cells are appended to `found`, and `cell_of` gets their indices there.
 void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
                            std::vector<CoarseCell>& found) const {
   std::array<glm::ivec3, 64> open;
@@ -243,8 +245,8 @@ void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::
 }
 
 namespace {
-// Adds the conductance of `entry` to the equal entry at index `start` or later. Appends `entry` if there is none.
-// Neighbouring voxels mostly have equal entries, so the search starts at the end.
+// Adds the conductance of `entry` to the entry at index `start` or later that is equal by `is_less`. Appends `entry` if
+// no entry is equal. Neighbouring voxels mostly have equal entries, so the search starts at the end.
 template <class Entry, class IsLess>
 void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const IsLess& is_less) {
   for (size_t k = entries.size(); k > start; --k)
@@ -256,8 +258,8 @@ void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const
 }
 }  // namespace
 
-// Makes one link for each pair of adjacent cells. The distance between cell centres is four times that between voxel
-// centres, so a face conducts a quarter.
+// Makes one link for each pair of adjacent coarse cells. The centres of coarse cells are four times as far apart as
+// those of voxels, so each voxel face between the cells counts with a quarter of its conductance.
 void HeatGraph::link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of,
                            std::vector<float>& diagonal, std::vector<Link>& links, std::vector<HeldFace>& held) const {
   const size_t start = links.size(), held_start = held.size();
@@ -331,7 +333,7 @@ HeatGraph::Coarse HeatGraph::coarse() const {
   for (std::int32_t& c : cell_of)
     if (c >= 0) c = number[c];
 
-  // Sums the conductances of the voxel faces between each two cells.
+  // Sums the conductances of the voxel faces between each pair of cells.
   graph.diagonal.assign(size, 0);
   std::vector<std::vector<Link>> links_of(found.size());
   std::vector<std::vector<HeldFace>> held_of(found.size());

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue of a volume as a graph for heat diffusion: voxels of fixed temperature (each held by one rig bone) and
-// soft voxels between them, joined through faces by conductances. Heat crosses faces only, never edges, corners or air.
-// The conductance of a face is area / distance times the harmonic mean of the conductivities on its two sides. At a
-// face to a held voxel only the half of the distance that lies in the soft voxel resists.
+// The tissue of a volume as a graph for heat diffusion. Some voxels have a fixed temperature, each *held* by one rig
+// bone. All other voxels are *soft*: their temperatures are solved for. Heat flows through voxel faces only, never
+// through edges, corners or air. The conductance of a face is area / distance times the harmonic mean of the
+// conductivities on its two sides. At a face to a held voxel, only the half of the distance that lies in the soft voxel
+// resists.
 //
 // A soft voxel also receives heat from one bone at a distance: from the bone that is nearest on a path through the
 // tissue (attracting_bone). The strength falls with the square of the distance [Baran & Popovic 2007, 4]. Without it a
@@ -26,7 +27,7 @@
 
 namespace limber {
 
-// In place of a bone index: no bone fixes the temperature of this voxel.
+// Stands in place of a bone index for a voxel whose temperature no bone fixes.
 constexpr std::uint16_t kSoft = 0xFFFF;
 
 // Returns the thermal conductivity of a tissue kind, relative to muscle.
@@ -38,19 +39,19 @@ float conductivity(TissueKind kind);
 std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                                       const Armature& armature);
 
-// The nearest bone of every voxel and its distance along a path through the tissue, so that a bone across an air gap
-// does not count. A voxel whose temperature a bone fixes has distance 0. A voxel that no bone reaches has kSoft and an
-// infinite distance.
+// The nearest bone of every tissue voxel, and its distance. Distances are lengths of paths through tissue, so that a
+// bone across an air gap is not near. A voxel whose temperature a bone fixes has distance 0. A voxel that no path from
+// a bone reaches has kSoft and an infinite distance.
 struct NearestBone {
   std::vector<std::uint16_t> bone;
   std::vector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by);
-// Finds the bone that gives heat to each voxel at a distance. This is the nearest bone as in nearest_bone, but with
-// distances adapted to the roles of bones. The last bone of a chain counts as nearer than it is. A bone that only links
-// a limb to the trunk counts as further away. Flesh around a joint is divided by the plane that bisects the angle of
-// the joint.
+// Finds the bone that gives heat to each voxel at a distance: the nearest bone, as nearest_bone() finds it, but with
+// corrected distances. The last bone of a chain counts as nearer than it is. A bone that only links a limb to the trunk
+// (a collarbone) counts as further away than it is. Flesh around a joint is divided by the plane that bisects the angle
+// of the joint.
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const std::vector<std::uint16_t>& held_by);
 
@@ -63,15 +64,15 @@ struct HeldFace {
 
 class HeatGraph {
  public:
-  // Keeps references to its arguments, except to `tissues` and `stiffness`.
+  // Keeps references to all arguments except `tissues` and `stiffness`; they must outlive this object.
   HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
             const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
             const std::map<Label, double>& stiffness = {});
 
-  // Makes the soft voxels of some bricks the cells of a system. Soft voxels in other bricks have temperature zero.
+  // Fills `system` with a cell for each soft voxel of the given bricks. Soft voxels in other bricks have temperature 0.
   //   bricks  indices of the bricks, ascending
   void fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const;
-  // Adds the heat that bones give to the cells of such a system to a solver's sources.
+  // Adds the heat that bones give to the cells of a system from fill() to the solver's right-hand sides.
   //   lane_of_bone  index of the right-hand side for each bone; -1: the bone is not solved for
   void add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system,
                    const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
@@ -81,8 +82,8 @@ class HeatGraph {
   struct Coarse {
     CellGraph graph;
     std::vector<HeldFace> held;
-    std::vector<std::int32_t> brick;  // for each cell: the brick that contains it
-    // For each tissue voxel: its cell; -1: a bone fixes the voxel's temperature.
+    std::vector<std::int32_t> brick;  // brick that contains each cell
+    // The cell of each tissue voxel; -1: a bone fixes the voxel's temperature.
     std::vector<std::int32_t> cell_of_place;
   };
   Coarse coarse() const;
@@ -111,14 +112,14 @@ class HeatGraph {
   const TissueVoxels& tissue_;
   const std::vector<std::uint16_t>& held_by_;
   const NearestBone& nearest_;
-  std::vector<float> conductivity_;  // for each label
-  // For each label: strength of the heat that is received at a distance, times the square of the tissue's stiffness.
-  // The square is used because the width of a blend is proportional to the square root of conduction over this
-  // strength.
+  std::vector<float> conductivity_;  // thermal conductivity of each label's tissue, relative to muscle
+  // Strength of the heat that the tissue of each label receives at a distance, times the square of the tissue's
+  // stiffness. With the square, stiffness divides the width of a blend: the width is proportional to
+  // sqrt(conductivity / strength).
   std::vector<float> attraction_;
-  // Area / distance of a voxel face across each axis, divided by the largest of the three.
+  // Area / distance of a voxel face perpendicular to each axis, divided by the largest of these three values.
   std::array<float, 3> face_;
-  float volume_of_voxel_ = 1;  // mm3, divided by the same largest value as face_
+  float volume_of_voxel_ = 1;  // in mm3, divided by the largest area / distance (face_)
   std::vector<std::uint64_t> bones_in_brick_;
 };
 

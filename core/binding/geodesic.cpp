@@ -14,8 +14,8 @@
 namespace limber {
 
 namespace {
-// Upper limit of a bone's distance as a multiple of the nearest bone's distance. At this limit a bone has at most 1/49
-// of the nearest bone's weight (at stiffness 1). A bone that is further away is ignored.
+// Upper limit on a bone's distance from a voxel, as a multiple of the nearest bone's distance. A bone further away has
+// less than 1/49 of the nearest bone's weight (at stiffness 1) and is ignored.
 constexpr float kFurthest = 7;
 constexpr float kUnit = 100;  // unit in which the weight formula measures distances, mm
 }  // namespace
@@ -32,7 +32,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
     if (held_by[place] != kSoft) sources[held_by[place]].push_back({place, glm::i16vec3(v)});
   });
 
-  std::vector<float> stiffness;  // for each tissue voxel; empty: all are 1
+  std::vector<float> stiffness;  // stiffness of each tissue voxel; empty: all are 1
   if (!settings.stiffness.empty()) {
     stiffness.assign(tissue.size(), 1);
     tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {

@@ -7,7 +7,7 @@
 //
 // The tissue is divided into fixed domains, each a set of bricks. Threads advance the fronts of different domains at
 // the same time, by one step of length. Paths from one domain into another are sent and accepted in a fixed order, so
-// that the paths do not depend on the number of threads. (In the code below a path is called "way".)
+// that the paths do not depend on the number of threads. (In the code below, "way" is a path or its length.)
 #pragma once
 
 #include <algorithm>
@@ -93,11 +93,11 @@ class TissueFront {
 
  private:
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  // Width of a bucket of path lengths, as a share of the shortest voxel edge. Paths that differ by less may be advanced
-  // in any order.
+  // Reached voxels are sorted into buckets by the length of their paths. Width of a bucket, as a share of the shortest
+  // voxel edge. Paths in one bucket may be advanced in any order.
   static constexpr double kWidth = 0.5;
   static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
-  // Number of voxels by which the prefetching of memory is ahead of the reading.
+  // Memory is prefetched for the voxel this many entries ahead in the bucket.
   static constexpr std::size_t kAhead = 12;
 
   // The shortest known path to a voxel: its last corner, its source, its length up to the corner, and its whole length
@@ -118,8 +118,8 @@ class TissueFront {
     Way way;
   };
   struct Domain {
-    // Few buckets are open at the same time, so the memory of finished buckets is reused. That of the first bucket is
-    // freed, since it may be far larger.
+    // Clears a finished bucket. Its memory is kept for later buckets, since only few buckets are open at the same time.
+    // The first bucket's memory is freed, since it may be far larger.
     void finish(std::size_t bucket) {
       std::vector<Reached> done_with = std::move(buckets[bucket]);
       done_with.clear();
@@ -134,10 +134,10 @@ class TissueFront {
       return buckets[bucket];
     }
 
-    std::vector<std::vector<Reached>> buckets;  // voxels that were reached, by the length of their paths
+    std::vector<std::vector<Reached>> buckets;  // reached voxels, in one bucket per range of path lengths
     std::vector<std::vector<Reached>> spare;    // empty buckets for reuse
     std::size_t done = 0;                       // number of finished entries of the current bucket
-    std::vector<std::vector<Step>> sent;        // for each domain: the steps that lead into it
+    std::vector<std::vector<Step>> sent;        // steps that lead into other domains, by domain
   };
 
   template <class IsShorter, class Take>
@@ -159,7 +159,7 @@ class TissueFront {
         if (there < 0 || corner == w) continue;
         Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
         const bool is_own = &beyond == &domain;
-        // The length of the straight path is a lower bound, since a bent path is longer.
+        // The length of the path that goes straight on is a lower bound: if the path must bend, it is longer.
         float way = before + straight(corner, w);
         if (is_own && !is_shorter(here.source, there, way)) continue;
         const bool near_seam = seams && is_near_seam[brick];
@@ -251,7 +251,7 @@ class TissueFront {
   const Grid& grid_;
   const glm::vec3 spacing_{grid_.spacing};
   const TissueVoxels& tissue_;
-  ZeroedVector<Way> ways_;  // for each tissue voxel
+  ZeroedVector<Way> ways_;  // shortest known path to each tissue voxel
   float width_;
   std::vector<Domain> domains_;
 };

@@ -67,7 +67,7 @@ class Coarsening {
 
  private:
   struct Rows {
-    std::vector<std::int32_t> cell, count;  // for each row: its coarse cell, and its number of links
+    std::vector<std::int32_t> cell, count;  // the coarse cell of each row, and the row's number of links
     std::vector<std::int32_t> neighbour;
     std::vector<float> conductance, diagonal;
   };
@@ -78,7 +78,7 @@ class Coarsening {
     int count = 0;
     std::array<std::int32_t, 24> to;
     std::array<float, 24> conductance;
-    std::array<int, 6> last;  // for each direction: index in `to` of the latest link in this direction
+    std::array<int, 6> last;  // index in `to` of the latest link in each direction
     double linked = 0, lost = 0;
 
     void clear() { count = 0, last = {}, linked = 0, lost = 0; }
@@ -94,8 +94,8 @@ class Coarsening {
     }
   };
 
-  // A block of cells: its slots, which are the same in every brick, and the indices of the links between these slots in
-  // a brick's conductances.
+  // A block of cells, which become one coarse cell if they are connected. `slots` are the cells' slots, the same in
+  // every brick. `links` are the links between these slots, as indices into the conductances of a brick.
   struct Block {
     glm::ivec3 place{0};
     std::vector<int> slots, links;
@@ -119,7 +119,7 @@ class Coarsening {
                                       : system_.conductance_of_red(other.first, direction ^ 1, other.second);
   }
 
-  // Returns whether all cells of a block exist and all adjacent cells in it are linked.
+  // Returns true if every slot of the block has a cell and all adjacent cells in the block are linked.
   bool is_whole(std::int64_t brick, const Block& block) const {
     const float* conductance = &system_.conductance[brick * 6 * HeatSystem::kColour];
     return std::all_of(block.slots.begin(), block.slots.end(),
@@ -250,9 +250,9 @@ class Coarsening {
   std::array<Block, kSlots> blocks_;
   std::array<const Block*, kSlots> block_of_slot_;
   std::array<std::array<Step, 6>, kSlots> steps_;
-  ZeroedVector<std::int32_t> parent_;                // for each brick and slot: the coarse cell; -1: none
-  std::vector<std::array<std::int32_t, 2>> pieces_;  // for each brick and colour: number of coarse cells
-  std::vector<std::array<std::int32_t, 2>> first_;   // for each brick and colour: its first coarse cell
+  ZeroedVector<std::int32_t> parent_;                // coarse cell of each slot of each brick; -1: none
+  std::vector<std::array<std::int32_t, 2>> pieces_;  // number of coarse cells of each colour in each brick
+  std::vector<std::array<std::int32_t, 2>> first_;   // first coarse cell of each colour in each brick
   CellGraph graph_;
 };
 }  // namespace

@@ -15,17 +15,21 @@
 namespace limber {
 
 namespace {
-// Weights up to this are negligible. A bone is solved for only in bricks where the coarse solution gives it more
-// weight. At 300 mm from the joint, this weight moves a point by 0.1 mm under a turn of 60 degrees.
+// Upper limit on a negligible weight. A bone is solved for only in bricks where the coarse solution gives it more
+// weight than this. With this weight, a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1
+// mm.
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
-constexpr double kLaneCost = 0.25;  // cost of one right-hand side in a brick, relative to the fixed cost of the brick
-// Upper limit of the memory of a block of several bones, in bytes per tissue voxel of the body.
+// Time that each bone (right-hand side) of a block adds to the solve of a brick, relative to the time that a brick
+// takes for any number of bones.
+constexpr double kLaneCost = 0.25;
+// Upper limit on the memory of a block (a group of bones that are solved together), in bytes per tissue voxel of the
+// body. It does not apply to a block of one bone.
 constexpr double kBlockBytes = 16;
 constexpr int kMostTogether = 4;     // largest number of bones that are solved together
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 
-// The coarse solution: for each bone, the temperatures of those cells in which they are above kNegligible.
+// The coarse solution: each bone's temperature in the coarse cells, without values up to kNegligible.
 struct CoarseTemperatures {
   struct Entry {
     std::int32_t cell;
@@ -99,8 +103,8 @@ struct Block {
   std::vector<std::int32_t> bricks;
 };
 
-// Groups the bones into blocks. Each block starts with the remaining bone that has the most bricks. Bones that share
-// bricks with the block join it.
+// Groups the bones into blocks that are solved together. Each block starts with the remaining bone that has the most
+// bricks. Bones that share many bricks with the block join it.
 //   most_bytes  memory limit of a block of several bones
 std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures,
                                    const std::vector<std::int32_t>& brick_of_cell, double most_bytes) {
@@ -148,7 +152,8 @@ std::vector<Block> blocks_of_bones(const CoarseTemperatures& temperatures,
   return blocks;
 }
 
-// Calls body(index in the list of tissue voxels, b, slot) for every cell of bricks[b].
+// Calls body(place, b, slot) for every cell of each brick bricks[b]. `place` is the index of the cell's voxel in the
+// list of tissue voxels.
 template <class Body>
 void for_cells(const TissueVoxels& tissue, const std::vector<std::int32_t>& bricks, const HeatSystem& system,
                const Body& body) {

@@ -3,9 +3,9 @@
 // the bone tissue that belongs to it has the fixed temperature 1, and that of all other bones 0. Heat flows through
 // soft tissue (never through air) with a conductivity that depends on the kind of tissue. The steady temperatures are
 // the weights. Soft tissue also receives heat from the bone that is nearest on a path through the tissue. This keeps
-// the blend at a joint as wide as the limb is thick. (flesh_graph.h says how strong this heat is, and which bone it
-// comes from near a joint or a collarbone.) A rig bone without bone tissue fixes the temperature of the flesh around
-// its axis.
+// the blend at a joint as wide as the limb is thick. (flesh_graph.h says how strong this heat is, and from which bone
+// it comes near a joint or a collarbone.) A rig bone without bone tissue fixes the temperature of the flesh around its
+// axis.
 #pragma once
 
 #include <map>
@@ -25,14 +25,14 @@ namespace limber {
 using BlendStiffness = std::map<Label, double>;
 
 struct HeatDiffusion {
-  double residual = 1e-5;  // the solve for a bone stops at this relative residual (2-norm)
+  double residual = 1e-5;  // relative residual (2-norm) at which the solve for a bone stops
   int maximum_iterations = 200;
   BlendStiffness stiffness;
 };
 
 struct WeightsReport {
-  double residual = 0;                // largest relative residual of all bones
-  int iterations = 0;                 // largest number of iterations of all bones
+  double residual = 0;                // largest relative residual of any bone's solve
+  int iterations = 0;                 // largest number of iterations of any bone's solve
   std::vector<std::string> warnings;  // "no bone reaches 213 voxels of label 3 near (..): given to Forearm"
 };
 

@@ -23,7 +23,8 @@ Four load(const float* from) {
   return four;
 }
 void store(const Four& four, float* to) { std::memcpy(to, &four, sizeof four); }
-// Return each cell's predecessor (or successor) in a row of cells; the row continues in another brick.
+// Return the four cells of a row shifted by one cell along x: before() fetches the missing first cell from the row of
+// the brick towards -x, after() the missing last cell from the row of the brick towards +x.
 Four before(const Four& previous_row, const Four& row) {
   return __builtin_shufflevector(previous_row, row, 3, 4, 5, 6);
 }
@@ -94,9 +95,9 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
   return total;
 }
 
-// Calls body(lane, place, flow) for every row of one colour in a brick. `lane` is a right-hand side. `place` is the
-// index of the row's first cell in vectors of that colour. `flow` is the heat that flows to the row's four cells from
-// `other`, the cells of the other colour.
+// Calls body(lane, place, flow) for every row of one colour in a brick. `lane` is the index of a right-hand side.
+// `place` is the index of the row's first cell in vectors of that colour. `flow` is the heat that the row's four cells
+// receive from their neighbours of the other colour, whose temperatures are `other`.
 template <bool kRed, class Body>
 void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
   const auto& beside = system_.beside[brick];
@@ -105,7 +106,8 @@ void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body&
   };
   for (int row = 0; row < 64; ++row) {
     const int y = row & 7, z = row >> 3;
-    // The cells of the other colour are shifted by one voxel along the row. Red cells come first where y + z is even.
+    // A row of the other colour is shifted by one voxel along x. If y + z is even, the red row has the lower first
+    // voxel.
     const bool own_first = (((y + z) & 1) == 0) == kRed;
     const std::int64_t brick_of[4] = {y > 0 ? brick : beside[2], y < 7 ? brick : beside[3], z > 0 ? brick : beside[4],
                                       z < 7 ? brick : beside[5]};
@@ -174,8 +176,8 @@ HeatSolver::Sums HeatSolver::precondition() {
               &step_[at(brick, lane) + slot]);
   });
   relax_reds(step_, false);
-  // At this point only black cells have a residual, the flow from the red cells. Two bricks never have cells in the
-  // same coarse cell, so threads do not write to the same one.
+  // Now only black cells have a residual: the flow from the red cells. A coarse cell lies in one brick, so no two
+  // threads write to the same coarse cell.
   std::fill(cycle_->b.begin(), cycle_->b.end(), 0.0f);
   for_bricks([&](std::int64_t brick) {
     const std::int32_t* parent = &coarse_.parent_of_black[brick * HeatSystem::kColour];

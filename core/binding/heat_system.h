@@ -67,9 +67,9 @@ struct HeatSystem {
 
   glm::dvec3 spacing{1};
   std::vector<glm::ivec3> corners;
-  // Indices of neighbouring bricks; brick_count(), an empty brick, means none.
+  // Indices of the six neighbours of each brick; brick_count(), the index of an empty brick, where there is none.
   std::vector<std::array<std::int32_t, 6>> beside;
-  std::vector<std::array<std::uint64_t, 8>> cells;  // for each brick: one bit for each slot, set if the slot has a cell
+  std::vector<std::array<std::uint64_t, 8>> cells;  // bits of each brick's slots that have a cell
   HeatValues conductance;                           // size: (bricks + the empty brick) x 6 directions x red slots
   HeatValues diagonal;  // size: (bricks + the empty brick) x slots; 1 where there is no cell
 };
@@ -77,19 +77,19 @@ struct HeatSystem {
 // The next coarser level of a system, and the coarse cell of each black cell.
 struct CoarseHeat {
   CellGraph graph;
-  ZeroedVector<std::int32_t> parent_of_black;  // for each brick and black slot: the coarse cell; -1: none
+  ZeroedVector<std::int32_t> parent_of_black;  // coarse cell of each black slot of each brick; -1: none
 };
 CoarseHeat coarsen(const HeatSystem& system);
 
-// The vectors of a solver. The size of each is (bricks + the empty brick) x lanes x slots of one colour. A lane is one
-// right-hand side.
+// The vectors of a HeatSolver. Each has (bricks + one empty brick) x lanes x 256 values, for the slots of one colour. A
+// lane is one right-hand side.
 struct HeatVectors {
-  HeatValues red_source, red, black;  // right-hand side b and solution x of the red cells, x of the black cells
-  // Vectors of the conjugate gradients on the black cells: the residual r, the search direction p, and in turn M^-1 r
-  // or A p.
+  HeatValues red_source, red, black;  // right-hand side of the red cells, solutions of red and black cells
+  // Vectors of the conjugate gradients on the black cells: the residual r, the search direction p, and `step`, which
+  // holds M^-1 r and A p by turns.
   HeatValues residual, search, step;
 
-  // Returns about how many bytes a brick takes: in these vectors, in its system and on the coarser levels.
+  // Returns the approximate memory of a brick in bytes: in these vectors, in the HeatSystem and on the coarser levels.
   static double bytes_of_brick(int lanes) { return 12.0e3 + 7.5e3 * lanes; }
 };
 
@@ -101,13 +101,14 @@ class HeatSolver {
   HeatSolver(const HeatSystem& system, int lanes, HeatVectors& vectors);
   ~HeatSolver();
 
-  // Return the values of one brick and one right-hand side (lane), for each slot of the colour. All are zero at first.
+  // Return an array with one value for each slot of the colour, for one brick and one right-hand side (lane). The
+  // caller writes the values before solve(); all are zero at first.
   float* red_sources(std::int64_t brick, int lane) { return &red_source_[at(brick, lane)]; }
   float* black_sources(std::int64_t brick, int lane) { return &residual_[at(brick, lane)]; }
   float* first_guess_of_blacks(std::int64_t brick, int lane) { return &black_[at(brick, lane)]; }
 
   // Solves the system. It may be called only once.
-  //   residual   the solve for a right-hand side stops at this |b - A x| / |b|
+  //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
   SolveReport solve(double residual, int most_iterations, const Progress& progress = no_progress());
 
   // Returns the solution at a cell, after solve().

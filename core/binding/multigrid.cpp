@@ -159,7 +159,7 @@ Multigrid::Multigrid(CellGraph finest) {
     levels_.push_back(std::move(next));
   }
   const CellGraph& graph = levels_.back().graph;
-  if (graph.size() > 8 * kCoarsestSize) return;  // the graph has many small components, which the sweeps solve
+  if (graph.size() > 8 * kCoarsestSize) return;  // the graph has many small components; relaxation solves them
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(graph.size(), graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     dense(i, i) += graph.diagonal[i];
@@ -249,15 +249,15 @@ class Multigrid::Solver {
     return report;
   }
 
-  // Computes x = M^-1 b on a level, where M is symmetric: mirrored sweeps, between which it visits the coarser levels
-  // once or twice.
+  // Computes x = M^-1 b on a level by relaxation sweeps, with one or two visits to the coarser levels between them. The
+  // sweeps after a visit mirror those before it, so that M is symmetric.
   void cycle(size_t level, const std::vector<float>& b, bool twice = true) {
     const Level& here = grid_.levels_[level];
     const CellGraph& graph = here.graph;
     std::vector<float>& x = at_[level].x;
     if (here.parent.empty()) return solve_coarsest(graph, b, x);
 
-    // Since x is 0, the first half sweep needs no neighbours.
+    // Relaxes the red cells. Since x starts at 0, this needs no values of neighbours.
     for_cells(graph.red_count, [&](std::int64_t i) {
       for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] = b[i * Lanes + l] / graph.diagonal[i];
     });
@@ -324,8 +324,8 @@ class Multigrid::Solver {
     });
   }
 
-  // Adds the correction from the next coarser level. It is called after a half sweep over the black cells, so only red
-  // cells have a residual.
+  // Adds the correction from the next coarser level. It must be called right after a half sweep over the black cells,
+  // so that only red cells have a residual.
   void visit_coarser(size_t level, const std::vector<float>& b) {
     const Level& here = grid_.levels_[level];
     std::vector<float>& x = at_[level].x;

@@ -6,7 +6,8 @@
 // Conjugate gradients, preconditioned by a symmetric multigrid cycle [Braess 1995, "Towards algebraic multigrid for
 // elliptic problems of second order"]. Cells are aggregated 2 x 2 x 2 where faces connect them, so that two fingers
 // side by side never share a coarse cell. Coarse conductances are the sums over fine faces, halved because the distance
-// between centres doubles. Red-black Gauss-Seidel smooths, forwards before and backwards after the coarse correction.
+// between centres doubles. The smoother is red-black Gauss-Seidel: a sweep forwards before the coarse correction, and a
+// sweep backwards after it.
 // Coarse levels are visited twice (a W-cycle), which costs a third more and keeps the number of iterations the same for
 // small and large bodies.
 //
@@ -28,12 +29,12 @@ namespace limber {
 // (red) come first.
 struct CellGraph {
   glm::dvec3 spacing{1};               // size of a cell, mm; only the axes of small spacing are coarsened
-  std::vector<glm::i16vec3> position;  // one for each cell
+  std::vector<glm::i16vec3> position;  // position of each cell in units of `spacing`
   std::int32_t red_count = 0;          // number of cells of colour 0
   std::vector<std::int32_t> first;     // #cells + 1: index of each cell's first entry in `neighbour` and `conductance`
   std::vector<std::int32_t> neighbour;
   std::vector<float> conductance;
-  std::vector<float> diagonal;  // for each cell: sum of conductances to neighbours and to cells of fixed temperature
+  std::vector<float> diagonal;  // sum of each cell's conductances to neighbours and to cells of fixed temperature
 
   std::int64_t size() const { return std::ssize(position); }
 };
@@ -47,7 +48,7 @@ constexpr float kCoarseConductance = 0.5f;
 
 struct SolveReport {
   int iterations = 0;
-  double residual = 0;  // largest |b - A x| / |b| of all right-hand sides
+  double residual = 0;  // largest relative residual |b - A x| / |b| of any right-hand side
 };
 
 class Multigrid {
@@ -59,8 +60,8 @@ class Multigrid {
 
   const CellGraph& finest() const { return levels_.front().graph; }
 
-  // Solves A x = b approximately by one cycle, for use as a preconditioner: x = M b, where M is symmetric. The memory
-  // of the cycle is reused from run to run.
+  // Solves A x = b approximately by one multigrid cycle, for use as a preconditioner. The result is x = M b, where M is
+  // a symmetric matrix. The memory of the cycle is reused from run to run.
   struct Cycle {
     virtual ~Cycle() = default;
     // Returns x, which is valid until the next run.
@@ -73,18 +74,19 @@ class Multigrid {
   // Solves A x = b by preconditioned conjugate gradients.
   //   b, x       #cells x lanes; x contains the first guess
   //   lanes      number of right-hand sides, 1 to kMostLanes
-  //   residual   the solve for a right-hand side stops at this |b - A x| / |b|
+  //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
   SolveReport solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual, int most_iterations,
                     const Progress& progress = no_progress()) const;
 
  private:
   struct Level {
     CellGraph graph;
-    // For each cell: its cell on the next level; -1: a cell without neighbours. Empty on the coarsest level.
+    // The cell on the next coarser level that contains each cell; -1: a cell without neighbours, which is in none.
+    // Empty on the coarsest level.
     std::vector<std::int32_t> parent;
-    // For each cell of the next level (and one entry more at the end): where its red cells begin in `red`.
+    // Index in `red` of the first red cell of each cell of the next coarser level; one more entry marks the end.
     std::vector<std::int32_t> first_red;
-    std::vector<std::int32_t> red;  // the red cells that make up each cell of the next level
+    std::vector<std::int32_t> red;  // the red cells in each cell of the next coarser level
   };
   template <int Lanes>
   class Solver;

@@ -11,21 +11,21 @@
 namespace limber {
 
 namespace {
-// Factors of the distance to the last bone of a chain. This bone also carries what lies beyond its tail (four fingers,
-// the toes, the jaw), most of it further away than the bone is long. The part of a distance that is longer than
-// kOwnReach times the bone's length is therefore multiplied by kLastBone.
+// The last bone of a chain also carries the flesh beyond its tail (four fingers, the toes, the jaw), and most of this
+// flesh is further from the bone than the bone is long. So the distance to this bone counts as less: its part beyond
+// kOwnReach times the bone's length is multiplied by kLastBone.
 constexpr float kOwnReach = 0.5f;
 constexpr float kLastBone = 0.65f;
-// Factors for a bone that only links a limb to the trunk (a collarbone). Its distance is multiplied by kLink, so that
-// it attracts less: the chest below it belongs to the trunk. A bone is a link if it is shorter than kLinkShare of the
-// bone it leads to, and turns aside from a parent that has several children.
+// A bone that only links a limb to the trunk (a collarbone) should get less flesh, since the chest below it belongs to
+// the trunk. So the distance to this bone is multiplied by kLink. A bone is a link if its child is so long that the
+// bone is shorter than kLinkShare of it, and if it turns aside from a parent with several children.
 constexpr float kLink = 1 / kLastBone;
 constexpr double kLinkShare = 0.75;
-// Flesh belongs to the joint itself, rather than to one of its bones, if the distance to the nearest bone is at least
-// this share of the distance to the joint.
+// Lower limit on the ratio of the distance to the nearest bone to the distance to a joint. Flesh above it lies around
+// the joint itself, about equally near to the joint's two bones, so the plane through the joint divides it (Hinges).
 constexpr float kAtJoint = 0.75f;
-// A bone without bone tissue is assumed to fill this share of the radius of the flesh around its axis, and at least
-// half a voxel's diagonal.
+// Radius that a bone without bone tissue is assumed to have, as a share of the radius of the flesh around its axis. The
+// radius is at least half a voxel's diagonal.
 constexpr double kBoneShare = 0.5;
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 }  // namespace
@@ -77,7 +77,7 @@ std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVox
 
   const AffineTransform from_voxel = world_from_voxel(volume.grid), from_world = voxel_from_world(volume.grid);
   const double voxel = std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
-  // Distance to the axis of the bone that fixes the temperature of each voxel, mm; -1: none.
+  // Distance of each voxel from the axis of the bone that fixes the voxel's temperature, mm; -1: no bone does.
   std::vector<float> nearest(tissue.size(), -1);
   for (size_t b = 0; b < armature.bones.size(); ++b) {
     if (has_part[b]) continue;
@@ -124,8 +124,8 @@ bool is_link(const Armature& armature, size_t b) {
   return forks && leads_on && glm::dot(along(bone), before) < 0.5 * length * glm::length(before);
 }
 
-// Converts the distance to a bone into the distance that is compared: unchanged up to `reach`, and the rest multiplied
-// by `share`.
+// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance beyond
+// `reach` is multiplied by `share`.
 struct Count {
   float reach = std::numeric_limits<float>::infinity();  // mm
   float share = 1;
@@ -144,9 +144,9 @@ std::vector<Count> counts_of_bones(const Armature& armature) {
   return counts;
 }
 
-// Divides the flesh at joints where exactly two bones meet. Flesh nearest to the joint itself is equally near to both
-// bones, so it belongs to the bone on its side of the plane that bisects their angle: the heel belongs to the foot, not
-// to the shin.
+// Divides the flesh at joints where exactly two bones meet. Flesh around the joint itself is equally near to the two
+// bones. It belongs to the bone on its side of the plane that bisects the angle between the bones: the heel belongs to
+// the foot, not to the shin.
 class Hinges {
  public:
   explicit Hinges(const Armature& armature) : ends_(armature.bones.size()) {
@@ -201,7 +201,7 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
                               const std::vector<std::uint16_t>& held_by, const std::vector<Count>& counts) {
   NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
   TissueFront front(volume, tissue);
-  // Voxels whose temperature a bone fixes have distance 0. No path to them is shorter, so they keep their bone.
+  // Voxels whose temperature a bone fixes start with distance 0. No path is shorter, so these voxels keep their bone.
   front.start_all([&](std::int64_t place, const glm::ivec3&) {
     if (held_by[place] != kSoft) nearest.distance[place] = 0;
     return held_by[place];

@@ -12,13 +12,14 @@ namespace limber {
 namespace {
 using Words = std::vector<std::string>;
 
-constexpr std::size_t kLongestName = 400;  // upper limit on the characters of a name that are read
+// Upper limit on the characters of a name that are read; further ones are ignored.
+constexpr std::size_t kLongestName = 400;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-// Splits a name into lower-case words: "vertebrae_L5" -> vertebrae l 5, "BoneLeft" -> bone left.
+// Splits a name into lower-case words: "vertebrae_L5" gives vertebrae, l, 5; "BoneLeft" gives bone, left.
 Words words_of(std::string_view name) {
   Words words;
   char before = ' ';
@@ -36,10 +37,10 @@ Words words_of(std::string_view name) {
 
 struct Meaning {
   BoneRegion region;
-  bool plural = false;  // true: the word alone means several bones
+  bool plural = false;  // true: the word alone means several bones ("ribs")
 };
 
-// Returns the meaning of each anatomical word, in its singular and plural forms.
+// Returns the dictionary of anatomical words, with singular and plural forms.
 const std::map<std::string, Meaning, std::less<>>& dictionary() {
   using enum BoneRegion;
   static const std::map<std::string, Meaning, std::less<>> kWords = [] {
@@ -91,7 +92,8 @@ bool has_any(const Words& words, std::initializer_list<std::string_view> wanted)
   return std::any_of(wanted.begin(), wanted.end(), [&](std::string_view word) { return has(words, word); });
 }
 
-// Returns whether word i is the letter of a vertebra's level, as in "L5". Such an "L" does not mean the left side.
+// Returns true if word i is the letter of a vertebra's level, such as the "L" in "L5". An "L" like this does not mean
+// the left side.
 bool is_level(const Words& words, std::size_t i) {
   return i + 1 < words.size() && is_digit(words[i + 1][0]) &&
          has_any(words, {"vertebra", "vertebrae", "vertebral", "spine"});
@@ -117,7 +119,7 @@ int ordinal_of(const Words& words) {
   return 0;
 }
 
-// Returns the finger that a name means. In "Middle phalanx of left middle finger" the word before "finger" decides.
+// Returns the finger that a name means. The word before "finger" decides, as in "Middle phalanx of left middle finger".
 BodyPart finger_of(const Words& words) {
   static const std::map<std::string, BodyPart, std::less<>> kFingers = {
       {"thumb", BodyPart::Thumb},   {"pollex", BodyPart::Thumb}, {"index", BodyPart::Index},  {"ring", BodyPart::Ring},
@@ -137,9 +139,9 @@ void read_finger(const Words& words, AnatomicalName& name) {
   name.finger = finger_of(words);
   if (has_any(words, {"metacarpal", "metacarpals", "metacarpus"})) name.segment = 0;
   else if (has(words, "proximal")) name.segment = 1;
-  else if (has(words, "distal")) name.segment = 3;  // tested before "middle", which may name the finger
+  else if (has(words, "distal")) name.segment = 3;  // "distal" is tested before "middle", which may name the finger
   else if (has_any(words, {"middle", "intermediate"}) && has_any(words, {"phalanx", "phalanges"})) name.segment = 2;
-  // A thumb has no middle phalanx: its metacarpal is segment 1, its proximal phalanx 2 and its distal phalanx 3.
+  // A thumb has no middle phalanx. Its metacarpal is segment 1, its proximal phalanx 2 and its distal phalanx 3.
   if (name.finger == BodyPart::Thumb && name.segment >= 0) name.segment = name.segment == 3 ? 3 : name.segment + 1;
   name.plural = name.finger == BodyPart::Fingers || name.segment < 0;
 }
@@ -167,17 +169,17 @@ AnatomicalName anatomical_name(std::string_view label_name) {
       name.plural |= found->second.plural;
     }
   }
-  // A name such as "Lower leg bones" means the bones of half a limb without naming any of them.
+  // A name such as "Lower leg bones" means the bones of half a limb without naming a single bone.
   if (name.regions.empty() && has_any(words, {"bone", "bones"}) && has(words, "upper") != has(words, "lower")) {
     const bool upper = has(words, "upper");
     if (has_any(words, {"arm", "arms"})) name.regions.insert(upper ? BoneRegion::UpperArm : BoneRegion::Forearm);
     if (has_any(words, {"leg", "legs"})) name.regions.insert(upper ? BoneRegion::Thigh : BoneRegion::Shank);
   }
-  // "Fifth lumbar vertebra", "vertebrae_L5" and "Spine T4" mean one bone, "Lumbar spine" and "Thoracic vertebrae"
+  // "Fifth lumbar vertebra", "vertebrae_L5" and "Spine T4" mean one bone. "Lumbar spine" and "Thoracic vertebrae" mean
   // several bones.
   if (levels == 1 || has(words, "vertebra")) name.plural = false;
   if (is_vertebra && name.regions.empty()) name.regions.insert(BoneRegion::Spine), name.plural = true;
-  // In "Lumbar spine" and "scapular spine" the other word gives the region.
+  // In "Lumbar spine" and "scapular spine" the word beside "spine" gives the region.
   if (name.regions.size() > 1) name.regions.erase(BoneRegion::Spine);
 
   const bool is_foot = name.regions.contains(BoneRegion::Toes) || name.regions.contains(BoneRegion::Foot);
@@ -187,7 +189,7 @@ AnatomicalName anatomical_name(std::string_view label_name) {
     name.regions = {BoneRegion::Toes};
   } else if (is_foot) {
     name.regions.erase(BoneRegion::Hand);
-    // "Navicular bone of left foot" means one bone, "Ankles and foot bones" all bones of the foot with the toes.
+    // "Navicular bone of left foot" means one bone. "Ankles and foot bones" means all bones of the foot with the toes.
     const bool is_one = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       const auto found = dictionary().find(word);
       return word == "sesamoid" ||

@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// The groups of bones that move together in a body, from the head downwards.
+// The regions of the body whose bones move together, from the head downwards.
 enum class BoneRegion {
   Head,
   Neck,
@@ -31,20 +31,20 @@ enum class BoneRegion {
 };
 
 struct AnatomicalName {
-  // The regions that the name means: several where one label holds several bones ("femur and tibia"), none where the
-  // name means no known bone.
+  // The regions that the name means: several if one label holds several bones ("femur and tibia"), none if the name
+  // means no known bone.
   std::set<BoneRegion> regions;
-  BodySide side = BodySide::Middle;  // Middle: the name gives no side
-  // For the region Finger: the finger, Thumb to Little. Fingers: the name does not say which one.
+  BodySide side = BodySide::Middle;  // Middle: a bone in the middle, or no side in the name
+  // The finger, Thumb to Little, if the name means a finger's bone. Fingers: the name does not say which finger.
   BodyPart finger = BodyPart::Fingers;
-  // For the region Finger: 0 metacarpal, 1 proximal, 2 middle, 3 distal phalanx, as in JointRole. -1: not given.
+  // The segment of a finger, as in JointRole: 0 metacarpal, 1 proximal, 2 middle, 3 distal phalanx. -1: not given.
   int segment = -1;
   bool plural = false;  // the label holds several bones ("Ribs", "Wrists and hand bones")
 };
 
 AnatomicalName anatomical_name(std::string_view label_name);
 
-// Returns the word for a region in messages and tables, such as "pelvis".
+// Returns the name of a region in messages and tables, such as "pelvis".
 std::string_view to_string(BoneRegion region);
 
 }  // namespace limber

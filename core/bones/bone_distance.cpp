@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kFar = 1e4f;  // upper limit on stored distances, mm
 
-// A lattice point's position along one axis: the lower of the two voxels beside it, and the share of the upper one, [0,
-// 1].
+// The position of a lattice point between two voxels along one axis: the lower voxel, and the share of the upper voxel
+// in the interpolation, [0, 1].
 struct AxisPoint {
   int voxel;
   float share;
@@ -27,7 +27,8 @@ std::vector<AxisPoint> points_along(int voxels, double spacing, double edge) {
   return points;
 }
 
-// Returns for every point of a finer lattice whether it lies inside the voxels, by trilinear interpolation.
+// Returns a byte for each point of a finer lattice: 1 if the point lies inside the given voxels, by trilinear
+// interpolation.
 std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const glm::ivec3& size,
                                   const std::array<std::vector<AxisPoint>, 3>& points) {
   std::vector<std::uint8_t> inside;
@@ -49,7 +50,7 @@ std::vector<std::uint8_t> refined(const std::vector<std::uint8_t>& voxels, const
   return inside;
 }
 
-// Replaces each value by the mean of itself and its two neighbours along one axis, with weights 1, 2, 1.
+// Replaces each value by a weighted mean of itself (weight 2) and its two neighbours along one axis (weight 1 each).
 void blur(std::vector<float>& values, const glm::ivec3& size, int axis) {
   const std::int64_t step = axis == 0 ? 1 : axis == 1 ? size.x : std::int64_t{size.x} * size.y;
   const std::int64_t block = step * size[axis];
@@ -80,11 +81,11 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
     lattice_.size = glm::ivec3(points[0].size(), points[1].size(), points[2].size());
   }
   mm_ = signed_distance(lattice_, inside, glm::dvec3(edge_));
-  // Converts distances between centres of lattice points to distances to the border halfway between them.
+  // Converts distances between lattice points to distances from the border, which lies halfway between two points.
   const auto half = static_cast<float>(edge_ / 2), least = static_cast<float>(edge_ / 10);
   for (float& d : mm_) d = std::clamp(d + (d > 0 ? -half : half), -kFar, kFar);
-  // Blurring removes the steps of a surface made of voxels, also the higher steps of thick slices. No lattice point
-  // changes its side of the surface.
+  // Blurs the distances, which removes the steps of a surface made of voxels, including the higher steps of thick
+  // slices. No lattice point may change its side of the surface.
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < std::lround(spacing[axis] / edge_); ++i) blur(mm_, lattice_.size, axis);
   for (std::int64_t i = 0; i < std::ssize(mm_); ++i)
@@ -109,11 +110,12 @@ std::optional<BoneDistance::Sample> BoneDistance::below(const glm::dvec3& point,
 std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
   if (!holds(place)) return std::nullopt;
-  const glm::ivec3 low(place);  // rounds down, since place is not negative; std::floor would be a call
+  // Truncation rounds down here, since place is not negative; std::floor would be a function call.
+  const glm::ivec3 low(place);
   const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
   const float* p = &mm_[lattice_.index(low)];
   const glm::dvec3 f = place - glm::dvec3(low);
-  // Interpolates along x, then y, then z. Differences of the interpolated values give the gradient.
+  // Interpolates along x, then y, then z. The gradient follows from differences of the interpolated values.
   const double x00 = p[0] + f.x * (p[1] - p[0]), x10 = p[row] + f.x * (p[row + 1] - p[row]);
   const double x01 = p[slice] + f.x * (p[slice + 1] - p[slice]),
                x11 = p[slice + row] + f.x * (p[slice + row + 1] - p[slice + row]);

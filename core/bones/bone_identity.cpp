@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 constexpr std::uint64_t kLargestMap = 1 << 20;  // upper limit on the size of a bone map file, bytes
 
-// Finds rig bones by the body part that the bones' names mean.
+// Finds the rig bones that belong to a region of the body, by the meaning of the bones' names.
 class RigRegions {
  public:
   explicit RigRegions(const Armature& armature) {
@@ -25,7 +25,7 @@ class RigRegions {
     roles_ = joint_roles(names, parents);
     for (int b = 0; b < std::ssize(roles_); ++b) {
       if (parents[b] < 0) roots_.push_back(b);
-      // In a rig without a neck, the bones of the trunk get no roles. Then their own names decide.
+      // In a rig without a neck, the bones of the trunk get no roles, so that their own names decide.
       if (roles_[b] && roles_[b]->part != BodyPart::Spine) continue;
       const AnatomicalName name = anatomical_name(names[b]);
       const std::string plain = plain_name(names[b]);
@@ -39,12 +39,12 @@ class RigRegions {
     }
   }
 
-  // Returns whether at least one rig bone has a known role.
+  // Returns true if at least one rig bone has a known role.
   bool is_recognised() const {
     return std::count_if(roles_.begin(), roles_.end(), [](const auto& role) { return role.has_value(); }) > 0;
   }
 
-  // Returns all rig bones of one side.
+  // Returns all rig bones on one side of the body.
   std::vector<int> of_side(BodySide side) const {
     return with_role([&](const JointRole& role) { return role.side == side; });
   }
@@ -91,14 +91,14 @@ class RigRegions {
     return bones;
   }
   std::vector<int> of_part(BodyPart part, BodySide side) const {
-    // The bone names of a rig of a single limb may not name the side.
+    // In a rig of a single limb, the names of bones may not name a side.
     auto bones = with_role([&](const JointRole& role) { return role.part == part && role.side == side; });
     if (bones.empty() && side != BodySide::Middle)
       bones = with_role([&](const JointRole& role) { return role.part == part && role.side == BodySide::Middle; });
     return bones;
   }
-  // Returns the rig bones `meant`. Where there are none, returns the bones of the spine without `others`, or the whole
-  // spine where none is left.
+  // Returns the rig bones `meant`. If there are none, returns the bones of the spine without `others`; if none are
+  // left, the whole spine.
   std::vector<int> of_spine(const std::vector<int>& meant, const std::vector<int>& others) const {
     if (!meant.empty()) return meant;
     std::vector<int> spine = of_part(BodyPart::Spine, BodySide::Middle), rest;
@@ -109,7 +109,8 @@ class RigRegions {
 
   static bool is_finger(BodyPart part) { return part >= BodyPart::Thumb && part <= BodyPart::Little; }
 
-  // Returns the rig bones of a finger's segment, or of the next segment towards the hand that the rig has.
+  // Returns the rig bones of a finger's segment. If the rig lacks the segment, returns those of the next segment
+  // towards the hand that the rig has.
   std::vector<int> of_finger(const AnatomicalName& name, BodySide side) const {
     const bool all_fingers = name.finger == BodyPart::Fingers;
     const auto of_segments = [&](int lowest, int highest) {
@@ -166,7 +167,7 @@ std::optional<LabelBones> bones_by_name(const AnatomicalName& name, const RigReg
     const BodySide own = side == 0 ? BodySide::Left : BodySide::Right;
     for (const BoneRegion region : name.regions) {
       const auto in_rig = rig.find(region, name, name.side == BodySide::Middle ? own : name.side);
-      // A label of several bones (a hand with its fingers) may follow the rig bones of all its regions.
+      // A label that holds several bones (a hand with its fingers) may follow the rig bones of all its regions.
       bones.insert(in_rig.bones.begin(), in_rig.bones.end());
       found.is_substitute |= in_rig.is_substitute;
     }
@@ -177,7 +178,7 @@ std::optional<LabelBones> bones_by_name(const AnatomicalName& name, const RigReg
   return found;
 }
 
-// ---- the user's bone map
+// --- reading the user's bone map
 
 int bone_named(const Armature& armature, const std::string& name, const std::string& key) {
   for (int b = 0; b < std::ssize(armature.bones); ++b)
@@ -208,7 +209,8 @@ bool is_meant(const Tissue& tissue, const std::string& label) {
 
 void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armature, const RigRegions& rig,
            std::map<Label, LabelBones>& found) {
-  // Entries for whole labels are applied first, then entries for one side, which override them.
+  // Entries for whole labels are applied first. Entries for one side follow, because they override the entry for the
+  // whole label.
   for (const bool of_sides : {false, true})
     for (const auto& [key, bone_name] : map) {
       const MapKey parts = parts_of(key);
@@ -255,7 +257,7 @@ BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
   std::string twice;
   std::set<std::string> keys;
   using Json = nlohmann::json;
-  // Of two equal keys the parser would silently keep the last one, so keys are counted here.
+  // The parser would silently keep only the last of two equal keys, so keys are counted while parsing.
   const auto note_keys = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start) {
       if (depth >= 1) throw wrong("the bone map is nested");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Decides which rig bones a label of bone tissue may follow. The user's bone map counts first, then the anatomical
-// meaning of the label's name (anatomical_name.h), matched with the roles of the rig's bones (rig/joint_names.h). Where
+// meaning of the label's name (anatomical_name.h), matched with the roles of the rig's bones (rig/joint_names.h). If
 // the rig lacks the bone that a name means, the label follows the next rig bone towards the trunk: a hand follows the
 // forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without collarbones.
 #pragma once
@@ -17,11 +17,12 @@
 
 namespace limber {
 
-// The user's assignments: maps a label's name or value, with or without "@left" or "@right", to the name of a rig bone.
+// The bone map, in which the user assigns labels to rig bones. The key is a label's name or value, with or without
+// "@left" or "@right"; the value is the name of a rig bone.
 using BoneMap = std::map<std::string, std::string>;
 
-// Read JSON such as {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. Both throw Error when the text is no bone
-// map or has a key twice.
+// These two functions read a bone map from JSON such as {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. Both
+// throw Error when the text is no bone map or has a key twice.
 BoneMap read_bone_map(const Path& path);
 BoneMap parse_bone_map(const std::string& bytes, const std::string& where);
 
@@ -29,27 +30,28 @@ enum class FoundBy { Map, Name, Kind, Shape };
 std::string_view to_string(FoundBy found_by);
 
 struct LabelBones {
-  // Rig bones that the label's tissue may follow on the body's left [0] and right [1]. The two lists are equal where
-  // the label has no sides.
+  // Rig bones that the label's tissue may follow on the body's left [0] and right [1]. The two lists are equal if the
+  // label has no sides.
   std::array<std::vector<int>, 2> candidates;
   bool has_sides = false;
-  // For a label with sides: its voxels nearer to rig bones [0] are left, those nearer to rig bones [1] are right.
+  // Rig bones that separate the sides of a label with sides: voxels nearer to bones of list [0] are left, voxels nearer
+  // to bones of list [1] are right.
   std::array<std::vector<int>, 2> side_bones;
-  // true: the label is one bone of the body (per side) and follows one rig bone as a whole.
+  // true: the label holds one bone of the body (per side), which follows one rig bone as a whole.
   bool single = true;
   FoundBy found_by = FoundBy::Name;
-  // true: the rig has neither the named bone nor one further towards the trunk. Then the candidates are the rig's
-  // roots.
+  // true: the rig has neither the bone that the label's name means nor one further towards the trunk. Then the
+  // candidates are the root bones of the rig.
   bool is_substitute = false;
 };
 
-// Returns the labels of bone tissue whose rig bones are known; the rig bones of other labels must be found by shape.
-// Throws Error when the map names a rig bone or a label that does not exist.
+// Returns the labels of bone tissue whose rig bones follow from the map or from the label's name. For other labels, the
+// rig bones must be found by shape. Throws Error when the map names a rig bone or a label that does not exist.
 std::map<Label, LabelBones> bones_of_labels(const TissueTable& tissues, const Armature& armature,
                                             const BoneMap& map = {});
 
-// Returns the rig bones of a body region on one side, or the next ones towards the trunk where the rig has none there.
-// Returns none where the rig's names are not recognised.
+// Returns the rig bones of a body region on one side. If the rig has none, returns those of the next region towards the
+// trunk. Returns none if the names of the rig's bones are not recognised.
 std::vector<int> bones_of_region(BoneRegion region, BodySide side, const Armature& armature);
 
 }  // namespace limber

@@ -23,7 +23,7 @@ bool can_be_used(const BoneMap& map, const TissueTable& tissues, const Armature&
   }
 }
 
-// Returns whether a rig bone belongs to one side of a label with sides.
+// Returns true if a rig bone belongs to side `side` (0 left, 1 right) of a label with sides.
 bool is_of_side(const LabelBones& bones, int side, int bone) {
   const auto has = [&](int which) {
     return std::find(bones.candidates[which].begin(), bones.candidates[which].end(), bone) !=
@@ -51,8 +51,8 @@ MappedLabel mapped(const BoneParts& parts, Label label, const LabelBones* bones,
 
 }  // namespace
 
-// Adds the entries one by one, and keeps each entry that can be used together with those kept before. Where the entry
-// for one side of a label cannot be used alone, it is added together with the entry for the other side.
+// Adds the map's entries one by one, and keeps each entry that can be used together with the entries kept before. If
+// the entry for one side of a label cannot be used alone, the entry for the other side is added together with it.
 FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, const Armature& armature) {
   FittingBoneMap fitting{map, {}};
   if (can_be_used(map, tissues, armature)) return fitting;
@@ -105,8 +105,8 @@ BoneMap with_entry(BoneMap map, const Tissue& tissue, std::optional<BodySide> si
   for (const std::string& label : {map_key(tissue), tissue.name}) {
     const std::string sided = side ? label + kSides[*side == BodySide::Left ? 0 : 1] : label;
     map.erase(sided);
-    // An entry for a whole label replaces the entries for its sides. An entry for one side replaces the whole label's
-    // entry, which is kept for the other side.
+    // An entry for a whole label replaces the entries for its two sides. An entry for one side also splits an existing
+    // entry for the whole label: the other side keeps that entry's bone.
     if (!side) map.erase(label + kSides[0]), map.erase(label + kSides[1]);
     else if (const auto whole = map.find(label); whole != map.end()) {
       for (const char* each : kSides) map.try_emplace(map_key(tissue) + each, whole->second);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operations on a project's bone map, by which the user assigns labels to rig bones. The map is kept while tissues and
-// rig change, passed to commands as a file, and shown label by label.
+// Edits a project's bone map, in which the user assigns labels of bone tissue to rig bones. The map is kept while
+// tissues and rig change, passed to commands as a file, and shown label by label.
 #pragma once
 
 #include <optional>
@@ -12,37 +12,38 @@
 
 namespace limber {
 
-// The entries of a bone map that name existing bone tissue and rig bones.
+// The entries of a bone map that can be used: they name bone tissue and rig bones that exist.
 struct FittingBoneMap {
   BoneMap map;
   std::vector<std::string> left_out;  // keys of the entries that cannot be used
 };
 FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, const Armature& armature);
 
-// Returns the JSON text of a bone map, as read_bone_map() reads it.
+// Returns the JSON text of a bone map, which read_bone_map() reads.
 std::string to_json(const BoneMap& map);
 void write_bone_map(const BoneMap& map, const Path& path);
 
-// A label of bone tissue, or one side of a label, with the rig bones that it follows.
+// A row of the shown bone map: a label of bone tissue, or one side of a label, and the rig bones that it follows.
 struct MappedLabel {
   Label label = 0;
-  // Left or Right where the label's sides follow different rig bones. None: the row is for the whole label.
+  // Left or Right if the label's sides follow different rig bones. None: the row is for the whole label.
   std::optional<BodySide> side;
-  // Rig bones that the label follows, the one with most voxels first. Empty: the label has no voxels there.
+  // Rig bones that the label follows, the bone with the most voxels first. Empty: the label has no voxels in the
+  // volume, or none on this side.
   std::vector<int> bones;
   std::int64_t voxels = 0;
   FoundBy found_by = FoundBy::Shape;
-  bool is_sure = true;  // false: the rig has no bone for the label's name
+  bool is_sure = true;  // false: the rig has no bone for what the label's name means
 };
-// Returns a row for every label of bone tissue, or for each of its sides, in the order of the tissue table.
+// Returns a row for every label of bone tissue, or for each of its two sides, in the order of the tissue table.
 std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature,
                                        const BoneMap& map);
 
-// Returns the key of a label in a map: its value in files, which is unique.
+// Returns the key of a label in a bone map: its value in files, which is unique, followed by the side if one is given.
 std::string map_key(const Tissue& tissue, std::optional<BodySide> side = {});
 
-// Returns the map with an entry by which a label, or one side of it, follows the rig bone `bone`. Where `bone` is null,
-// returns the map without such an entry.
+// Returns the map with an entry by which a label, or one side of it, follows the rig bone named `bone`. If `bone` is
+// null, returns the map without that entry.
 BoneMap with_entry(BoneMap map, const Tissue& tissue, std::optional<BodySide> side, const std::string* bone);
 
 }  // namespace limber

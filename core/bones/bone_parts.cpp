@@ -21,12 +21,13 @@ namespace limber {
 
 namespace {
 
-// Height that rounding to voxels adds to the smooth ridge of a thick tube, in voxels.
+// Height by which rounding to voxels makes the smooth ridge of a thick tube vary, in voxels.
 constexpr double kWiggleVoxels = 0.6;
-constexpr std::int64_t kMostDistances = 16'000'000;  // upper limit on basins x rig bones: 64 MB of distances
+// Upper limit on the number of basins times rig bones: 64 MB of distances.
+constexpr std::int64_t kMostDistances = 16'000'000;
 
-// Cuts basins that contain at least half the length of each of several rig bones: these are bones grown together (or
-// drawn as one tube). Each voxel is given to the nearest of those rig bones.
+// Cuts a basin of the watershed that contains at least half the length of each of several rig bones: its bones have
+// grown together, or are drawn as one tube. Each voxel goes to the nearest of those rig bones.
 void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid,
                                  const TissueVoxels& tissue, const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
@@ -34,7 +35,8 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   std::map<std::int32_t, std::vector<int>> bones_inside;
   for (int b = 0; b < hugging.bone_count(); ++b) {
     const glm::dvec3 head = from_world * armature.bones[b].head, tail = from_world * armature.bones[b].tail;
-    constexpr int kMostSteps = 4096;  // upper limit on sampled points, for a rig bone far longer than the volume
+    // Upper limit on the points sampled along a rig bone that is far longer than the volume.
+    constexpr int kMostSteps = 4096;
     const int steps = static_cast<int>(std::clamp(2 * glm::length(tail - head), 8.0, double(kMostSteps)));
     std::map<std::int32_t, int> inside;
     for (int k = 0; k <= steps; ++k) {
@@ -51,7 +53,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 
   std::int32_t next = basin.empty() ? 0 : *std::max_element(basin.begin(), basin.end()) + 1;
-  std::map<std::int32_t, std::int32_t> first_of;  // number of the first new basin, by number of the cut basin
+  std::map<std::int32_t, std::int32_t> first_of;  // for each basin that is cut: number of the first of its new basins
   for (const auto& [which, bones] : bones_inside)
     if (bones.size() >= 2) first_of[which] = std::exchange(next, next + static_cast<std::int32_t>(bones.size()));
   if (first_of.empty()) return;
@@ -68,11 +70,11 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 }
 
-// Joins touching basins to pieces that each follow one rig bone, broadest contact first. Two basins are not joined
-// where this would take the smaller one much further from its rig bone than it is alone.
+// Joins touching basins of the watershed to pieces that each follow one rig bone, broadest contact first. Two basins
+// are not joined if the smaller one would then follow a rig bone that is much farther away than its own.
 class Pieces {
  public:
-  //   beyond      voxels that lie beyond a joint
+  //   beyond      voxels that lie beyond a joint, seen from a rig bone
   //   may_follow  returns the rig bones that the basin of a given voxel may follow; empty: any
   Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging,
          const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond, double voxel,
@@ -88,7 +90,7 @@ class Pieces {
       cluster.voxels = std::ssize(members[p]);
       for (std::int32_t i : members[p]) cluster.summit = std::max(cluster.summit, height[i]);
       if (members[p].empty()) continue;
-      // 256 evenly spread voxels give the mean distance with an error of a few percent.
+      // 256 evenly spread voxels give the mean distance of all voxels with an error of a few percent.
       const size_t stride = std::max<size_t>(1, members[p].size() / 256);
       const size_t samples = (members[p].size() + stride - 1) / stride;
       cluster.distance.resize(bones_);
@@ -150,7 +152,7 @@ class Pieces {
     while (cluster_[p].parent != p) p = cluster_[p].parent;
     return p;
   }
-  // Returns the rig bone of a basin, after settle(); -1: the basin touches no other one and lies far from every rig
+  // Returns the rig bone of a basin, after settle(). -1: the basin touches no other basin and lies far from every rig
   // bone.
   int bone(std::int32_t p) const {
     const int bone = bone_[root(p)];
@@ -163,13 +165,13 @@ class Pieces {
         ->trunk;
   }
 
-  // Gives every piece (group of joined basins) its rig bone. A piece that lies along a rig bone follows it. Another
-  // piece may be more than 1.5 times as far from its nearest rig bone (a rib beside the hanging arm, the breastbone
-  // between two collarbones). It follows that bone only if all pieces that it touches follow the bone, its parent or
-  // its children. Else it follows the bones that it touches: the nearest one of a chain, or the common ancestor of
-  // several chains. The same holds for a piece that is three times as far and does not touch its nearest bone, except
-  // where it is about as large as the piece along that bone and touches the bone's parent (a toe beside a toe). A piece
-  // nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
+  // Gives every piece (group of joined basins) its rig bone. A piece that lies along a rig bone follows it. A piece
+  // more than 1.5 times as far from its nearest rig bone as the piece along that bone (a rib beside the hanging arm,
+  // the breastbone between two collarbones) follows it only if all pieces that it touches follow the bone, its parent
+  // or its children. Otherwise it follows a bone of the pieces that it touches: the nearest one if these bones form a
+  // chain, or their common ancestor. The same holds for a piece that is three times as far and does not touch the piece
+  // along its nearest bone, except for one that is about as large as that piece and touches the bone's parent (a toe
+  // beside a toe). A piece nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
@@ -193,7 +195,7 @@ class Pieces {
     }
     for (bool settled = true; settled;) {
       settled = false;
-      // The rig bones found are assigned after the loop, so that the order of pieces does not matter.
+      // Rig bones are assigned only after this loop, so that the order of the pieces does not matter.
       std::vector<std::pair<std::int32_t, int>> found;
       for (std::int32_t p : waiting)
         if (bone_[p] < 0)
@@ -204,37 +206,39 @@ class Pieces {
   int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
 
  private:
-  // Lowest pass between two joined basins, as a share of the lower summit. A lower pass is a joint and not a waist of
-  // one bone. Marrow runs through a bone but never across a joint, and it raises passes: so a condyle is joined to its
-  // own shaft and not to the bone it rolls on, even where voxels are coarse.
+  // Least height of the pass between two basins that may be joined, as a share of the lower basin's summit. A lower
+  // pass is a joint and not the waist of one bone. Marrow runs through a bone but never across a joint, and it raises
+  // passes. So a condyle is joined to its own shaft and not to the bone on which it rolls, even where voxels are
+  // coarse.
   static constexpr float kWeakestContact = 0.35f;
-  static constexpr double kBeyondJoint = 4;  // a rig bone counts (1 + 4) times as far for voxels beyond its joint
-  static constexpr float kForbidden = 1e6f;  // added to the distance of rig bones that a basin must not follow, mm
-  // Share of a basin's voxels before a collarbone's head, measured along the collarbone, above which the basin does not
-  // follow the collarbone.
+  // For voxels beyond a joint, a rig bone before the joint counts as (1 + this) times as far.
+  static constexpr double kBeyondJoint = 4;
+  static constexpr float kForbidden = 1e6f;  // mm added to the distance from rig bones that a basin must not follow
+  // Share of a basin's voxels that lie before the head of a collarbone, along its direction. Above this share, the
+  // basin does not follow the collarbone.
   static constexpr double kMostlyBefore = 0.7;
-  // Share of a basin's voxels on the other side of the body, above which the basin does not follow a collarbone: the
-  // collarbone has grown to the breastbone there.
+  // Share of a basin's voxels on the other side of the body. Above this share, the basin does not follow a collarbone:
+  // the collarbone has grown together with the breastbone there.
   static constexpr double kAcross = 0.35;
-  // A piece counts as far from a rig bone above kFar times the distance of the piece that lies along the bone. It
-  // counts as small with less than 1 / kSmall of that piece's voxels.
+  // Limits for a piece, relative to the piece that lies along the same rig bone: far above kFar times that piece's
+  // distance from the bone, small below 1 / kSmall of that piece's voxels.
   static constexpr double kFar = 3, kSmall = 4;
 
   struct Cluster {
     std::int32_t parent = 0;
     std::int64_t voxels = 0;
     float summit = 0;
-    std::vector<float> distance;            // mean distance of the voxels to each rig bone, mm
-    std::vector<float> to_shoulder;         // distance of the nearest voxel to each girdle's shoulder, mm
-    std::map<std::int32_t, float> contact;  // height of the highest pass to each touching cluster
+    std::vector<float> distance;            // mean distance from the voxels to each rig bone, mm
+    std::vector<float> to_shoulder;         // distance from the nearest voxel to each shoulder joint, mm
+    std::map<std::int32_t, float> contact;  // for each touching cluster, the height of the highest pass to it
   };
 
   static bool above(const Armature& armature, int ancestor, int bone) {
     while (bone > ancestor) bone = armature.bones[bone].parent;
     return bone == ancestor;
   }
-  // Returns the trunk's rig bone for a piece whose nearest rig bone is a shoulder's, but that neither lies along this
-  // bone nor reaches the shoulder joint; else -1.
+  // Returns the trunk's rig bone for a piece whose nearest rig bone is a shoulder's but which neither lies along that
+  // bone nor reaches the shoulder joint; for other pieces -1.
   int trunk_instead_of(int bone, std::int32_t p) const {
     for (std::size_t g = 0; g < girdles_.size(); ++g) {
       const ShoulderGirdle& girdle = girdles_[g];
@@ -275,10 +279,10 @@ class Pieces {
     return nearest;
   }
 
-  // Corrects the distances of basins to rig bones where voxels lie beyond a joint: the distance to the bone beyond the
-  // joint becomes as small as that to the bone before the joint, which is then increased.
+  // Corrects the distances from basins to rig bones for voxels that lie beyond a joint. The distance to the bone beyond
+  // the joint becomes as small as the distance to the bone before the joint, and the latter is increased.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
-    // Number of voxels beyond a joint, by basin, bone before the joint and bone beyond it.
+    // Number of voxels beyond a joint, by basin, rig bone before the joint and rig bone beyond the joint.
     std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;
     for (const BeyondJoint& b : beyond) ++voxels[{basin[b.voxel], b.bone, b.other}];
     auto share_of = [&](std::int32_t p, std::int64_t count) {
@@ -320,8 +324,8 @@ class Pieces {
     const double apart = a.distance[of_a] * a.voxels + b.distance[of_b] * b.voxels;
     const Cluster& smaller = a.voxels < b.voxels ? a : b;
     const double own = smaller.distance[a.voxels < b.voxels ? of_a : of_b];
-    // Joining may take the smaller piece further from its rig bone by a quarter of its distance. So the ball of a joint
-    // joins its shaft, but a finger bone does not join its neighbour.
+    // The distance of the smaller piece from its rig bone may grow by a quarter. This limit lets the ball of a joint
+    // join its shaft, but keeps a finger bone apart from its neighbour.
     return together - apart <= 0.25 * own * smaller.voxels;
   }
   void absorb(std::int32_t a, std::int32_t b) {
@@ -342,35 +346,37 @@ class Pieces {
     cluster_[b].parent = a;
   }
 
-  // The piece that lies along a rig bone: the one with most voxels in proportion to its squared distance.
+  // The piece that lies along a rig bone: that with the largest ratio of voxels to squared distance.
   struct Own {
-    double distance = 0;  // mean distance to the rig bone, mm
+    double distance = 0;  // mean distance from the piece to the rig bone, mm
     std::int64_t voxels = 0;
     std::int32_t piece = -1;
   };
 
   int bones_;
-  float surface_;  // depth of the bone's surface, mm: half a voxel, since depths end at voxel centres outside
+  // Depth at the bone's surface, mm: half a voxel, since depths are measured to the centres of voxels outside the bone.
+  float surface_;
   std::vector<Cluster> cluster_;
-  std::vector<int> bone_;  // rig bone of each cluster; -1: not settled
-  std::vector<Own> own_;   // the piece along each rig bone
+  std::vector<int> bone_;  // rig bone of each cluster; -1: none yet
+  std::vector<Own> own_;   // for each rig bone, the piece that lies along it
   std::vector<ShoulderGirdle> girdles_;
-  std::map<std::int32_t, std::vector<int>> before_;  // by basin: the shoulders' rig bones that the basin cannot follow
+  std::map<std::int32_t, std::vector<int>> before_;  // for each basin, the rig bones of shoulders that it cannot follow
 };
 
 // Returns the rig bone of every basin. A piece that touches no piece with a rig bone gets the rig bone of the nearest
-// bone voxel that can be reached through tissue. Where that is too far away, it gets the rig bone nearest in space.
+// bone voxel that can be reached through tissue. If that voxel is too far away, the piece gets the rig bone that is
+// nearest in space.
 std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
                                  const std::vector<std::int32_t>& basin, const Pieces& pieces) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
   std::vector<int> bone(basins);
-  std::map<std::int32_t, std::vector<glm::ivec3>> lonely;  // voxels of each piece without a rig bone
+  std::map<std::int32_t, std::vector<glm::ivec3>> lonely;  // for each piece without a rig bone, its voxels
   for (std::int32_t p = 0; p < basins; ++p) bone[p] = pieces.bone(p);
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (bone[basin[i]] < 0) lonely[pieces.root(basin[i])].push_back(graph.voxel[i]);
 
   std::vector<int> found(basins, -1);
-  std::int64_t budget = 20'000'000;  // upper limit on the voxels that all searches visit together
+  std::int64_t budget = 20'000'000;  // upper limit on the number of voxels that all searches together may visit
   for (auto& [piece, front] : lonely) {
     found[piece] = pieces.nearest_bone(piece);
     std::set<std::int64_t> seen;
@@ -401,8 +407,8 @@ std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tis
   return bone;
 }
 
-// Groups the connected voxels of each rig bone into parts. A part smaller than a hundredth of its bone's largest part
-// is added to the largest one.
+// Groups the voxels that follow the same rig bone and are connected into parts. A part smaller than a hundredth of its
+// rig bone's largest part is added to that part.
 //   bone  rig bone of each voxel of the graph
 void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<int>& bone, BoneParts& result) {
   std::vector<std::int32_t> joined(graph.size());
@@ -421,7 +427,7 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vec
   for (std::int32_t p = 0; p < graph.size(); ++p)
     if (voxels[p] > 0)
       if (auto [at, is_new] = largest.insert({bone[p], p}); !is_new && voxels[p] > voxels[at->second]) at->second = p;
-  constexpr int kMostParts = 60'000;  // part numbers are stored in 16 bits
+  constexpr int kMostParts = 60'000;  // upper limit on the number of parts, because part numbers are stored in 16 bits
   std::vector<int> number(graph.size(), -1);
   auto number_of = [&](std::int32_t p) {
     const std::int32_t home = largest[bone[p]];
@@ -445,15 +451,16 @@ struct ShapeBones {
   std::vector<int> bone;  // rig bone of each voxel of the graph
   std::vector<BroadCut> broad_cuts;
 };
-// Finds the rig bone of every voxel by shape: cuts touching bones at the rig's joints, splits them by a watershed, and
-// joins its basins to pieces that follow one rig bone.
-//   group       index in `candidates` for each voxel of the graph
+// Finds the rig bone of every voxel by shape: cuts touching bones apart at the rig's joints, splits the bone tissue
+// into basins by a watershed, and joins the basins to pieces that each follow one rig bone.
+//   group  index in `candidates` for each voxel of the graph
 ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const TissueVoxels& tissue,
                           const std::vector<TissueKind>& kinds, const Armature& armature, const Hugging& hugging,
                           const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates,
                           Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
-  // Marrow counts twice as high, so that two marrow cores are two summits however thin the shells between them are.
+  // The height of marrow is doubled, so that two marrow cores form two summits however thin the shells between them
+  // are.
   std::vector<float> height = cuts.depth;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow) height[i] *= 2;
@@ -477,7 +484,8 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   std::vector<int> bone(graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     bone[i] = of_basin[basin[i]];
-    // A piece that touches no other one got the nearest rig bone, which its label's name may forbid.
+    // A piece that touches no other one got the nearest rig bone. The name of a voxel's label may forbid that bone;
+    // then the voxel gets the nearest rig bone that the name allows.
     const std::vector<int>& allowed = candidates[group[i]];
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
       bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) {
@@ -491,7 +499,8 @@ std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const Lab
                                                const NamedBones& named, const std::vector<int>& bone,
                                                const std::map<Label, LabelBones>& labels) {
   std::map<std::pair<Label, int>, BoneParts::Identity> found;
-  BoneParts::Identity* identity = nullptr;  // identity of the previous voxel, most often the same
+  // Entry of the previous voxel, kept because the next voxel most often has the same.
+  BoneParts::Identity* identity = nullptr;
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     const Label label = volume.at(graph.voxel[i]);
     if (!identity || identity->label != label || identity->bone != bone[i]) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Separates the bone tissue of a volume into bones. By label all bones of a limb are often one connected blob (joints
-// are thinner than a voxel). First, bones that touch in a joint or side by side are cut apart
+// Separates the bone tissue of a volume into bones. All bones of a limb are often one connected blob of one label,
+// because joints are thinner than a voxel. First, bones that touch in a joint or side by side are cut apart
 // (core/bones/joint_cuts.h). Then a watershed splits the blob; it grows from the marrow cores, or without marrow from
-// the deepest points of the bone's distance map. Each part is given to the rig bone that it surrounds. The plane
-// borders of Bender's skin map (skin/weights_io.h) are not used: a cut along them would put 1004 voxels of the paper's
-// arm on the wrong bone.
+// the deepest points of the bone. Each part is given to the rig bone that it surrounds. The plane borders of Bender's
+// skin map (skin/weights_io.h) are not used: a cut along them would put 1004 voxels of the paper's arm on the wrong
+// bone.
 //
 // A label whose name says which bone it is takes precedence over shape (core/bones/bone_identity.h). A label of several
 // bones ("Wrists and hand bones") is split by shape among the rig bones that its name allows.
@@ -25,19 +25,19 @@ namespace limber {
 
 struct BoneParts {
   struct Part {
-    int bone;  // index in the armature
+    int bone;  // index of the rig bone in the armature
     std::int64_t voxel_count;
-    glm::dvec3 centre;  // world, mm
+    glm::dvec3 centre;  // centre of the part's voxels; world, mm
   };
   std::vector<Part> parts;
-  std::vector<std::uint16_t> part_of;  // for each tissue voxel: 0: not bone, else 1 + index in `parts`
+  std::vector<std::uint16_t> part_of;  // for each tissue voxel: 1 + index in `parts`; 0: not bone
 
-  // A rig bone that voxels of a label follow, and how this bone was found.
+  // A rig bone that voxels of a label follow, and how this assignment was found.
   struct Identity {
     Label label;
     int bone;
     FoundBy found_by;
-    bool is_substitute;  // true: the rig has no bone for the label's name
+    bool is_substitute;  // true: the rig has no bone for what the label's name means
     std::int64_t voxel_count;
   };
   std::vector<Identity> identities;  // sorted by label, then bone

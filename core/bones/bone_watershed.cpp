@@ -16,12 +16,14 @@ namespace limber {
 
 namespace {
 
-// Two basins are merged where the pass between them is higher than this share of the lower summit: then it is only a
-// wiggle of the height along one bone. On a whole arm whose true bones are known, 0.9 puts 0.4 % of bone voxels into a
-// basin of another bone, 0.7 puts 2.4 %. Splitting one bone too often costs nothing: its pieces find the same rig bone.
+// Ratio of the height of the pass between two basins to the lower summit, above which the basins are merged: then the
+// pass is only a variation of height along one bone. On a whole arm whose true bones are known, 0.9 puts 0.4 % of bone
+// voxels into a basin of another bone, and 0.7 puts 2.4 %. Splitting one bone too often costs nothing, because its
+// pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
-constexpr std::int64_t kBricks = 64;  // bricks per block of a parallel loop
-// Upper limit on a wiggle of the height as a share of the summit: a finger bone is only two voxels deep.
+constexpr std::int64_t kBricks = 64;  // bricks (8^3 voxels each) per block of a parallel loop
+// Upper limit on height variations that count as rounding to voxels, as a share of the summit. A finger bone is only
+// two voxels deep.
 constexpr double kWiggleShare = 0.2;
 
 std::array<glm::ivec3, 26> offsets_26() {
@@ -36,8 +38,8 @@ std::array<glm::ivec3, 26> offsets_26() {
 const std::array<glm::ivec3, 26> kOffsets = offsets_26();
 
 // Decides which pairs of bone labels are different bones that merely touch. Two labels of plain bone ("Right humerus",
-// "Right ulna") are different bones, unless one lies inside the other, as marrow does in its shell: more than half of
-// the inner label's faces touch bone.
+// "Right ulna") are different bones, unless one lies inside the other, as marrow lies in its shell. A label lies inside
+// when more than half of its faces touch bone.
 class LabelWalls {
  public:
   LabelWalls(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds)
@@ -69,7 +71,7 @@ class LabelWalls {
   bool between(Label a, Label b) const { return a != b && plain_[a] && plain_[b]; }
 
  private:
-  std::vector<std::uint8_t> plain_;  // by label: 1: plain bone that does not lie inside another bone
+  std::vector<std::uint8_t> plain_;  // for each label, 1: plain bone that does not lie inside another bone
 };
 
 }  // namespace
@@ -82,8 +84,8 @@ void BoneGraph::resize(std::int64_t count) {
 }
 
 BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
-  // Each brick (block of 8^3 voxels) gets a mask of its bone voxels. The graph index of a voxel is found by counting
-  // bits.
+  // Each brick (block of 8^3 voxels) gets a bit mask of its bone voxels. Counting bits gives the graph index of a
+  // voxel.
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<TissueVoxels::Brick> bone(bricks);
   parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
@@ -122,7 +124,8 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 }
 
 namespace {
-// Computes the distance of voxels to the nearest border. It is passed on from voxel to voxel, nearest voxels first.
+// Computes the distance of voxels to the nearest border of their bone. The distance is passed on from voxel to voxel,
+// starting at the nearest ones.
 class DepthFront {
  public:
   DepthFront(const BoneGraph& graph, const glm::dvec3& spacing, std::vector<float>& depth)
@@ -131,7 +134,8 @@ class DepthFront {
         depth_(depth),
         offset_(graph.size(), glm::ivec3(0)) {}
 
-  // Lowers the depth of a voxel to the distance from those neighbours that are not bone. Returns whether it changed.
+  // Lowers the depth of a voxel to the distance from its neighbours that are not of the same bone. Returns true if the
+  // depth changed.
   bool start(std::int32_t i) {
     bool starts = false;
     for (int k = 0; k < 26; ++k) starts |= graph_.neighbour[i][k] == kNotBone && take(i, kOffsets[k]);
@@ -168,7 +172,7 @@ class DepthFront {
   const BoneGraph& graph_;
   const glm::dvec3 spacing_;
   std::vector<float>& depth_;
-  std::vector<glm::ivec3> offset_;  // offset from each voxel of the graph to its nearest border, voxels
+  std::vector<glm::ivec3> offset_;  // offset, in voxels, from each voxel of the graph to its nearest border
 };
 }  // namespace
 
@@ -198,8 +202,8 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 }
 
 namespace {
-// Returns the indices of non-negative heights, the highest first and equal ones in their order. Sorts by the bits of
-// the floats, which rise with their values, eleven bits at a time.
+// Returns the indices of `height` (no value is negative), the highest first and equal heights in their order. Sorts by
+// the bits of the floats, which rise with their values, eleven bits at a time.
 std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
   constexpr int kBits = 11;
   std::vector<std::int32_t> order(height.size()), next(height.size());
@@ -232,7 +236,7 @@ std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>
     while (parent[b] != b) b = parent[b] = parent[parent[b]];
     return b;
   };
-  constexpr std::size_t kAhead = 8;  // memory is prefetched this many voxels before it is read
+  constexpr std::size_t kAhead = 8;  // number of voxels between the prefetch of a voxel's memory and its use
   for (std::size_t k = 0; k < order.size(); ++k) {
     if (k + kAhead < order.size()) {
       const std::array<std::int32_t, 26>& ahead = graph.neighbour[order[k + kAhead]];

@@ -11,26 +11,29 @@ namespace limber {
 
 namespace {
 
-// Share of a rig bone's length that is skipped at each end: joints lie there, and bone tissue may be missing.
+// Share of a rig bone's length that is not examined at each end: joints lie there, and bone tissue may be missing.
 constexpr double kEnds = 0.15;
-// Radii around a rig bone's axis, as shares of its length. Points count as beside the axis up to kBeside, and as around
-// it from kAroundFrom to kAroundTo. A rig may run beside the bone by half the limb's thickness, and limbs are some 0.15
-// thick.
+// Radii of regions around a rig bone's axis, as shares of the rig bone's length: beside the axis up to kBeside, around
+// it from kAroundFrom to kAroundTo. A rig may run beside the real bone by half the limb's thickness, and limbs are some
+// 0.15 thick.
 constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
-// Share of the points beside the axis from which on a label counts as present there.
+// Share of the points beside a rig bone's axis from which on their label counts as present there.
 constexpr double kLeastOfDisc = 0.05;
-// A label counts as bone from these values on: the share of the rig's length that has the label beside it, and the
-// ratio of the label's frequencies beside and around the axis. Measured bone had shares of 0.5 to 0.94 and ratios of 30
-// or more. Other labels with a ratio of 8 had shares up to 0.33, those with a share of 0.4 had ratios up to 5.
+// Least values for a label that counts as bone: kShareOfRig, the share of the rig's length with the label beside it,
+// and kEnrichment, the ratio of the label's frequency beside the axis to that around it. Measured bone had shares of
+// 0.5 to 0.94 and ratios of 30 or more. Other labels with a ratio of 8 had shares up to 0.33, those with a share of 0.4
+// had ratios up to 5.
 constexpr double kShareOfRig = 0.4, kEnrichment = 8;
-// Shortest rig bone examined, as a share of the longest one: short bones are as thick as long and tell nothing.
+// Length of the shortest rig bone that is examined, as a share of the longest one. Short bones are as thick as long and
+// tell nothing.
 constexpr double kLong = 0.5;
-constexpr int kSlices = 60, kPoints = 120;  // slices per rig bone, and points per slice
+constexpr int kSlices = 60, kPoints = 120;  // slices across each rig bone, and sampled points in each slice
 
 struct Lengths {
   double in_tissue = 0;
-  std::map<Label, double> with;  // length of the rig bones with the label beside them, mm
-  // Length of the rig bones, weighted by the label's share of the tissue beside or around them, mm.
+  std::map<Label, double> with;  // for each label, length of the rig bones that have it beside them, mm
+  // For each label: length of the rig bones, weighted by the label's share of the tissue beside the bones or around
+  // them, mm.
   std::map<Label, double> beside, around;
 };
 

@@ -15,18 +15,19 @@
 namespace limber {
 
 namespace {
-// Shares of the rig's length in tissue. With less than kMostlyOutside, the rig lies outside the body. A turned or
+// Limits on the share of the rig's length in tissue. Below kMostlyOutside, the rig lies outside the body. A turned or
 // mirrored rig fits better if its share is larger by kFitsMuchBetter. A rig that fits has nine tenths of its length in
 // tissue; a hand's rig, which runs along thin fingers, has less.
 constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
-constexpr int kPoints = 32;           // points examined along each rig bone
-constexpr double kShaftRadius = 0.1;  // radius of a rig bone's shaft, as a share of the rig bone's length
-// A label is doubted if this share of its voxels lies along the middle of another bone. The share is 0 in a good body,
-// and a sixth where half the femur is called tibia.
+constexpr int kPoints = 32;  // points examined along each rig bone
+// Radius within which tissue counts as lying along a rig bone, as a share of the bone's length.
+constexpr double kShaftRadius = 0.1;
+// Share of a label's voxels along the middle of another bone, from which on the label is doubted. The share is 0 in a
+// good body, and a sixth where half the femur is called tibia.
 constexpr double kMisplaced = 0.1;
 
 struct Extent {
-  glm::dvec3 low{0}, high{0};  // corners of the grid; world, mm
+  glm::dvec3 low{0}, high{0};  // opposite corners of the grid; world, mm
 };
 Extent extent_of(const Grid& grid) {
   const AffineTransform to_world = world_from_voxel(grid);
@@ -39,7 +40,7 @@ Extent extent_of(const Grid& grid) {
   return extent;
 }
 
-// Returns the rig with `move` applied to all joints, to test whether its file uses other axes.
+// Returns the rig with `move` applied to the ends of all bones, to test whether the rig's file uses other axes.
 template <class Move>
 Armature moved(Armature armature, const Move& move) {
   for (Bone& bone : armature.bones) bone.head = move(bone.head), bone.tail = move(bone.tail);
@@ -73,7 +74,7 @@ std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Ar
   return text;
 }
 
-// Returns the centre of each label that has voxels; world, mm.
+// Returns the centre of each of the given labels that has voxels; world, mm.
 std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set<Label>& labels) {
   struct Sum {
     glm::dvec3 place{0};
@@ -95,7 +96,8 @@ std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set
   return centres;
 }
 
-// Returns the rig bones of a region on both sides, `side` first; none where the rig does not distinguish its sides.
+// Returns the rig bones of a region on both sides of the body, those on `side` first. Returns none if the rig does not
+// distinguish the region's sides.
 std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, BodySide side, const Armature& armature) {
   const BodySide other = side == BodySide::Left ? BodySide::Right : BodySide::Left;
   std::array bones{bones_of_region(region, side, armature), bones_of_region(region, other, armature)};
@@ -103,7 +105,7 @@ std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, Bod
   return bones;
 }
 
-// Compares labels whose names tell their side with the rig bones of that side and of the other side.
+// Returns a doubt if labels whose names tell a side mostly lie nearer to the rig bones of the other side.
 std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const TissueTable& tissues,
                                              const Armature& armature) {
   std::map<Label, AnatomicalName> sided;
@@ -138,7 +140,8 @@ std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const Ti
          "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
 }
 
-// Checks the sides of the rig by the axes (x grows to the left) where no label's name tells its side.
+// Returns a doubt if the rig's left bones lie on the right of its right bones by the axes (x grows to the left). Only
+// used if no label's name tells a side.
 std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Armature& armature) {
   for (const Tissue& tissue : tissues.tissues)
     if (is_bone(tissue.kind) && anatomical_name(tissue.name).side != BodySide::Middle) return std::nullopt;
@@ -154,7 +157,7 @@ std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Ar
          "the rig, or negate its x and y if it is in RAS axes";
 }
 
-// Returns whether a point lies along the middle of a rig bone, away from its joints.
+// Returns true if a point lies along the middle of a rig bone, away from its joints.
 bool is_along(const Bone& bone, const glm::dvec3& p) {
   const glm::dvec3 axis = bone.tail - bone.head;
   const double length = glm::length(axis);
@@ -163,7 +166,7 @@ bool is_along(const Bone& bone, const glm::dvec3& p) {
   return share > 0.25 && share < 0.75 && distance_to_bone(bone, p) < kShaftRadius * length;
 }
 
-// Returns the labels that are a single bone of a limb, with the rig bones that they may follow.
+// Returns the labels that hold a single bone of an arm or leg, each with the rig bones that it may follow.
 std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, const Armature& armature) {
   std::map<Label, std::vector<int>> own;
   for (const auto& [label, bones] : bones_of_labels(tissues, armature)) {
@@ -178,7 +181,7 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
   return own;
 }
 
-// Finds a label of a single bone of which a good part lies along another bone.
+// Returns a doubt about a label that should hold a single bone but of which a good part lies along another bone.
 std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues,
                                               const Armature& armature) {
   const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);
@@ -215,7 +218,7 @@ std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const T
   return std::nullopt;
 }
 
-// Returns the limb that a region belongs to: 1 arm, 2 leg, 0 trunk and head, which every rig may have.
+// Returns the limb that a region of the body belongs to: 1 arm, 2 leg, 0 trunk and head, which occur with any limb.
 int limb_of(BoneRegion region) {
   using enum BoneRegion;
   return region >= UpperArm && region <= Finger ? 1 : region >= Thigh ? 2 : 0;
@@ -237,8 +240,8 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
         (role->part >= BodyPart::UpperArm && role->part <= BodyPart::Fingers) || role->part >= BodyPart::Thumb;
     of_rig.insert(leg ? 2 : arm ? 1 : 0);
   }
-  // There is a doubt only where the rig is one of a single limb and all labels are bones of the other limb. Bones of
-  // the trunk fit every rig.
+  // There is a doubt only if the rig is that of a single limb and all labels are bones of the other kind of limb. Bones
+  // of the trunk fit every rig.
   if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0))
     return std::nullopt;
   return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " +

@@ -17,38 +17,42 @@
 namespace limber {
 
 namespace {
-// A joint's domain holds the voxels among which its cut is searched. "Shorter" and "longer" mean its two rig bones.
+// Shares are of the shorter or longer of a joint's two rig bones. A joint's domain is the set of voxels among which its
+// cut is searched. A shaft is the tissue along a bone that surely belongs to the bone.
 constexpr double kReach = 0.6;       // reach of a joint's domain along the bones, share of the shorter bone
 constexpr double kReachAside = 0.3;  // least reach of a joint's domain in any direction, share of the longer bone
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
 constexpr double kShaftWidth = 0.1;  // thickness of a shaft from its innermost tissue, share of the shorter bone
-constexpr double kFarAside = 0.35;   // distance from a bone beyond which tissue is never its shaft, share of its length
-constexpr double kCoarse = 0.04;  // voxel size that doubles the weight of squared distance, share of the shorter bone
-constexpr double kAway = 8;       // extra weight of cut area where the shafts begin; grows with the squared distance
-// Share of the distance to the shafts from which on the weight rises by the fourth power: else the thin shaft beside a
-// broad joint would be the cheapest cut.
+constexpr double kFarAside = 0.35;   // distance from a bone beyond which no tissue is its shaft, share of its length
+constexpr double kCoarse = 0.04;  // voxel size that doubles the weight of squared distances, share of the shorter bone
+constexpr double kAway = 8;       // extra weight of cut area where shafts begin; rises with the squared distance
+// Distance from the expected cut, as a share of the distance to the shafts, from which on the weight of cut area rises
+// with the fourth power. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
 constexpr double kSteep = 0.4;
-// Rig bones shorter than this many radii of the joint place it less exactly, so the weight rises less steeply.
+// Length of a rig bone, in radii of the joint, below which the weight of cut area rises less steeply, since a short rig
+// bone places the joint less exactly.
 constexpr double kSlender = 8;
-constexpr double kSide = 0.6;  // largest distance of bones that touch side by side, share of the shorter bone
-// Ratio of a voxel's distances to its two nearest bones below which the voxel surely belongs to the nearer one.
+constexpr double kSide = 0.6;  // largest distance between bones that touch side by side, share of the shorter bone
+// Ratio of a voxel's distances to its nearest and second nearest bone, below which the voxel surely belongs to the
+// nearest.
 constexpr double kSideShaft = 0.5;
-// Ratio of a cut's area to the thinner bone's cross-section from which on the cut is uncertain. Bones that touch in
-// scans of 1 to 3 mm though their joints are open stay below it.
+// Ratio of a cut's area to the thinner bone's cross-section from which on the cut is uncertain. Bones whose joints are
+// open, but which touch in scans of 1 to 3 mm, stay below it.
 constexpr double kBroad = 1.5;
-constexpr double kMarrow = 4;         // factor of the weight of cut area through marrow
-constexpr double kBall = 0.02;        // smallest radius of a ball at a bone's head, share of that bone's length
-constexpr double kLargestBall = 0.1;  // largest radius of a ball at a bone's head, share of that bone's length
-constexpr double kBallCore = 0.8;     // share of a ball's radius inside which tissue surely belongs to the ball
-constexpr double kBallWidth = 0.5;    // distance from a ball that counts like that to the shafts, in radii of the ball
-// Distance from a bone's head, as a share of its length, beyond which another child of its parent may start on it.
+constexpr double kMarrow = 4;   // factor on the weight of cut area through marrow
+constexpr double kBall = 0.02;  // smallest radius of a joint's ball, share of the length of the bone with the ball
+constexpr double kLargestBall = 0.1;  // largest radius of a joint's ball, share of the length of the bone with the ball
+constexpr double kBallCore = 0.8;     // share of a ball's radius within which tissue surely belongs to the ball
+constexpr double kBallWidth = 0.5;    // distance from a ball at which cut area weighs as where shafts begin, in radii
+// Distance from a bone's head, as a share of the bone's length, from which on another child of the bone's parent may
+// sit on the bone.
 constexpr double kSitsAlong = 0.25;
 constexpr double kClosed = 0.5;  // contact area above which bones count as fused, share of the joint's cross-section
-constexpr double kJointReach = 0.15;  // least distance up to which a joint is measured, share of the parent's length
+constexpr double kJointReach = 0.15;  // least distance within which a joint's shape is measured, share of the parent
 constexpr double kJointSlice = 0.06;  // half thickness of the slice that measures a joint, share of the shorter bone
 constexpr std::int32_t kHard = 1 << 28;
 
-// Returns for each of the 26 neighbours the area in mm^2 that is cut where the connection to the neighbour is cut.
+// Returns, for the connection to each of the 26 neighbours of a voxel, the area that counts as cut if it is cut, mm^2.
 std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
   std::array<glm::dvec3, 26> edge;
   int count = 0;
@@ -67,7 +71,7 @@ std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
     for (int k = 0; k < 13; ++k)
       if (const double along = std::abs(glm::dot(direction, edge[k])) / glm::length(edge[k]); along > most)
         most = along, nearest = k;
-    share[nearest] += 2.0 / kDirections;  // share of the half sphere's solid angle, 2 pi, divided by pi
+    share[nearest] += 2.0 / kDirections;  // share of the half sphere's solid angle (2 pi), divided by pi
   }
   std::array<double, 26> area;
   for (int k = 0; k < 13; ++k)
@@ -76,13 +80,13 @@ std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
 }
 
 double length_of(const Bone& bone) { return glm::length(bone.tail - bone.head); }
-// Returns the distance along a bone from its head to the point of the bone that is nearest to p, mm.
+// Returns the distance from a bone's head, along the bone, to the point of the bone that is nearest to `p`, mm.
 double along_bone(const Bone& bone, const glm::dvec3& p) {
   const double length = length_of(bone);
   return length > 0 ? std::clamp(glm::dot(p - bone.head, (bone.tail - bone.head) / length), 0.0, length) : 0;
 }
 
-// The two rig bones nearest to a voxel, and the voxel's index in the list of voxels nearest to the first of them.
+// The two rig bones nearest to a voxel. `rank` is the voxel's index among the voxels that have the same nearest bone.
 struct Near {
   std::array<int, 2> bone{-1, -1};
   std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // mm
@@ -98,7 +102,8 @@ struct Near {
   }
 };
 
-// The data that all cuts share. Each connection of the graph is changed only by the cut whose domain holds both ends.
+// The data that all cuts share. A cut is computed in a set of voxels around a joint, its domain, and changes a
+// connection between two voxels only if both are in its domain.
 struct Scene {
   BoneGraph& graph;
   const LabelVolume& volume;
@@ -108,18 +113,18 @@ struct Scene {
   const std::vector<std::vector<int>>& candidates;
   AffineTransform world_from_voxel;
   std::array<double, 26> area;
-  std::vector<float> depth;                      // depth of each voxel of the graph before the cuts, mm
-  std::vector<Near> near;                        // of each voxel of the graph
-  std::vector<std::vector<std::int32_t>> along;  // by rig bone: the voxels nearest to it
-  std::vector<bool> is_ball;                     // by rig bone: its head is the centre of a ball joint
-  std::vector<std::optional<JointShape>> shape;  // by rig bone: shape of the joint at its head; none: unknown
+  std::vector<float> depth;                      // depth of each voxel of the graph inside its bone before the cuts, mm
+  std::vector<Near> near;                        // the nearest rig bones of each voxel of the graph
+  std::vector<std::vector<std::int32_t>> along;  // for each rig bone, the voxels to which it is the nearest bone
+  std::vector<bool> is_ball;                     // for each rig bone, true: its head is the centre of a ball joint
+  std::vector<std::optional<JointShape>> shape;  // for each rig bone, the shape of the joint at its head; none: unknown
 
   glm::dvec3 world(std::int32_t i) const { return world_from_voxel * glm::dvec3(graph.voxel[i]); }
   bool is_marrow(std::int32_t i) const { return kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow; }
-  // Returns the distance from a point to the nearest voxel that is not bone, mm; `most` where it is larger than that.
+  // Returns the distance from a point to the nearest voxel that is not bone, mm, but at most `most`.
   double depth_at(const glm::dvec3& point, double most) const {
     const glm::dvec3 centre = voxel_from_world(volume.grid) * point;
-    const glm::dvec3 first(-1), last(volume.grid.size);  // includes the air around the grid
+    const glm::dvec3 first(-1), last(volume.grid.size);  // range of voxels, including one layer of air around the grid
     const glm::ivec3 low(glm::clamp(glm::floor(centre - most / volume.grid.spacing), first, last));
     const glm::ivec3 high(glm::clamp(glm::ceil(centre + most / volume.grid.spacing), first, last));
     double nearest = most;
@@ -132,20 +137,21 @@ struct Scene {
   }
 };
 
-// The result of one cut.
+// The result of one cut between two rig bones.
 struct Found {
   std::vector<BeyondJoint> beyond;
   std::optional<BroadCut> broad;
-  std::vector<std::int32_t> at_cuts;  // voxels that lost connections
+  std::vector<std::int32_t> at_cuts;  // voxels that lost connections by the cut
 };
 
 // One cut between two rig bones. Its domain (the voxels that it may separate) holds only voxels whose nearest rig bone
-// is one of the two, and it reads and changes no other connections. So cuts that share no rig bone may run in parallel.
+// is one of the two. It reads and changes only connections inside the domain, so cuts that share no rig bone may run in
+// parallel.
 class Cut {
  public:
   Cut(Scene& scene, int first, int second) : scene_(scene), bones_(scene.bones), bone_{first, second} {}
 
-  // Places the cut between a parent bone and its child at the joint where the child begins.
+  // Cuts between a parent bone and its child at their joint, which is the child's head.
   Found at_joint() && {
     const auto [parent, child] = bone_;
     const Bone &p = bones_[parent], &c = bones_[child];
@@ -171,7 +177,8 @@ class Cut {
     } else {
       cut_across(normal, shorter);
     }
-    const double shaft = (kReach - kShaft) * shorter;  // length of each shaft inside the domain, mm
+    // Length of the part of each shaft that lies inside the domain, mm.
+    const double shaft = (kReach - kShaft) * shorter;
     const double thinner =
         std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
     if (cut_area_ > 0 && cut_area_ >= kBroad * thinner) found_.broad = BroadCut{parent, child, cut_area_};
@@ -179,7 +186,7 @@ class Cut {
     return std::move(found_);
   }
 
-  // Cuts between two bones without a joint that lie side by side.
+  // Cuts between two bones that lie side by side without a joint.
   //   voxels  voxels whose two nearest rig bones are these two
   Found side_by_side(const std::vector<std::int32_t>& voxels) && {
     for (const std::int32_t i : voxels) add(i);
@@ -198,11 +205,11 @@ class Cut {
   struct Voxel {
     std::int32_t at;  // index in the graph
     int nearest;      // 0 or 1: the nearer one of the two bones
-    bool is_allowed;  // whether the voxel may follow that bone
+    bool is_allowed;  // true: the voxel may follow the bone that `nearest` names
     int shaft;        // 0 or 1: the bone whose shaft holds the voxel; -1: none
   };
 
-  // Cuts near the plane across the joint, or near the joint's anatomical surface where the shape of that is known.
+  // Cuts near the plane across the joint or, if the joint's anatomical shape is known, near its anatomical surface.
   void cut_across(const glm::dvec3& normal, double shorter) {
     const glm::dvec3& joint = bones_[bone_[1]].head;
     const glm::dvec3& spacing = scene_.volume.grid.spacing;
@@ -219,13 +226,14 @@ class Cut {
     };
     const JointSurface surface = surface_at(normal, shorter);
     std::vector<std::uint8_t> side = cut_along(surface, 1);
-    // Where the two bones are fused, only the shape of the joint tells where one bone ends.
+    // Where the two bones are fused, only the shape of the joint tells where one bone ends and the other begins.
     const double section = std::numbers::pi * surface.radius * surface.radius;
     if (surface.shape.sharp > 1 && area_of(side) > kClosed * section) side = cut_along(surface, surface.shape.sharp);
     part(side);
   }
 
-  // Returns the radius of a circle with the area of the domain's bone tissue in a slice at right angles to `axis`, mm.
+  // Returns the radius of the bones at a joint, mm: that of a circle with the area of bone tissue in a slice at right
+  // angles to `axis`.
   //   half  half the thickness of the slice, mm
   double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half) const {
     const glm::dvec3& spacing = scene_.volume.grid.spacing;
@@ -248,8 +256,8 @@ class Cut {
                             std::min({spacing.x, spacing.y, spacing.z}));
   }
 
-  // Returns the normal of the plane that halves the angle between parent and child, towards the child. Where the
-  // child's head does not lie on the parent, returns the child's own direction.
+  // Returns the normal, towards the child, of the plane that halves the angle between parent and child. If the child's
+  // head does not lie on the parent, returns the child's own direction.
   static glm::dvec3 normal_of_joint(const Bone& parent, const Bone& child) {
     const glm::dvec3 along = glm::normalize(child.tail - child.head),
                      of_parent = glm::normalize(parent.tail - parent.head);
@@ -266,10 +274,10 @@ class Cut {
     domain_.push_back({i, nearest == bone_[1],
                        allowed.empty() || std::find(allowed.begin(), allowed.end(), nearest) != allowed.end(), -1});
   }
-  // Fills neighbour_ with the connections inside the domain.
+  // Stores the connections between voxels of the domain in neighbour_.
   void link() {
-    // For each of the two bones and each of its voxels along the bone: the voxel's index among those in which the cut
-    // is computed (the domain); -1: not among them.
+    // For each of the two bones and each voxel along the bone: the voxel's index in the domain (the voxels among which
+    // the cut is computed); -1: not in the domain.
     std::array<std::vector<std::int32_t>, 2> place;
     for (int which = 0; which < 2; ++which) place[which].assign(scene_.along[bone_[which]].size(), -1);
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)
@@ -284,15 +292,15 @@ class Cut {
       }
   }
 
-  // Records that the voxels connected with the shaft of one bone do not belong to the other bone.
+  // Records the voxels that are connected with the shaft of one bone: they do not belong to the other bone.
   void tell_sides() {
     for (int which = 0; which < 2; ++which)
       for (const std::int32_t i : reached_from(which))
         found_.beyond.push_back({domain_[i].at, bone_[1 - which], bone_[which]});
   }
 
-  // Marks the shaft of one of the two bones: in each of several slices along the bone, the tissue nearest to it. Slices
-  // less than `beginning` mm from the joint are left out.
+  // Marks the shaft of one of the two bones: in each of several slices across the bone, the tissue nearest to the bone.
+  // Slices less than `beginning` mm from the joint are left out.
   void find_shaft(int which, const glm::dvec3& joint, double beginning, double width) {
     constexpr int kSlices = 16;
     const Bone& bone = bones_[bone_[which]];
@@ -312,7 +320,8 @@ class Cut {
         voxel.shaft = which;
   }
 
-  // Returns the volume of bone tissue beside one of the two rig bones, at least `beginning` mm from the joint; mm^3.
+  // Returns the volume of the bone tissue that is nearest to one of the two rig bones and lies at least `beginning` mm
+  // from the joint, mm^3.
   double volume_along(int which, const glm::dvec3& joint, double beginning) const {
     const Bone& bone = bones_[bone_[which]];
     const double at_joint = along_bone(bone, joint);
@@ -339,13 +348,13 @@ class Cut {
     return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].shaft == 1; });
   }
 
-  // Returns the weight of cut area at a distance from the expected cut.
-  //   off  distance from the surface where the cut is expected; 1 where the shafts begin
+  // Returns the weight of cut area by its distance from the expected cut.
+  //   off  distance from the expected cut, as a share of the distance at which the shafts begin
   static double weight_away(double off) { return 1 + kAway * off * off; }
 
-  // Returns the cut of least weighted area: 1 for the domain's voxels on the side of the first bone, else 0; empty
-  // where nothing connects the shafts.
-  //   weight  returns the factor of area at (voxel, world point)
+  // Returns the cut with the least weighted area: for each voxel of the domain 1 on the first bone's side, else 0.
+  // Empty if no tissue connects the two shafts.
+  //   weight  returns the factor on the area at (voxel, world point)
   std::vector<std::uint8_t> least_cut(const auto& weight) const {
     if (!is_connected()) return {};
     CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()),
@@ -372,7 +381,7 @@ class Cut {
     for (std::int32_t i = 0; i < std::ssize(side); ++i)
       for (int k = 0; k < 26; ++k)
         if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i])
-          area += scene_.area[k] / 2;  // half, as each pair is visited from both its voxels
+          area += scene_.area[k] / 2;  // half, because each pair of voxels is visited from both of them
     return area;
   }
   void part(const std::vector<std::uint8_t>& side) {
@@ -394,13 +403,13 @@ class Cut {
   const std::vector<Bone>& bones_;
   const std::array<int, 2> bone_;
   std::vector<Voxel> domain_;
-  // Neighbours of each voxel of the domain, as indices in the domain; -1: none.
+  // For each voxel of the domain, its neighbours as indices in the domain; -1: none.
   std::vector<std::array<std::int32_t, 26>> neighbour_;
-  double cut_area_ = 0;  // mm^2
+  double cut_area_ = 0;  // area of the cut that was made, mm^2
   Found found_;
 };
 
-// Makes all cuts, several in parallel.
+// Makes all cuts between rig bones, several of them in parallel.
 class JointCutter {
  public:
   explicit JointCutter(Scene scene) : scene_(std::move(scene)) {
@@ -412,7 +421,7 @@ class JointCutter {
       scene_.is_ball.push_back(role && (role->part == BodyPart::Thigh || role->part == BodyPart::UpperArm));
       scene_.shape.push_back(shape_of_joint(role));
     }
-    // Depths are computed by one thread only, so the nearest bones are found meanwhile.
+    // bone_depth() uses one thread only, so another thread finds the nearest bones meanwhile.
     parallel_for(2, 1, [&](std::int64_t begin, std::int64_t end) {
       if (begin == 0) scene_.depth = bone_depth(scene_.graph, scene_.volume.grid.spacing);
       if (end == 2) find_nearest();
@@ -420,7 +429,7 @@ class JointCutter {
   }
 
   // Cuts each bone from its parent. A bone whose head lies nearer to another child of its parent is also cut from that
-  // child, such as a thumb that the rig attaches to the forearm beside the hand. Cuts run in waves: the cuts of one
+  // child, such as a thumb that the rig attaches to the forearm beside the hand. The cuts run in waves. The cuts of one
   // wave share no bone, and cuts that share a bone keep the order of the rig.
   void cut_joints(Progress& progress) {
     std::vector<std::array<int, 2>> joints;
@@ -449,7 +458,7 @@ class JointCutter {
     keep(found);
   }
 
-  // Cuts bones without a joint that lie side by side, such as fingers that are pressed together.
+  // Cuts between bones that have no joint but lie side by side, such as fingers that are pressed together.
   void cut_sides() {
     std::map<std::array<int, 2>, std::vector<std::int32_t>> between;
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
@@ -488,7 +497,8 @@ class JointCutter {
   }
 
   void find_nearest() {
-    // Bones that meet share an end point, so they are shortened: near a joint, the bones' directions then decide.
+    // Bones that meet share an end point. So they are shortened for this search; near a joint their directions then
+    // decide.
     std::vector<Bone> inner = scene_.bones;
     for (Bone& bone : inner)
       bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
@@ -503,7 +513,7 @@ class JointCutter {
     scene_.along.resize(scene_.bones.size());
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
       Near& near = scene_.near[i];
-      if (near.bone[0] < 0) continue;  // the distances to the rig are not finite
+      if (near.bone[0] < 0) continue;  // the distances to the rig bones are not finite numbers
       near.rank = static_cast<std::int32_t>(scene_.along[near.bone[0]].size());
       scene_.along[near.bone[0]].push_back(i);
     }
@@ -519,7 +529,7 @@ class JointCutter {
   Scene scene_;
   std::vector<BeyondJoint> beyond_;
   std::vector<BroadCut> broad_;
-  std::vector<std::int32_t> at_cuts_;  // voxels that lost connections
+  std::vector<std::int32_t> at_cuts_;  // voxels that lost connections by any of the cuts
 };
 }  // namespace
 

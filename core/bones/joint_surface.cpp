@@ -8,29 +8,30 @@
 namespace limber {
 
 namespace {
-// Squared distance from the axis, in squared radii of the joint, beyond which the surface stays level.
+// Squared distance from the joint's axis, in squared radii of the joint, beyond which the surface no longer curves.
 constexpr double kRim = 1.3;
-constexpr double kRound = 1.1;  // ratio of a joint's width to its depth below which it has no hinge direction
-// Ratio of a joint's width to its depth from which on the widest direction is surely the hinge.
+constexpr double kRound = 1.1;  // ratio of a joint's width to its depth below which the joint has no hinge direction
+// Ratio of a joint's width to its depth from which on the direction of its width is surely the hinge.
 constexpr double kClearlyWide = 1.25;
 
-// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. Where a rig's joint
+// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. If a rig's joint
 // does not lie in the middle of the joint's gap, JointShape::level is off by the same distance. The direction of a
-// short rig bone, such as a hand's, is less exact, and a sharp surface would do harm: so the wrist's surface does not
-// turn with the hand.
+// short rig bone, such as a hand's, is less exact, and following it closely would do harm. So the wrist's surface does
+// not turn with the hand.
 constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // the knuckle, a ball in a shallow cup
-constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a finger's middle joint, a roller across it
+constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a finger's middle joint, a roller across the finger
 constexpr JointShape kFingerEnd{-0.1, 0.1, -0.45, 0.4, 2};
 constexpr JointShape kThumbBase{-0.05, 0.3, 0, 0.5, 2};  // the thumb's base, a saddle joint
 constexpr JointShape kThumbKnuckle{0.08, -0.17, -0.1, 0.8, 2};
 constexpr JointShape kThumbEnd{-0.02, 0.2, -0.5, 0.5, 2};
-constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};  // a metacarpal on the wrist
+constexpr JointShape kPalm{-0.08, 0.15, -0.05, 0.8, 1};  // the joint between a metacarpal and the wrist
 constexpr JointShape kWrist{-0.1, 0.1, 0.2, 0, 1};       // the wrist, an egg in the hollow of the radius
-constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};           // the knee, a shallow cup of the shank with a kneecap in front
-constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};    // the ankle, the talus between the ankle bones
+constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};  // the knee, a shallow cup of the shank, with the kneecap in front
+// The ankle, with the talus held between the ends of the shank's bones.
+constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};
 
-// The direction at right angles to an axis in which points spread most, and the ratio of their width in it to their
-// depth.
+// The direction at right angles to an axis in which points spread most, and the ratio of their spread in it to their
+// spread at right angles to it.
 struct Width {
   glm::dvec3 direction;
   double ratio;
@@ -83,7 +84,7 @@ JointSurface flat_surface(const glm::dvec3& joint, const glm::dvec3& axis) {
 JointSurface surface_of_joint(const JointShape& shape, const glm::dvec3& joint, const glm::dvec3& axis,
                               const std::vector<glm::dvec3>& bone, double volume, double half, double reach,
                               double smallest) {
-  std::vector<glm::dvec3> slice;  // positions relative to the joint
+  std::vector<glm::dvec3> slice;  // positions relative to the joint of the voxels in a slice through it, mm
   for (const glm::dvec3& at : bone) {
     const glm::dvec3 from = at - joint;
     if (std::abs(glm::dot(from, axis)) < half && glm::length(from) < reach) slice.push_back(from);
@@ -92,7 +93,7 @@ JointSurface surface_of_joint(const JointShape& shape, const glm::dvec3& joint, 
   surface.radius = std::max(smallest, std::sqrt(double(slice.size()) * volume / (2 * half) / std::numbers::pi));
   const Width width = widest(slice, axis);
   surface.hinge = width.direction;
-  // Where the joint is as deep as wide, its hinge direction is not known, and the surface gets the same curvature in
+  // If the joint is about as deep as wide, its hinge direction is not known, and the surface gets the same curvature in
   // all directions.
   const double sure = std::clamp((width.ratio - kRound) / (kClearlyWide - kRound), 0.0, 1.0);
   const double mean = (shape.along_hinge + shape.across_hinge) / 2;

@@ -10,15 +10,15 @@ namespace {
 
 using Points = std::vector<BoneDistance::SurfacePoint>;
 
-// The overlap for one shift: the sum of the squares of all depths beyond the allowed ones, the gradient and the
-// Gauss-Newton Hessian of half that sum, and the largest depth.
+// The overlap of two bones at one shift. `cost` is the sum of the squares of all depths beyond the allowed ones;
+// `gradient` and `hessian` (Gauss-Newton) belong to half that sum. `depth` is the largest of these depths, mm.
 struct Overlap {
   double cost = 0, depth = 0;
   glm::dvec3 gradient{0};
   glm::dmat3 hessian{0};
 };
 
-// The two bones of a joint at one step of the joint's rotation.
+// The two bones of a joint, the turning bone in one step of the joint's rotation.
 class TurnedBones {
  public:
   //   reach  upper limit on the length of a shift, mm
@@ -46,15 +46,15 @@ class TurnedBones {
   }
 
  private:
-  // Returns whether a shift of at most `reach` mm may bring a surface point of one bone into the other bone. The
-  // interpolated distance changes by little more than a millimetre per millimetre: hence the factor 1.2.
+  // Returns true if a shift of at most `reach` mm may bring a surface point of one bone into the other bone. The factor
+  // 1.2 is needed because the interpolated distance may change by a little more than the point moves.
   static bool comes_near(const BoneDistance& bone, const glm::dvec3& place, double mm, double reach) {
     const auto there = bone.at(place);
     return there ? there->mm + mm < 1.2 * reach : bone.outside(place) < reach;
   }
 
-  // Returns the allowed overlap, mm: half a voxel along the contact's normal, averaged over the voxel axes of both
-  // bones.
+  // Returns the depth of overlap that is allowed, mm: half a voxel along the contact's normal, averaged over the voxel
+  // axes of both bones.
   double allowed(const glm::dvec3& normal) const {
     return (glm::length(bones_.spacing * normal) + glm::length(bones_.spacing * (back_.linear * normal))) / 4;
   }
@@ -74,20 +74,21 @@ class TurnedBones {
 
   const JointBones& bones_;
   AffineTransform motion_, back_;
-  Points fixed_, turning_;  // surface points that can reach the other bone; turning_ after the motion
+  Points fixed_, turning_;  // surface points that can reach the other bone, those of the turning bone after its motion
 };
 
-// Returns the shift, shortened as far as both limits of `bound` require.
+// Returns `shift` shortened so that both limits of `bound` hold.
 glm::dvec3 within(glm::dvec3 shift, const ShiftBound& bound) {
   if (const double length = glm::length(shift); length > bound.most_mm) shift *= bound.most_mm / length;
   if (shift == glm::dvec3(0) || glm::length(bound.carried + shift) <= bound.whole_mm) return shift;
-  // Solves |carried + s shift| = whole_mm for s.
+  // Solves |carried + s shift| = whole_mm for the factor s.
   const double a = glm::dot(shift, shift), b = glm::dot(bound.carried, shift);
   const double c = std::min(glm::dot(bound.carried, bound.carried) - bound.whole_mm * bound.whole_mm, 0.0);
   return shift * std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
 }
 
-// Minimizes the square of the shift plus `weight` times the squares of the depths, starting from `shift`.
+// Minimizes the squared length of the shift plus `weight` times the squares of the overlaps' depths, starting from
+// `shift`.
 glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, const ShiftBound& bound, int iterations) {
   Overlap at = bones.overlap(shift);
   double damping = 1e-3, cost = glm::dot(shift, shift) + weight * at.cost;
@@ -110,7 +111,7 @@ glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, co
   return shift;
 }
 
-// Returns the shift, shortened as far as possible while the overlap stays at most `depth`.
+// Returns `shift` shortened as far as possible by bisection, so that the overlap stays no deeper than `depth` mm.
 glm::dvec3 shortened(const TurnedBones& bones, const glm::dvec3& shift, double depth) {
   double blocked = 0, free = 1;
   for (int i = 0; i < 8; ++i) {

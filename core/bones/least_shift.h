@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds the smallest translation that separates one bone from another. Bones overlap where the sum of their signed
-// distances is negative. Between the surfaces that sum is the width of the gap, or if negative the depth of the
-// overlap; moving a bone by a millimetre changes it by a millimetre at most. The sum is sampled at the surface points
-// of both bones. At rest it is nowhere negative, since a voxel belongs to one bone only.
+// distances is negative. Between the surfaces, this sum is the width of the gap or, if negative, the depth of the
+// overlap; when a bone moves by a millimetre, the sum changes by a millimetre at most. The sum is sampled at the
+// surface points of both bones. At rest it is nowhere negative, since a voxel belongs to one bone only.
 //
-// An overlap of half a voxel is allowed, since the surfaces in a volume are only that exact, and less exact where
-// slices are thick. The cost is the square of the shift plus the weighted squares of all deeper overlaps, with a rising
-// weight: a problem in three variables, solved by Levenberg-Marquardt [More 1978]. The bone is moved along the path
-// that the joint turns, so that it is pushed back to the side that it comes from, also where the other bone is thin.
-// Finally bisection shortens the shift as far as the bones stay separate.
+// An overlap of half a voxel is allowed, since the surfaces in a volume are no more exact than that, and less exact
+// where slices are thick. The cost is the square of the shift plus the weighted squares of all deeper overlaps, with a
+// rising weight: a problem in three variables, solved by Levenberg-Marquardt [More 1978]. The bone is followed along
+// the path of the joint's rotation, so that it is pushed back to the side that it comes from, even where the other
+// bone is thin. Finally, bisection shortens the shift as far as the bones stay separate.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,8 @@
 
 namespace limber {
 
-// The distance fields of two bones that meet in a joint, each near the other bone, both in the same frame at rest.
+// The distance fields of two bones that meet in a joint. Each field covers the neighbourhood of the other bone; both
+// are given in the grid's axes at rest.
 struct JointBones {
   const BoneDistance& fixed;
   const BoneDistance& turning;
@@ -26,22 +27,22 @@ struct JointBones {
 };
 
 struct LeastShift {
-  glm::dvec3 shift{0};      // mm; exactly zero where the bones do not overlap
-  bool free = true;         // true: with the shift, overlaps exceed half a voxel by a twentieth of a voxel at most
-  double depth_before = 0;  // deepest overlap beyond half a voxel without the shift, mm
-  double depth_after = 0;   // deepest overlap beyond half a voxel with the shift, mm
+  glm::dvec3 shift{0};  // mm; exactly zero where the bones do not overlap
+  bool free = true;     // true: after the shift, no overlap exceeds half a voxel by more than a twentieth of a voxel
+  double depth_before = 0;  // how far the deepest overlap exceeds half a voxel without the shift, mm
+  double depth_after = 0;   // how far the deepest overlap exceeds half a voxel with the shift, mm
 };
 
-// Limits of a shift. A bone that would need a longer shift is shifted as far as the limits allow.
+// Limits on a shift. A bone that needs a longer shift is shifted only as far as the limits allow.
 struct ShiftBound {
   double most_mm;         // upper limit on the length of the shift, mm
-  double whole_mm = 1e9;  // upper limit on the length of shift + carried, mm
+  double whole_mm = 1e9;  // upper limit on the length of the sum of `shift` and `carried`, mm
   glm::dvec3 carried{0};  // shift of the fixed bone by the joints above it, mm; no longer than whole_mm
 };
 
 // Returns the smallest shift of the turning bone that separates it from the fixed one. The shift is given along the
 // axes of the grid in the frame of the fixed bone, and is applied after the motion.
-//   path      rigid motions of the turning bone in steps of some ten degrees; the last one is the pose
+//   path  rigid motions of the turning bone in steps of some ten degrees; the last one is the pose
 LeastShift least_shift(const JointBones& bones, const std::vector<AffineTransform>& path, const ShiftBound& bound);
 
 }  // namespace limber

@@ -42,17 +42,18 @@ class TwoTrees {
 
  private:
   enum Side : std::int8_t { kFree, kSource, kSink };
-  // Values of Node::parent that are no edge numbers.
+  // Values of Node::parent that are not edge numbers: the parent is the source or sink itself, or there is no parent.
   static constexpr std::int8_t kTerminal = Edges, kOrphan = Edges + 1;
 
   struct Node {
     Side side = kFree;
-    std::int8_t parent = kOrphan;  // number of the edge to the parent
-    std::int32_t distance = 0;     // number of edges to the terminal, as known at `time`
+    std::int8_t parent = kOrphan;  // number of the edge that leads to the parent
+    std::int32_t distance = 0;     // number of edges from the source or sink, as known at `time`
     std::int64_t time = 0;
     bool is_active = false;
   };
-  // An edge that joins the two search trees: edge number `edge` of node `from_source`.
+  // An edge that joins the two search trees: edge number `edge` of the node `from_source`, which is in the source's
+  // tree.
   struct Meeting {
     std::int32_t from_source = -1;
     int edge = 0;
@@ -70,8 +71,8 @@ class TwoTrees {
     tree_[active_.front()].is_active = false;
     active_.pop_front();
   }
-  // Returns the remaining capacity of edge k of node i: away from the source in the source's tree, towards the sink in
-  // the sink's tree.
+  // Returns the remaining capacity of edge k of node i: away from the source if the node is in the source's tree,
+  // towards the sink if it is in the sink's tree.
   std::int32_t outward(std::int32_t i, int k) const {
     return tree_[i].side == kSource ? graph_.capacity[i][k] : graph_.capacity[graph_.neighbour[i][k]][back(k)];
   }
@@ -134,8 +135,8 @@ class TwoTrees {
     push(n, flow);
   }
 
-  // Returns the number of edges from a node to its terminal, or -1 where the path to the root ends at an orphan. Stores
-  // the distances of the nodes on the path.
+  // Returns the number of edges from a node to its terminal (source or sink), or -1 if the path there ends at an
+  // orphan, a node without parent. Stores the distances of the nodes on the path.
   std::int32_t distance_to_terminal(std::int32_t i) {
     std::int32_t steps = 0, at = i;
     for (;; ++steps, at = graph_.neighbour[at][tree_[at].parent]) {

@@ -9,18 +9,20 @@
 
 namespace limber {
 
-// A graph of voxels with capacities.
-//   Edges  edges per node: 26 to all neighbours of a voxel, or 6 through its faces
+// A graph of voxels whose edges have capacities.
+//   Edges  edges per node: 26 to all neighbours of a voxel, or 6 to the neighbours across its faces
 template <int Edges>
 struct CutGraph {
-  // Neighbours of each node; -1: none. Where edge k of i leads to j, edge Edges - 1 - k of j leads back to i.
+  // Neighbours of each node; -1: none. If edge k of node i leads to j, then edge Edges - 1 - k of node j leads back to
+  // i.
   std::vector<std::array<std::int32_t, Edges>> neighbour;
-  std::vector<std::array<std::int32_t, Edges>> capacity;  // capacity of each edge towards the neighbour
+  // Capacity of each edge, in the direction towards the neighbour.
+  std::vector<std::array<std::int32_t, Edges>> capacity;
   std::vector<std::int32_t> terminal;  // per node; positive: capacity from the source, negative: capacity to the sink
 };
 
-// Returns 1 for every node on the source's side of a minimum cut, else 0. Nodes that the source cannot reach any more
-// lie on the sink's side. The sum of the positive terminals must stay below 2^62.
+// Returns 1 for every node on the source's side of a minimum cut, else 0. Nodes that the source cannot reach after the
+// cut are on the sink's side. The sum of the positive `terminal` values must stay below 2^62.
 template <int Edges>
 std::vector<std::uint8_t> min_cut(CutGraph<Edges> graph);
 extern template std::vector<std::uint8_t> min_cut(CutGraph<6> graph);

@@ -12,10 +12,10 @@
 namespace limber {
 
 namespace {
-// Share of a connected piece's voxels on one side of the body from which on the whole piece belongs to this side: the
-// other voxels only lie nearer to a rig bone of the other side that reaches across.
+// Share of the voxels of a connected component of bone on one side of the body, from which on the whole component
+// belongs to this side. Its other voxels only lie nearer to a rig bone of the other side that reaches across.
 constexpr double kClearMajority = 0.85;
-// Share of a bone's voxels that decide which rig bone carries the bone: those nearest to rig bones.
+// Share of a bone's voxels that decide which rig bone carries the bone: those nearest to any rig bone.
 constexpr double kAttached = 0.1;
 
 class Assigning {
@@ -42,8 +42,8 @@ class Assigning {
   }
 
  private:
-  // Voxels that may follow the same rig bones. A bone that must stay whole has its own set where it may follow several
-  // rig bones.
+  // A set of voxels that may follow the same rig bones. A bone that must stay whole gets a set of its own if it may
+  // follow several rig bones.
   struct Set {
     const LabelBones* bones;
     std::vector<std::int32_t> voxels;
@@ -90,7 +90,7 @@ class Assigning {
     for (int side = 0; side < 2; ++side) follow(sides[side], bones.candidates[side], bones.single);
   }
 
-  // Returns the connected components of a set of voxels.
+  // Returns the connected components of a set of bone voxels.
   std::vector<std::vector<std::int32_t>> pieces_of(const Set& set) {
     std::vector<std::vector<std::int32_t>> pieces;
     std::vector<bool>& seen = seen_;
@@ -143,7 +143,8 @@ class Assigning {
         ->first;
   }
 
-  // Spreads the rig bones of named labels, breadth first, into marrow and spongy bone without a name.
+  // Lets marrow and spongy bone without a name follow the rig bones of named labels that they touch, spreading breadth
+  // first.
   void spread_into_marrow() {
     std::vector<std::int32_t> front;
     for (std::int32_t i = 0; i < graph_.size(); ++i)
@@ -169,7 +170,8 @@ class Assigning {
   const std::map<Label, LabelBones>& labels_;
   AffineTransform world_from_voxel_;
   std::vector<Set> sets_;
-  std::vector<int> set_of_;  // index in sets_ for each voxel of the graph; -1: the label has no known name
+  // Index in sets_ for each voxel of the graph; -1: rig bones of the voxel's label are not known.
+  std::vector<int> set_of_;
   std::vector<bool> seen_;
   NamedBones named_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Assigns bone voxels to rig bones where the labels' names say which bone of the body they are. A label that holds left
-// and right is split into its connected pieces, and a piece that holds both sides is split by the nearer side of the
-// rig. A single bone of the body is never cut: where several rig bones may carry it (a rib on a rig with two thorax
-// bones), its voxels nearest to them decide for all its voxels, since the bone is attached there. Marrow and spongy
-// bone without a name follow the named bone around them.
+// Assigns bone voxels to rig bones if the labels' names say which bone of the body they are. A label that holds left
+// and right is split into its connected components, and a component that holds both sides is split by the nearer side
+// of the rig. A single bone of the body is never cut: if several rig bones may carry it (a rib on a rig with two thorax
+// bones), its voxels nearest to these rig bones decide for the whole bone, since the bone is attached there. Marrow and
+// spongy bone without a name follow the named bone around them.
 #pragma once
 
 #include <map>
@@ -15,21 +15,21 @@
 namespace limber {
 
 struct NamedBones {
-  std::vector<int> bone;  // rig bone of each voxel of the graph; -1: to be found by shape
-  // Index in `candidates` for each voxel of the graph. Voxels of different groups are different bones.
+  std::vector<int> bone;  // rig bone of each voxel of the graph; -1: must be found by shape
+  // Index in `candidates` for each voxel of the graph. Voxels with different indices (groups) are different bones.
   std::vector<std::int32_t> group;
-  std::vector<std::vector<int>> candidates;  // by group: rig bones that the group may follow; empty: any
-  std::vector<FoundBy> found_by;             // for each voxel of the graph
+  std::vector<std::vector<int>> candidates;  // for each group, the rig bones that it may follow; empty: any
+  std::vector<FoundBy> found_by;             // how the rig bone of each voxel of the graph was found
   static constexpr std::int32_t kUnnamed = 0;
 };
 
 NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
                               const Armature& armature, const std::map<Label, LabelBones>& labels);
 
-// The voxels whose rig bones the names do not decide. Their graph has no connections between different groups.
+// The voxels whose rig bones do not follow from names. Their graph has no connections between different groups.
 struct Unsettled {
   BoneGraph graph;
-  std::vector<std::int32_t> from;  // index in the whole graph of each voxel of this one
+  std::vector<std::int32_t> from;  // for each voxel of this graph, its index in the whole graph
 };
 Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named);
 

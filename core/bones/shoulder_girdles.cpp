@@ -11,8 +11,7 @@ namespace limber {
 namespace {
 
 // Distance from the shoulder joint within which a shoulder blade comes, as a share of the upper arm's length. In the
-// BodyParts3D man the shoulder blade comes within a fifteenth of that length of the joint, but a rib only within a
-// fifth.
+// BodyParts3D man the shoulder blade comes as near to the joint as a fifteenth of that length, but a rib only a fifth.
 constexpr double kReach = 0.15;
 
 }  // namespace

@@ -2,8 +2,8 @@
 // Decides which bone tissue moves with a shoulder. A rig has a straight bone for the spine and one for each shoulder,
 // and the breastbone and upper ribs lie nearer to the shoulder's rig bones than to the spine's. Only the collarbone,
 // which lies along its rig bone, and the shoulder blade, which reaches the shoulder joint, move with the shoulder. All
-// other bones belong to the trunk, such as the breastbone. So do bones on both sides of the body, and bones that lie
-// before the beginning of the collarbone, measured along its rig bone.
+// other bones belong to the trunk, such as the breastbone. So do bones that reach across to the other side of the body,
+// and bones that lie before the beginning of the collarbone, measured along its rig bone.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@
 namespace limber {
 
 struct ShoulderGirdle {
-  int bone;                 // rig bone of the shoulder
-  int trunk;                // rig bone of the trunk that the shoulder is attached to
-  glm::dvec3 shoulder;      // head of the upper arm; world, mm
-  double reach;             // distance from the shoulder joint within which the shoulder blade comes, mm
-  glm::dvec3 begin, along;  // head of the rig bone in world coordinates, mm, and its unit direction
+  int bone;                 // rig bone of the collarbone
+  int trunk;                // rig bone of the trunk to which the collarbone is attached
+  glm::dvec3 shoulder;      // the shoulder joint: head of the upper arm's rig bone; world, mm
+  double reach;             // distance from the shoulder joint within which a shoulder blade comes, mm
+  glm::dvec3 begin, along;  // head of the collarbone's rig bone (world, mm), and the bone's unit direction
 
-  std::optional<glm::dvec3> opposite;  // the other shoulder; world, mm
+  std::optional<glm::dvec3> opposite;  // shoulder joint on the body's other side; world, mm
 
   bool begins_beyond(const glm::dvec3& place) const { return glm::dot(place - begin, along) < 0; }
   bool is_on_other_side(const glm::dvec3& place) const {
@@ -28,7 +28,8 @@ struct ShoulderGirdle {
   }
 };
 
-// Returns the girdles of all rig bones whose names mean a shoulder and that have an upper arm and a parent.
+// Returns a girdle for each rig bone whose name means a collarbone and that has an upper arm as its child and a bone of
+// the trunk above it.
 std::vector<ShoulderGirdle> shoulder_girdles(const Armature& armature);
 
 }  // namespace limber

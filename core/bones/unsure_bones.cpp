@@ -8,7 +8,7 @@
 namespace limber {
 
 namespace {
-// Returns whether one of the cuts lies at a knee, by the names of the rig bones.
+// Returns true if one of the cuts lies at a knee, according to the names of the rig bones.
 bool has_knee(const std::vector<BroadCut>& cuts, const Armature& armature) {
   std::vector<std::string> names;
   std::vector<int> parents;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The options that name a body: VOLUME --rig RIG [--tissues T] [--bones L,L] [--bone-map FILE].
+// The options that name the files of a body: VOLUME --rig RIG [--tissues T] [--bones L,L] [--bone-map FILE].
 #pragma once
 
 #include <string>
@@ -16,7 +16,8 @@ namespace limber::cmd {
 
 struct BodyOptions {
   std::string volume, rig, tissues, bone_map;  // file names; empty: not given
-  std::vector<double> bones;                   // bone labels as in the file; empty: from the tissue table, else guessed
+  // Labels of bone, as values in the volume's file. Empty: the tissue table names them, or they are guessed.
+  std::vector<double> bones;
 };
 
 struct Body {
@@ -24,10 +25,10 @@ struct Body {
   TissueTable tissues;
   Armature rig;
   BoneMap bone_map;                 // the rig bones that the user assigned to labels
-  std::vector<std::string> doubts;  // reasons for which the files may not belong together (input_doubts.h)
+  std::vector<std::string> doubts;  // signs that the files are not of the same body (input_doubts.h)
 };
 
-// Adds the options. `options` must live as long as the command.
+// Adds these options to a command. `options` must live as long as the command.
 void add_body_options(CLI::App& command, BodyOptions& options);
 
 // Reads the files that the options name. Warnings about the files go to stderr.

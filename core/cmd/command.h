@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The subcommands of the command line: one file and one function each, added in run.cpp. A function adds its subcommand
-// with its options to the app, and a callback that does the work. Errors are thrown, never printed there. Exit codes: 0
-// done; 1 the input or the request is wrong; 2 usage; 3 cancelled; 4 the pose could not be reached, so the outputs show
-// the last pose that was reached on the way to it; 5 with --strict, a gate of the result failed, but the outputs are
-// written as without --strict.
+// The subcommands of the command line. Each has its own source file and one function, which run.cpp calls. The function
+// adds the subcommand to the app, with its options and with a callback that does the work. The callback throws errors
+// and never prints them. Exit codes: 0 done; 1 the input or the request is wrong; 2 wrong usage; 3 cancelled; 4 the
+// pose could not be reached, so the outputs show the last pose that was reached on the way to it; 5 a quality gate of
+// the result failed with --strict, but the outputs are written as without --strict.
 #pragma once
 
 #include <string>
@@ -37,7 +37,7 @@ void add_skin_points(CLI::App& app);
 void add_tissues(CLI::App& app);
 void add_weights(CLI::App& app);
 
-// Adds every subcommand above and --version.
+// Adds all subcommands of this header, and --version.
 void add_commands(CLI::App& app);
 // Parses and runs the command line. Prints an error as one line and returns the exit code. Only this function turns
 // exceptions into exit codes.
@@ -47,24 +47,24 @@ int run(CLI::App& app, int argc, char** argv);
 struct PoseNotReached {};
 struct GateFailed {};
 
-// Prints "limber: gate failed: ..." on stderr, one line for each sentence.
+// Prints one line "limber: gate failed: ..." on stderr for each sentence.
 void tell_failed_gates(const std::vector<std::string>& sentences);
 
 // Prints the report on stdout as a table.
 void print_table(const Report& report);
 
-// Prints on stdout the description of a file, as JSON or as text made from the JSON.
+// Prints the description of a file on stdout, as JSON or as text that is made from the JSON.
 void print_description(const std::string& json, bool as_json);
 
 // Prints "limber: warning: ..." on stderr as one line.
 void warn(const std::string& line);
 void warn(const std::vector<std::string>& lines);
 
-// Shows the progress of a long command: a bar when stderr is a terminal, JSON lines ({"stage", "fraction"}) with
-// --progress json, otherwise nothing. Ctrl-C cancels the command.
+// Shows the progress of a long command: JSON lines ({"stage", "fraction"}) with --progress json, otherwise a bar if
+// stderr is a terminal, otherwise nothing. Ctrl-C cancels the command.
 class CommandProgress final : public Progress {
  public:
-  // Shows JSON lines if `mode` is "json". If `mode` is "", shows a bar on a terminal.
+  // `mode` is the value of --progress: "json" for JSON lines; "" for a bar if stderr is a terminal.
   explicit CommandProgress(const std::string& mode);
   ~CommandProgress() override;
   bool cancelled() const override;

@@ -12,9 +12,10 @@
 namespace limber::cmd {
 
 namespace {
-// CLI11 stores validators by name with an option. The validator "files" tells which files the option's value names. It
-// is inactive while options are parsed; files_of() calls it afterwards. It returns the files as text: for each file the
-// letter 'r' (read) or 'w' (written), its path and a zero byte, which no path contains.
+// A CLI11 option can store named validators. The validator "files" is used to store a function with an option: it
+// returns the files that the option's value names. It is inactive while options are parsed; files_of() calls it
+// afterwards. Since a validator returns text, the text has for each file the letter 'r' (read) or 'w' (written), the
+// path and a zero byte, which no path contains.
 constexpr const char* kFiles = "files";
 constexpr char kRead = 'r', kWritten = 'w';
 
@@ -45,7 +46,7 @@ OptionFiles files_of(CLI::Option& option, std::string value) {
   }
 }
 
-// Returns a file and the files that are read together with it, such as a project's journal.
+// Returns a file together with the files that are read when it is read, such as the journal of a project.
 std::vector<Path> with_companions(const Path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return {path};
@@ -53,8 +54,8 @@ std::vector<Path> with_companions(const Path& path) {
   return is_volume_path(path) ? files_of_volume(path) : std::vector<Path>{path};
 }
 
-// Returns whether the word is "nan", "inf" or a number too large for a double. CLI11 accepts these words, and its range
-// checks do not refuse "nan".
+// Returns true if the word is "nan", "inf" or a number too large for a double. CLI11 takes these words as numbers, and
+// its range checks do not refuse "nan".
 bool is_no_finite_number(const std::string& word) {
   char* end = nullptr;
   const double number = std::strtod(word.c_str(), &end);

@@ -44,7 +44,7 @@ void convert_volume(const Options& options) {
   if (exporter && !exporter->takes_voxels)
     throw Error("a volume has no mesh to write", options.out, "`limber resample --method fem --mesh-out` makes one");
   if (exporter && exporter->needs_frequency && !options.material.frequency)
-    materials_of({}, options.material, options.out);  // throws the Error that says which option is missing
+    materials_of({}, options.material, options.out);  // throws an Error that says which option is missing
   if (exporter) check_place(options.out);
   else check_writable(options.out);
   CommandProgress progress(options.progress);
@@ -60,7 +60,7 @@ void convert_volume(const Options& options) {
   warn(file.warnings);
   if (exporter) {
     require_labels(file.volume, tissues_of(file, options.material.tissues), options.in);
-    if (is_surface_path(options.out))  // this also prints the sizes of the surfaces
+    if (is_surface_path(options.out))  // write_surfaces_of() also prints the sizes of the surfaces
       return write_surfaces_of(file.volume, tissues_of(file, options.material.tissues), {}, options.out, progress);
     return export_body(*exporter, file, options, progress);
   }
@@ -73,7 +73,7 @@ OptionFiles files_of_output(const std::string& name) {
   try {
     if (const Exporter* exporter = exporter_for(name)) files.written = files_exported_as(*exporter, name);
   } catch (const Error&) {
-    // The conversion itself throws an Error for a wrong name.
+    // Ignores a wrong output name here; the conversion itself reports it.
   }
   return files;
 }

@@ -10,7 +10,8 @@
 namespace limber::cmd {
 
 // Adds the subcommand `experiment`.
-//   pictures  returns what draws bodies in 3D. Empty in a program without the renderer: the report then says so.
+//   pictures  returns an object that draws bodies in 3D for the report. Empty in a program without the renderer; the
+//             report then says that it has no pictures.
 void add_experiment(CLI::App& app, const StartPictures& pictures = {});
 
 }  // namespace limber::cmd

@@ -9,7 +9,8 @@
 namespace limber::cmd {
 
 namespace {
-// Limits the number of file names that are compared with the inputs. No motion has that many frames.
+// Upper limit on the number of frames for which output files are compared with the inputs. No motion has so many
+// frames.
 constexpr int kMostFrames = 100000;
 
 struct FrameRange {

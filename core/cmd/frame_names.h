@@ -10,8 +10,8 @@ namespace limber::cmd {
 
 constexpr const char* kFrame = "{frame}";
 
-// Returns the frame numbers of a request for a motion with `frame_count` frames. Throws Error for a malformed request,
-// or one beyond the motion's last frame.
+// Returns the numbers of the frames that a request FIRST:LAST[:STEP] selects. Throws Error for a malformed request, or
+// a request beyond the last of the motion's `frame_count` frames.
 std::vector<int> frames_of(const std::string& request, int frame_count);
 
 // Replaces each {frame} in the name by the frame's number with at least four digits.

@@ -11,8 +11,9 @@
 namespace limber::cmd {
 
 namespace {
-constexpr double kLongest = 50;     // longest shift that may be requested, mm
-constexpr double kOfAVoxel = 0.99;  // fraction of a voxel's edge that bones may move; below 1 because of rounding
+constexpr double kLongest = 50;  // longest shift that may be requested, mm
+// Largest motion of a bone with --glide voxel, as a share of a voxel's edge. It is below 1 because of rounding errors.
+constexpr double kOfAVoxel = 0.99;
 }  // namespace
 
 void add_glide_option(CLI::App& command, std::string& glide) {

@@ -29,7 +29,7 @@ Json as_json(double value) {
   return value;
 }
 
-// Describes how the process that parses volume files is protected against hostile ones.
+// Describes how the process that parses volume files is protected against hostile files.
 Json describe_reader() {
   const Protection reader = reader_protection();
   return {{"own_process", reader.own_process},

@@ -43,10 +43,11 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
 }
 
-// Returns the key whose value is the command's first argument.
+// Returns the key of the job whose value is the first argument on the command line.
 const char* subject_of(const Json& job) { return job.at("command") == "phantom" ? "subject" : "volume"; }
 
-// Returns the command-line option that a key stands for. Keys may be spelled as in reports: "pose_name", "joints".
+// Returns the command-line option that a key of the job stands for. A key may also be spelled as in reports:
+// "pose_name" for --pose-name, "joints" for --joint.
 std::string option_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', '-');
   return key == "joints" ? "--joint" : "--" + key;
@@ -95,7 +96,7 @@ struct Options {
 
 void run(const Options& options) {
   become_worker(options.memory_limit, options.yields, options.parent);
-  std::optional<Heartbeat> heartbeat;  // only where a parent process reads it
+  std::optional<Heartbeat> heartbeat;  // empty without a parent process to read it
   if (options.parent > 0) heartbeat.emplace();
   const Path path = options.file;
   Json job = read_job(path);
@@ -108,7 +109,7 @@ void run(const Options& options) {
   kCommands.at(words.front())(app);
   CLI::App* command = app.get_subcommand(words.front());
   command->parse_complete_callback([=] { check_files(*command, where); });
-  std::reverse(words.begin(), words.end());  // CLI11 takes the words from the end of the list
+  std::reverse(words.begin(), words.end());  // CLI11 reads the words from the end of the list to its start
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {

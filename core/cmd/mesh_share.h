@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Says how much of the body the mesh of a solve contains, so that nobody takes the mesh for a phantom of the whole
-// body.
+// Describes how much of the body a FEM mesh contains, so that the user does not take the mesh for the whole body.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 
 namespace limber::cmd {
 
-// Returns a sentence with the percentage of the body's rest volume, and the number of its tissues, that the mesh's tets
-// contain.
+// Returns a sentence that says which percentage of the body's rest volume, and how many of its tissues, the tets of the
+// mesh contain.
 std::string share_of_body(const TissueModel& model, const LabelVolume& body);
 
 }  // namespace limber::cmd

@@ -24,7 +24,7 @@ void apply_requests(Pose& pose, const Armature& armature, const PoseOptions& opt
   }
 }
 
-// Returns the pose of one frame of the motion, or without `frame` the poses of all its frames.
+// Returns the pose of frame `frame` of the motion. Returns the poses of all frames if `frame` is empty.
 std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& armature, std::optional<int> frame) {
   const Motion motion = read_motion(options.motion, options.up);
   RetargetMap map =

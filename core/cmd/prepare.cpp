@@ -71,8 +71,8 @@ void merge(LabelVolume& volume, TissueTable& tissues, const std::string& text) {
   std::erase_if(tissues.tissues, [&](const Tissue& tissue) { return tissue.label == from; });
 }
 
-// Returns the label for new skin voxels, or nothing for the label of the nearest skin tissue. A whole number that no
-// tissue has adds a new tissue.
+// Returns the label for new skin voxels. If `text` is empty, returns nothing: new skin gets the label of the nearest
+// skin. If `text` is a whole number that is no tissue's value, adds a new tissue.
 std::optional<Label> skin_label_of(TissueTable& tissues, const std::string& text) {
   if (text.empty()) return std::nullopt;
   if (const Tissue* tissue = find_tissue(tissues, text)) {
@@ -134,7 +134,7 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   return std::move(closed.volume);
 }
 
-// Removes the tissues of which the volume has no voxel, so that the file names no missing label.
+// Removes tissues without voxels in the volume, so that the written file names no label that it does not contain.
 void keep_present(TissueTable& tissues, const LabelVolume& volume) {
   std::vector<bool> present(65536, false);
   for (Label label : volume.voxels) present[label] = true;

@@ -13,7 +13,8 @@ namespace limber::cmd {
 namespace {
 constexpr const char* kEraseLine = "\r\033[K";
 
-// Returns the number of bytes of the UTF-8 character that `text` starts with, or 0 where it starts with none.
+// Returns the number of bytes of the UTF-8 character at the start of `text`; 0 if `text` does not start with a valid
+// one.
 std::size_t character_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -108,7 +109,7 @@ void draw_bar(std::string_view text) {
 bool all_is_printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
 void keep_standard_streams() {
-  // open() returns the lowest free descriptor, so each call fills the first missing stream. The stream is read-only, so
+  // open() returns the lowest free descriptor, so it opens the missing stream itself. The stream is read-only, so that
   // writing to it fails and the failure is reported.
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);

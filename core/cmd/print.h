@@ -18,14 +18,14 @@ std::string one_line(std::string_view text);
 // Print to stdout. The text is passed through printable() first.
 void print(const char* format, ...) __attribute__((format(printf, 1, 2)));
 void print_text(std::string_view text);
-// Prints JSON to stdout. Unprintable characters can only occur in its strings, so they are written as \u00XX and no
-// character is lost.
+// Prints JSON to stdout. Control characters, which can only occur in strings of the JSON, are written as \u00XX, so
+// that no character is lost.
 void print_json(std::string_view json);
 
 // Prints one line to stderr, and erases a progress bar on that line first.
 void tell(std::string_view line);
-// Prints to stderr without changes. Use it only for progress bars, which contain only the program's own words and
-// terminal commands.
+// Prints to stderr without replacing control characters. It is only for progress bars, which contain only the program's
+// own words and terminal commands.
 void draw_bar(std::string_view text);
 
 // Flushes stdout. Returns false when some of the output could not be written, for example on a full disk.

@@ -12,7 +12,7 @@ namespace limber::cmd {
 namespace {
 constexpr const char* kErase = "\r\033[K";  // erases the line on a terminal
 
-// These variables are global because a signal handler can reach nothing else.
+// These variables are global because a signal handler can access only global variables.
 volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t leaves_at_once = 0;
 void on_interrupt(int) {

@@ -38,7 +38,7 @@ namespace {
 struct Options {
   std::string file, action = "inspect", part;
   std::string tissues, rig, weights, pose, motion, seams, bone_map, output, progress, up = "y";
-  PoseRequest body;  // --pose-name and --joint
+  PoseRequest body;  // values of --pose-name and --joint
   bool json = false, replace = false;
 };
 
@@ -57,7 +57,7 @@ void require_new(const Path& path, bool replace) {
           "choose another name, or say --replace");
 }
 
-// ---- the action create
+// ---- limber project NAME.limber create
 
 void read_body_parts(const Options& options, Document& document, Progress& progress) {
   VolumeFile file = read_volume(options.part, progress);
@@ -117,7 +117,7 @@ void create(const Options& options) {
   create_project({.document = read_parts(options, progress)}, options.file, writer, progress);
 }
 
-// ---- the actions verify and recover
+// ---- limber project NAME.limber verify, and recover
 
 void verify(const Options& options) {
   CommandProgress progress(options.progress);
@@ -128,7 +128,7 @@ void verify(const Options& options) {
   print("%s is whole\n", options.file.c_str());
 }
 
-// A store that has the chunks of a document in memory.
+// The chunks (stored pieces) of a document, held in memory.
 class DocumentChunks final : public ChunkSource, public ChunkSink {
  public:
   explicit DocumentChunks(const Document& document) { DocumentWriter().write(document, *this, Packing::Quick); }
@@ -143,8 +143,8 @@ class DocumentChunks final : public ChunkSource, public ChunkSink {
   std::unordered_map<ChunkHash, std::string, ChunkHash::Hasher> chunks_;
 };
 
-// Adds the file that the user named as a source for lost chunks: another copy of the project, damaged or not, or the
-// volume that the project was made from.
+// Adds the file FILE of the command line as a source of lost chunks. FILE is another copy of the project, damaged or
+// not, or the volume from which the project was made.
 void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) {
   if (options.part.empty()) return;
   if (is_project(options.part)) {
@@ -156,8 +156,8 @@ void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) 
   chunks.add(std::make_unique<DocumentChunks>(document));
 }
 
-// Reads the project. Rebuilds a damaged project from its undamaged chunks, which `chunks` then holds, so that `chunks`
-// must live as long as they are needed.
+// Reads the project. If it is damaged, rebuilds it from its undamaged chunks and stores these in `chunks`, which must
+// then outlive the returned project.
 Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
   std::string failure;
   try {
@@ -200,12 +200,13 @@ void recover(const Options& options) {
     warn(project.warnings);
   }
   DocumentWriter writer;
-  // Chunks that no part of the document uses are written too, and stay until the new file is saved again.
+  // Undamaged chunks that no part of the document uses are written too. They are kept until the new file is saved
+  // again.
   create_project(project, options.output, writer, progress,
                  chunks ? SpareChunks{chunks->latest_first(), chunks.get()} : SpareChunks{});
 }
 
-// ---- the action export
+// ---- limber project NAME.limber export
 
 template <class T>
 const T& there(const std::shared_ptr<const T>& part, const Options& options) {

@@ -19,8 +19,8 @@ namespace limber::cmd {
 namespace {
 constexpr double kSamePlaceMm = 1e-3;
 
-// Gives equal labels to equal tissues of two volumes: changes the labels of `file` to those that `table` has for the
-// same values in files, and adds the values that `table` lacks.
+// Makes the labels of a volume match those of `table`. A label of `file` changes to the label that `table` has for the
+// same file value. Tissues whose file value `table` lacks are added to it with a new label.
 void renumber(VolumeFile& file, TissueTable& table) {
   std::vector<Label> of(65536);
   Label highest = 0;
@@ -61,7 +61,8 @@ VectorVolume read_field(const std::string& path, const LabelVolume& after, Repor
   return field;
 }
 
-// Adds to the report what can only be measured with the displacement field, and with the rig and the pose if given.
+// Measures, for the report, all figures that need the displacement field, and those that need rig and pose if these are
+// given.
 void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after,
                         const TissueTable& tissues, Report& report) {
   JudgedPose judged{.rest = before, .posed = after, .tissues = tissues};

@@ -57,7 +57,7 @@ struct Options {
   bool nearest = false, mass_exact = false, fit_joints = false, contact = false, strict = false;
 };
 
-// A request IN=OUT: a file that is posed like the volume, and the output for it.
+// The value IN=OUT of --with or --landmarks: a file that is posed together with the volume, and its output file.
 struct Companion {
   std::string from, to;
 };
@@ -75,7 +75,7 @@ Companion landmark_paths(const std::string& request) {
   return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv");
 }
 
-// Returns the options for one frame of a sequence. The outputs' names contain the frame's number.
+// Returns the options for one frame of a sequence, with the frame's number in the names of all output files.
 Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
@@ -85,7 +85,8 @@ Options of_frame(const Options& options, int frame) {
   return one;
 }
 
-// Returns the path of the mesh file: NAME.node, as TetGen names it, unless NAME's extension is that of another format.
+// Returns the path of the mesh file: `name` itself if its extension is that of a mesh format, otherwise NAME.node
+// (TetGen format).
 Path mesh_path(const Path& name) {
   if (name.extension() == ".ele") return Path(name).replace_extension(".node");
   const Exporter* exporter = exporter_for(name);
@@ -102,8 +103,8 @@ FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
   };
 }
 
-// Returns a function that lists the files of an output option: its value with each of the endings. Without endings,
-// these are the files of a volume.
+// Returns a function that lists the files that an output option writes: for each of `endings` the option's value with
+// this ending; without endings the files of a volume.
 FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
   return [options, endings](const std::string& value) {
     OptionFiles files;
@@ -206,7 +207,7 @@ class SolveProgress {
         bones_(bones),
         rig_(rig),
         pose_(pose) {}
-  // Sets the pose that the following steps solve.
+  // Sets the target pose of the following steps.
   void aim_at(const Pose& pose) { pose_ = pose; }
   void begin(const TissueModel& model) const {
     if (!name_.empty()) write_fem_mesh(fem_mesh_of(model), name_);
@@ -248,7 +249,7 @@ Method method_of(const Options& options, SolveProgress& solve) {
   return fem;
 }
 
-// Warns the user where the mesh or the solve is not as requested.
+// Warns the user if the mesh or the solve differs from the request.
 void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bool contact) {
   if (deform.mesh && !deform.mesh->fallback.empty()) note(report, {deform.mesh->fallback});
   if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
@@ -264,7 +265,7 @@ void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bo
                 (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 
-// Returns the posed mesh. The region of a tet is the organ number of the label that fills most of the tet.
+// Returns the posed mesh. The region number of a tet is the organ number of the label that fills most of the tet.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   const TissueModel& model = shape.model;
   const TetMesh& mesh = model.fem.mesh;
@@ -349,7 +350,7 @@ void note_masses(Report& report, const MassExactReport& exact, const TissueTable
   }
 }
 
-// The landmarks in the rest pose, and the tissue and weights that pose them.
+// The landmarks at rest, and the body's tissue voxels and weights, which move the landmarks into the pose.
 struct Landmarks {
   std::vector<Landmark> rest;
   const TissueVoxels& tissue;
@@ -369,7 +370,7 @@ std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options&
 }
 
 // Measures the posed volume for the report.
-//   asked  #bones; transforms from rest to the requested pose, with the rig as given
+//   asked  #bones: motions from rest to the requested pose, by the rig from the file (before --fit-joints and --glide)
 void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed,
              Report& report) {
   report.doubts = body.doubts;
@@ -385,7 +386,8 @@ void measure(const Body& body, const Pose& pose, const std::vector<RigidTransfor
   report.deform = std::move(posed.report);
 }
 
-// Warns of bones that follow a wrong rig bone: a weights file may be older than the rig or from another program.
+// Warns of anatomical bones whose weights follow a wrong rig bone. The cause may be a weights file that is older than
+// the rig or from another program.
 void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed,
                           Report& report) {
   const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
@@ -393,7 +395,7 @@ void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& l
                                         motions, body.bone_map)));
 }
 
-// Writes the outputs and the report of one posed volume. Returns false where a strict gate of the report failed.
+// Writes the outputs and the report of one posed volume. Returns false if a gate failed that makes --strict fail.
 bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked,
             const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
   if (!options.mesh_out.empty() && !posed.shape)
@@ -475,7 +477,8 @@ void run(const Options& options) {
   else set_seams(tissue, options.seams, body, parts, progress);
   if (given) note(report, given->warnings);
   const SkinWeights weights = given ? std::move(given->weights) : new_weights(body, tissue, parts(), report, progress);
-  std::vector<std::vector<RigidTransform>> asked;  // requested poses, before fitting changes them and the rig
+  // Bone motions of each requested pose. They are stored now because fitting changes the poses and the rig later.
+  std::vector<std::vector<RigidTransform>> asked;
   for (const Pose& pose : poses) asked.push_back(posed_from_rest(body.rig, pose));
   if (options.fit_joints) {
     FittedPose fitted = fit_joints(body.file.volume, tissue, parts(), body.rig, poses[0], progress);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The option that names seams, the voxel faces where tissue touches without being connected: [--seams FILE|none].
+// The option --seams FILE|none. Seams are the voxel faces where tissue touches without being connected.
 #pragma once
 
 #include <functional>
@@ -13,12 +13,13 @@
 
 namespace limber::cmd {
 
-// Adds the option. `seams` must live as long as the command.
+// Adds the option --seams. `seams` must live as long as the command.
 void add_seam_option(CLI::App& command, std::string& seams);
 
-// Sets the seams of `tissue` as the option --seams says: the seams of its file, or none. Without the option they are
+// Sets the seams of `tissue`: those of the file that --seams names, or none with "none". Without the option, seams are
 // found automatically.
-//   parts  splits the bones; called only when seams must be found
+//   seams  the value of --seams; "": not given
+//   parts  returns the bone parts of the body, which finding seams needs; called only for that, since it is slow
 void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body,
                const std::function<const BoneParts&()>& parts, Progress& progress);
 

@@ -4,7 +4,7 @@
 //   bones[]{rest[16], pose[16]}      row-major 4x4, world from bone, at rest and posed
 //   rest[]                           x y z of each point
 //   influence_offsets[] influence_bones[] influence_weights[]
-//                                    point i has the influences from offsets[i] up to, without, offsets[i + 1]
+//                                    point i has the influences offsets[i] .. offsets[i + 1] - 1
 #include <cmath>
 #include <memory>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The surfaces of tissues on the command line: chooses the tissues and writes the files.
+// Writes the surfaces of the tissues that the options of a command select.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct SurfaceChoice {
 };
 
 // Writes the surfaces and prints one line for each tissue: triangles, vertices, Euler number, volume of the mesh and
-// volume of the voxels. Throws Error for an unknown tissue, or when a file cannot be written; then no file is left.
+// volume of the voxels. Throws Error for an unknown tissue or if a file cannot be written, and then leaves no file.
 void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice,
                        const std::string& output, Progress& progress);
 

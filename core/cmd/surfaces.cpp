@@ -52,7 +52,8 @@ void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const T
           surface.vertex.size(), surface.euler_number(), mm3, 100 * mm3 / by_voxels);
   }
 }
-// Returns the output file of that name, and existing files of single tissues that would be overwritten.
+// Returns the files that an output name stands for: the file itself, and existing files of single tissues (the name,
+// "-" and more) that may be overwritten.
 OptionFiles files_of_surfaces(const std::string& name) {
   const Path path = name;
   OptionFiles files{{}, {path}};

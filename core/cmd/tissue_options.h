@@ -14,18 +14,19 @@
 namespace limber::cmd {
 
 struct MaterialOptions {
-  std::string tissues, properties;  // file names
-  std::optional<double> frequency;  // Hz
+  std::string tissues, properties;  // names of the files with the tissue table and the property table
+  std::optional<double> frequency;  // frequency of the dielectric properties, Hz
 };
 
-// Adds the options and returns --frequency. `options` must live as long as the command.
+// Adds the options for materials and returns the option --frequency. `options` must live as long as the command.
 CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options);
 
-// Returns the tissue table of the volume's file. If the user names a table, its values take precedence.
+// Returns the tissue table of a volume's file. If `table` names a tissue table's file, values in that file take
+// precedence.
 TissueTable tissues_of(const VolumeFile& file, const std::string& table);
 
 // Returns the material of every tissue. Throws Error without a frequency, and for a tissue without properties.
-//   where  the file's name in messages
+//   where  name of the volume's file, for messages
 std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
                                          const std::string& where);
 

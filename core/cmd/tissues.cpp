@@ -68,7 +68,8 @@ void print_table(const TissueMaterials& tissues) {
           one_line(m.properties + (m.stand_in.empty() ? "" : " (stand-in: " + m.stand_in + ")")).c_str());
 }
 
-// Returns a tissue for each row of the user's table and of the program's own table.
+// Returns a tissue table with one tissue for each row of the user's property table and each row of the program's own
+// table that has dielectric properties.
 TissueTable rows_as_tissues(const DielectricTable& table) {
   std::vector<TissueNames> all(table.names.begin(), table.names.begin() + static_cast<std::ptrdiff_t>(table.user_rows));
   for (const TissueRow& row : tissue_rows().rows)

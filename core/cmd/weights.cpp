@@ -41,7 +41,7 @@ void print_table(const BoneParts& parts, const Armature& armature) {
       print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
 }
 
-// Prints which rig bone each bone label follows, and how that was found.
+// Prints the rig bone that each label of bone tissue follows, and how this rig bone was found.
 void print_identities(const BoneParts& parts, const TissueTable& tissues, const Armature& armature) {
   print("\n%-44s %-20s %10s   %s\n", "bone tissue", "follows", "voxels", "found by");
   for (const auto& identity : parts.identities) {
@@ -53,8 +53,9 @@ void print_identities(const BoneParts& parts, const TissueTable& tissues, const 
   }
 }
 
-// Judges the two gates that need no pose: whether the inputs belong together, and whether each named bone follows its
-// own rig bone. Prints both, and returns the sentences of those that fail.
+// Judges the two quality gates that need no pose: "inputs" (do the files belong to one body?) and "follows" (does each
+// anatomical bone follow its own rig bone?). Prints the two results, and returns the sentences of the gates that
+// failed.
 std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& tissue, const SkinWeights& weights) {
   Report report;
   report.doubts = body.doubts;
@@ -69,7 +70,7 @@ std::vector<std::string> failed_gates_of(const Body& body, const TissueVoxels& t
   return failed_gates(report);
 }
 
-// Returns the existing files in the folder that would be overwritten.
+// Returns the existing files of the folder that --bender-dir would overwrite.
 OptionFiles files_of_bender_folder(const std::string& folder) {
   OptionFiles files;
   std::error_code error;

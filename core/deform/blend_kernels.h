@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weighted sums over the bones of a point, from which the blends are built. They are inline because they run for every
-// corner of every cell. Influences are spans of (bone, weight) of any length; weights need not sum to one. A point
+// Functions that blend the motions of the bones that a point follows. They are inline because they run for every corner
+// of every tissue voxel. Influences are spans of (bone, weight) of any length; weights need not sum to one. A point
 // stays at rest where its weights sum to zero.
 #pragma once
 
@@ -17,8 +17,8 @@ inline glm::dvec3 transform(const std::array<double, 12>& m, const glm::dvec3& p
           m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]};
 }
 
-// Returns the image of a point under a dual quaternion of any length [Kavan 2008, 4.1]: normalizes and transforms at
-// once.
+// Returns the image of a point under a dual quaternion, which may have any length: it is normalized and applied in one
+// step [Kavan 2008, 4.1].
 inline glm::dvec3 transform(const std::array<double, 8>& dq, const glm::dvec3& p) {
   const double w = dq[0];
   const glm::dvec3 v(dq[1], dq[2], dq[3]), d(dq[5], dq[6], dq[7]);

@@ -28,7 +28,7 @@ std::vector<int> first_alike(const std::vector<RigidTransform>& motions) {
   return first;
 }
 
-// Returns the bone whose motion all influences of a chunk follow, or kSeveral.
+// Returns the bone whose motion all influences of a chunk (the influences of one brick's voxels) follow, or kSeveral.
 int motion_of_all(const SkinWeights::Chunk& chunk, const std::vector<int>& moves_as) {
   const int first = moves_as[chunk.front().bone[0]];
   const bool same = std::all_of(chunk.begin(), chunk.end(), [&](const Influence& influence) {

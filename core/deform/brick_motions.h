@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the motion that the tissue of each brick follows. Much of a posed limb follows one bone with full weight, or
-// several bones with the same motion. Bones with the same motion count as one: the first of them.
+// Finds the bricks (blocks of 8^3 voxels) whose tissue moves with one bone. Much of a posed limb follows one bone with
+// full weight, or several bones with the same motion. Bones with the same motion count as one: the first of them.
 #pragma once
 
 #include <vector>
@@ -14,8 +14,8 @@ namespace limber {
 struct BrickMotions {
   static constexpr int kSeveral = -1;
 
-  std::vector<int> moves_as;  // by bone: the first bone with the same motion
-  std::vector<int> around;    // by brick: bone whose motion all its tissue and all adjacent bricks follow, or kSeveral
+  std::vector<int> moves_as;  // for each bone, the first bone with the same motion
+  std::vector<int> around;    // for each brick, the bone that it and its neighbours follow, or kSeveral
 
   //   posed_from_rest  motions of the bones of `weights`
   BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights,

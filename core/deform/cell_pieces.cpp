@@ -14,8 +14,10 @@ namespace {
 
 using Voxels = std::array<std::uint64_t, 8>;
 
-constexpr double kHold = 1000;  // factor on the weights of tissue that follows one bone with full weight
-constexpr int kGrain = 16;      // bricks per task
+// Factor on the weights that a voxel gives to the corners of its cell if the voxel follows one bone with full weight.
+// It keeps bones stiff up to their border.
+constexpr double kHold = 1000;
+constexpr int kGrain = 16;  // bricks per task
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101, kLastColumn = kFirstColumn << 7;
 
 bool is_empty(const Voxels& voxels) {
@@ -23,7 +25,7 @@ bool is_empty(const Voxels& voxels) {
 }
 
 // Returns the connected component that contains the first of `voxels`.
-//   cuts  faces between voxels that do not connect them; null: none
+//   cuts  voxel faces that a seam cuts, so that the two voxels beside such a face are not connected there; null: none
 Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   const auto open = [&](int axis, int z) { return cuts ? ~(*cuts)[axis][z] : ~std::uint64_t{0}; };
   Voxels piece{};
@@ -44,7 +46,7 @@ Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   return piece;
 }
 
-// Returns the tissue voxels of one cell of a brick.
+// Returns the tissue voxels of one cell (a cube of step^3 voxels) in a brick.
 //   low  the cell's lowest voxel, relative to the brick's lowest voxel
 Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int step) {
   std::uint64_t rows = 0;
@@ -68,8 +70,8 @@ std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels
   return any ? std::make_shared<const CellCuts>(cuts) : nullptr;
 }
 
-// Splits the tissue of one brick into pieces (connected components in each cell), and sums up the weights that their
-// voxels give to the corners of their cells.
+// Splits the tissue of one brick into pieces, the connected components of the tissue in each cell. For each piece, sums
+// up the bone weights that its voxels give to the corners of the cell.
 class Gather {
  public:
   Gather(const TissueVoxels& tissue, const SkinWeights& weights, int step, const glm::dvec3& spacing)
@@ -128,8 +130,9 @@ class Gather {
   }
 
  private:
-  // Adds a voxel's weights to the corners of its cell, by its trilinear shares.
-  //   t  position in the cell, [0, 1]^3
+  // Adds a voxel's bone weights to the eight corners of its cell, each multiplied by the corner's trilinear weight at
+  // the voxel.
+  //   t  position of the voxel in the cell, [0, 1]^3
   void add(const Influence& influence, std::int64_t piece, const glm::dvec3& t) {
     const double hold = influence.weight[0] == kFullWeight ? kHold : 1;
     for (int n = 0; n < 4 && influence.weight[n]; ++n) {
@@ -146,8 +149,9 @@ class Gather {
     }
   }
 
-  // Adds a voxel to its piece: to the subcells, the distances from corners and the tissue that follows one bone.
-  //   voxel  relative to the cell's lowest voxel
+  // Adds a voxel to the members `places`, `away` and (if the voxel follows one bone with full weight) `stiff` of its
+  // piece.
+  //   voxel  position relative to the cell's lowest voxel
   void add(const Influence& influence, CellPiece& piece, const glm::ivec3& voxel) {
     const glm::ivec3 at = voxel * 4 / step_;
     const std::uint64_t place = std::uint64_t{1} << (at.x + 4 * (at.y + 4 * at.z));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Splits the tissue in coarse cells of step^3 voxels into pieces: the connected components (by faces) of the tissue in
 // one cell. Two fingers that pass through one cell are two pieces, and so are the two sides of a seam. Each piece has
-// the bone weights that it gives to the corners of its cell; every voxel counts by its trilinear shares. Tissue that
-// follows one bone with full weight, as bone does, counts a thousand times as much as blended tissue, so that bones
-// stay stiff up to their border.
+// the bone weights that it gives to the corners of its cell: sums over its voxels, each voxel with the trilinear weight
+// that the corner has there. Tissue that follows one bone with full weight, as bone does, counts a thousand times as
+// much as blended tissue, so that bones stay stiff up to their border.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@
 
 namespace limber {
 
-// The voxels of a cell whose upper face along each axis (first index) is cut by a seam; bits as in CellPiece::voxels.
+// The voxels of a cell whose upper face along an axis (the first index) a seam cuts. Voxel (x, y, z) is bit x + 8 y of
+// word z.
 using CellCuts = std::array<std::array<std::uint64_t, 8>, 3>;
 
 struct CellPiece {
@@ -35,11 +36,11 @@ struct CellPiece {
   };
 
   glm::ivec3 cell;                      // the cell contains the voxels cell * step .. cell * step + step - 1
-  std::array<std::uint64_t, 8> voxels;  // bit x + 8 y of word z, counted from the cell's lowest voxel
+  std::array<std::uint64_t, 8> voxels;  // the piece's voxels: voxel (x, y, z) of the cell is bit x + 8 y of word z
   std::uint64_t places = 0;             // bits for the 4^3 subcells that contain tissue of the piece, x fastest
   std::array<float, 8> away;            // squared distance of each corner from the piece's nearest voxel, mm2
   std::vector<Share> shares;            // grouped by bone, then ascending by corner
-  std::vector<Stiff> stiff;             // ascending by bone
+  std::vector<Stiff> stiff;             // tissue that follows one bone with full weight, ascending by bone
   std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: none
 };
 
@@ -53,8 +54,8 @@ std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing, std::span<const std::int64_t> bricks);
 
-// Returns whether voxels of pieces a and b touch by faces that no seam cuts. The cell of `b` follows that of `a` along
-// `axis`.
+// Returns true if a voxel of piece `a` and a voxel of piece `b` share a face that no seam cuts. The cell of `b` must be
+// the upper neighbour, along `axis`, of the cell of `a`.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);
 
 // Finds the pieces of a cell.
@@ -68,7 +69,7 @@ class PiecesByCell {
  private:
   const std::vector<CellPiece>* pieces_;
   glm::ivec3 first_, size_;
-  std::vector<std::int32_t> begin_;  // by cell of the box: index of its first piece, -1: none
+  std::vector<std::int32_t> begin_;  // index of the first piece of each cell of the box, -1: none
 };
 
 }  // namespace limber

@@ -10,7 +10,8 @@ namespace limber {
 class Claims {
  public:
   //   priority  priority of each label's tissue
-  //   depth     nullptr: the pose cannot make a fold
+  //   depth     depth of each rest point below the body's surface. In a fold, where several cells cover a voxel, the
+  //             deepest cell gets it. nullptr: the pose makes no fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
       : map_(map),
         volume_(volume),

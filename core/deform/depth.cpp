@@ -119,7 +119,8 @@ double TissueDepth::operator()(const glm::dvec3& rest) const {
   const auto is_inside = [](const glm::ivec3& low, const glm::ivec3& end) {
     return glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) && glm::all(glm::lessThan(low, end));
   };
-  if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {  // all eight voxels lie in one brick
+  // True if the eight voxels around the point lie in one brick.
+  if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {
     const int brick = tissue_->brick_at(v);
     if (brick < 0) return 0;
     const float* first = &depth_[std::int64_t{brick} * kBrickVoxels + in.x + 8 * in.y + 64 * in.z];

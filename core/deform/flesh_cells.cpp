@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the number of cells (counted as if all were full), from which their size follows. A body of 3 mm
-// voxels gets cells of 6 mm, one of 2 mm voxels cells of 8 mm.
+// Upper limit on the number of cells that the tissue would fill completely. The size of cells is chosen to meet it: a
+// body of 3 mm voxels gets cells of 6 mm, a body of 2 mm voxels gets cells of 8 mm.
 constexpr std::int64_t kMostCells = 250'000;
 constexpr int kGrain = 1024;
 
@@ -25,7 +25,7 @@ std::vector<std::int64_t> bending_bricks(const BrickMotions& motions) {
   return bricks;
 }
 
-// Returns the smallest step (cell edge in voxels) that does not give more than kMostCells cells.
+// Returns the smallest step (cell edge in voxels: 2, 4 or 8) that gives at most kMostCells cells; 8 if none does.
 int step_for(const TissueVoxels& tissue, std::span<const std::int64_t> bricks) {
   std::int64_t voxels = 0;
   for (const std::int64_t b : bricks) voxels += tissue.bricks()[b].count();

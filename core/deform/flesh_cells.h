@@ -20,13 +20,13 @@ namespace limber {
 struct FleshCells {
   int step = 2;                                    // edge of a cell in voxels: 2, 4 or 8
   glm::dvec3 edge{0};                              // edges of a cell along x, y, z, mm
-  std::vector<std::array<std::int32_t, 8>> nodes;  // by cell: its nodes; bits 0, 1, 2 of the index are x, y, z
-  std::vector<glm::ivec3> lowest;                  // by cell: its lowest voxel
-  std::vector<float> fill;                         // by cell: share of its cube that is tissue, (0, 1]
-  std::vector<glm::dvec3> rest;                    // by node: position at rest
-  std::vector<glm::dvec3> blended;                 // by node: position after blending
-  std::vector<float> bone;                         // by node: volume of bone around it, in cell volumes
-  std::vector<std::uint8_t> is_fixed;              // by node: whether it touches a brick that moves as one rigid body
+  std::vector<std::array<std::int32_t, 8>> nodes;  // nodes of each cell; bits 0, 1, 2 of the index: x, y, z
+  std::vector<glm::ivec3> lowest;                  // lowest voxel of each cell
+  std::vector<float> fill;                         // share of each cell's cube that is tissue, (0, 1]
+  std::vector<glm::dvec3> rest;                    // position of each node at rest, mm
+  std::vector<glm::dvec3> blended;                 // position of each node after blending, mm
+  std::vector<float> bone;                         // volume of bone around each node, in cell volumes
+  std::vector<std::uint8_t> is_fixed;              // 1 for each node at a brick that moves as one rigid body
 
   // By brick: the index of its first voxel in cell_of_voxel; -1: the brick does not bend.
   std::vector<std::int32_t> bending;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds where a pose folds flesh into other flesh, and how to move the two apart. A node inside a cell from another
-// part of the body has passed through a surface, and so has that cell. The sum of their two depths below air at rest
-// tells how far. The node and the cell each move back by half of it, along the other's surface normal. If the two are
-// nearer to each other at rest than 1.5 times that sum, flesh is only compressed or inverted, which is not contact.
+// Finds where a pose folds flesh into other flesh, and how to move the two apart. If a node lies inside a cell from
+// another part of the body, both have passed through a surface. The sum of their depths below air at rest tells how
+// far. The node moves back by half of this sum along the surface normal at the cell. If node and cell are nearer to
+// each other at rest than 1.5 times the sum plus two cell diagonals, the flesh is only compressed or inverted, which is
+// not contact.
 //
 // Lengths are in mm along the volume's own axes, as in flesh_cells.h.
 #pragma once
@@ -41,9 +42,9 @@ class FleshContact {
   void fill_bins(const std::vector<std::pair<glm::ivec3, glm::ivec3>>& boxes);
 
   const FleshCells& cells_;
-  std::vector<float> depth_;            // by node: depth below air at rest
-  std::vector<glm::vec3> depth_slope_;  // by cell: gradient of the depth at rest
-  std::vector<float> middle_depth_;     // by cell: mean depth of its nodes
+  std::vector<float> depth_;            // depth of each node below air at rest, mm
+  std::vector<glm::vec3> depth_slope_;  // gradient of the depth in each cell at rest, mm per mm
+  std::vector<float> middle_depth_;     // mean depth of each cell's nodes, mm
   std::vector<Cell> posed_cells_;
   std::vector<glm::dvec3> posed_;
   double bin_ = 0;

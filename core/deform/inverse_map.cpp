@@ -13,13 +13,13 @@ namespace limber {
 
 namespace {
 
-// The steps along a straight row of equidistant points, from its first point, at which a point can lie in a box. Empty
-// if first > last.
+// A range of points on a straight row of equidistant points. Point 0 is the start of the row. The range is empty if
+// first > last.
 struct Steps {
   int first, last;
 };
 Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& point, const glm::dvec3& next) {
-  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // in steps; the slack allows for rounding
+  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // longest row, and tolerance for rounding errors; both in steps
   double first = 0, last = kMost;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = next[axis] - point[axis];
@@ -73,14 +73,15 @@ class RigidBrick {
         room_(room),
         cells_(lattice.tissue().bricks()[brick]),
         rest_from_posed_(lattice.rest_from_posed(lattice.only_bone(brick))) {
-    // The slack covers the rounding of corners to fixed point (at most half a unit) twice, to allow for other rounding.
+    // Rounding a corner to fixed point moves it by at most half a unit. The slack is twice as wide as this error, at
+    // rest, so that it also covers other rounding errors.
     const glm::dmat3& m = rest_from_posed_.linear;
     for (int row = 0; row < 3; ++row)
       slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);
   }
 
-  // Returns whether the slack is small relative to a cell. It is not if output voxels are a thousand times larger than
-  // those at rest.
+  // Returns true if rounding errors (slack_) are small relative to a cell. They are not small if output voxels are
+  // several thousand times larger than the volume's voxels.
   bool is_precise() const { return slack_ < 0.1; }
 
   // Calls claim(rest voxel, CellClaim) for every voxel of `range` whose centre lies in one of the cells.
@@ -106,7 +107,8 @@ class RigidBrick {
   }
 
  private:
-  // Rasterizes the cells of a range (those next to a border between cells) for one voxel.
+  // Rasterizes the cells (least .. most) for one output voxel. Its centre is so near a border between these cells that
+  // only the rounded corners decide which cell contains it.
   template <class Claim>
   void ask(const glm::ivec3& least, const glm::ivec3& most, const glm::ivec3& voxel, const Claim& claim) {
     if (!corners_) corners_ = &lattice_.corners(brick_, room_);
@@ -129,7 +131,7 @@ class RigidBrick {
   const TissueVoxels::Brick& cells_;
   const AffineTransform& rest_from_posed_;
   double slack_ = 0;  // width of the zone around a cell's border that rounding can affect, voxels at rest
-  const PosedLattice::Corners* corners_ = nullptr;  // null until they are needed
+  const PosedLattice::Corners* corners_ = nullptr;  // the brick's posed corners; null until they are needed
 };
 
 // Rasterizes the cells of a brick except those in `without`. If `without` is empty, does nothing and returns false.
@@ -318,12 +320,13 @@ bool RigidBones::has(int bone, const glm::dvec3& rest, const LabelSampler& sampl
   if (!(*is_bone_)[label]) return false;
   if (const int own = owner(voxel); own >= 0) return own == bone;
 
-  // A voxel that touches a seam belongs to one side of the seam only, so neighbouring bone voxels do not count for it.
+  // The rest point's voxel is not bone. If a seam touches this voxel, bone voxels next to it may lie on the other side
+  // of the seam, so they do not count.
   if (const Seams* seams = lattice_->tissue().seams();
       seams && lattice_->volume().grid.contains(voxel) && seams->touches(voxel))
     return false;
-  // The interpolated label is bone although the nearest voxel is not. So the bone of the nearest bone voxel around
-  // counts.
+  // The interpolated label is bone although the voxel that contains the point is not. So the point belongs to the rig
+  // bone of the nearest bone voxel among the 26 neighbours.
   double least = INFINITY;
   int found = -1;
   for (int k = -1; k <= 1; ++k)

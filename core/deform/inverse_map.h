@@ -32,14 +32,14 @@ struct InverseMap {
   enum Flag : std::uint8_t { kInverted = 1, kOverlap = 2, kBoneOverlap = 4 };
 
   VoxelRange range;                 // the tile's voxels in the output lattice
-  std::vector<glm::vec3> rest;      // per voxel: its rest point
-  std::vector<std::uint32_t> cell;  // per voxel: index of the rest voxel whose cell covers it, or kNoCell
-  std::vector<std::uint16_t> bone;  // per voxel: the rig bone whose tissue is painted there, or kNoBone
+  std::vector<glm::vec3> rest;      // rest point of each voxel
+  std::vector<std::uint32_t> cell;  // index of the rest voxel whose cell covers each voxel, or kNoCell
+  std::vector<std::uint16_t> bone;  // rig bone whose tissue is painted at each voxel, or kNoBone
   std::vector<std::uint8_t> flags;
   bool has_volume_ratio = true;       // whether posed_per_rest is computed
-  std::vector<float> posed_per_rest;  // per voxel: local ratio of posed to rest volume
+  std::vector<float> posed_per_rest;  // local ratio of posed to rest volume at each voxel
   std::vector<Label> lost;            // label of each claim that lost against a cell that is not its neighbour at rest
-  RowSet row_used;                    // whether any voxel of the row is covered; all other rows are empty
+  RowSet row_used;                    // 1 for each row of voxels in which some voxel is covered
 
   // Clears the map and sets its range of voxels.
   void reset(const VoxelRange& new_range);
@@ -59,8 +59,8 @@ using TissueMask = std::vector<std::array<std::uint64_t, 8>>;
 
 // Enters the output voxels that the posed cells of `bricks` (ascending) cover into the map.
 //   priority  priority of each label's tissue
-//   depth     nullptr: the pose cannot make a fold
-//   without   cells to leave out because something else carries them; nullptr: none
+//   depth     depth of rest points below air, which decides between cells in a fold; nullptr: the pose makes no fold
+//   without   cells to leave out, since a tet mesh carries their tissue; nullptr: none
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
                      const std::vector<int>& priority, const TissueDepth* depth, const TissueMask* without = nullptr);
 
@@ -71,12 +71,12 @@ class RigidBones {
   struct Piece {
     int bone;
     std::int64_t brick;
-    VoxelRange rest;           // bounding box of its voxels plus one voxel, as far as interpolated labels reach
+    VoxelRange rest;           // bounding box of the piece's voxels, wider by the voxel that interpolation reaches
     VoxelRange posed;          // voxels of the output lattice that the posed box `rest` can reach
     VoxelRange posed_centres;  // voxels whose centres lie in the posed bounding box of the bone voxels themselves
   };
 
-  // Every voxel of bone tissue follows only the first bone of its influence.
+  // Every voxel of bone tissue is posed rigidly by its first influence's bone. All other influences are ignored.
   //   is_bone  by label; all zero if the volume has no bone tissue
   RigidBones(const PosedLattice& lattice, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
@@ -105,8 +105,8 @@ class RigidBones {
   const PosedLattice* lattice_;
   const SkinWeights* weights_;
   const LabelSet* is_bone_;
-  std::vector<AffineTransform> rest_shift_;   // by bone: maps a posed point to rest - posed, rest voxel coordinates
-  std::vector<AffineTransform> posed_shift_;  // by bone: maps a rest point to posed - rest, rest voxel coordinates
+  std::vector<AffineTransform> rest_shift_;   // for each bone: posed point -> rest - posed, in rest voxels
+  std::vector<AffineTransform> posed_shift_;  // for each bone: rest point -> posed - rest, in rest voxels
   std::vector<Piece> pieces_;
 };
 

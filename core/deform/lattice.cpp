@@ -16,8 +16,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
-constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;  // upper limit on stored corners; a body's exceed it
+// Upper limit on the coordinates of posed points, in output voxels from the base. Fixed point allows 32 768.
+constexpr double kFurthest = 32000;
+// Upper limit on the memory of stored corners, in bytes. The corners of a whole body would exceed it, so they are not
+// stored.
+constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;
 constexpr int kSeveral = BrickMotions::kSeveral;
 constexpr int kHalo = TissueVoxels::kBrick + 2;  // edge of a brick with a border one voxel wide
 constexpr int kHaloCount = kHalo * kHalo * kHalo;
@@ -33,7 +36,7 @@ constexpr std::array<std::uint8_t, 256> kBitCount = [] {
 // Sums the weights of each bone over the eight voxels around each corner of a brick.
 class CornerWeights {
  public:
-  //   moves_as  per bone: the first bone with the same motion, which counts instead (BrickMotions)
+  //   moves_as  per bone: the first bone with the same motion, which gets the weight instead (BrickMotions)
   CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                 std::int64_t brick)
       : moves_as_(moves_as),
@@ -64,8 +67,8 @@ class CornerWeights {
   }
 
  private:
-  // First and last voxel, in a brick at the offset `step`, that touch the central brick: all (0 .. 7) in the central
-  // brick, the last layer of a brick below, the first layer of a brick above.
+  // Return the first and the last voxel, in the neighbouring brick at the offset `step`, that touch the central brick.
+  // Along each axis these are 7 and 7 for a brick below, 0 and 0 for a brick above, and 0 and 7 for the offset 0.
   static glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
   static glm::ivec3 last_of(const glm::ivec3& step) {
     return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7;
@@ -125,7 +128,7 @@ bool is_full(const TissueVoxels::Brick& brick) {
                      [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
 }
 
-// Calls body(i, j, k) for the brick's own eight corners.
+// Calls body(i, j, k) for the eight corners of the whole brick, as opposed to the corners of its voxels.
 template <class Body>
 void for_each_outermost(const Body& body) {
   for (int c = 0; c < 8; ++c)
@@ -136,7 +139,7 @@ void for_each_outermost(const Body& body) {
 template <class Body>
 void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
   constexpr int kSide = PosedLattice::kSide;
-  std::array<unsigned, kSide * kSide> row{};  // per row of corners: a bit per corner
+  std::array<unsigned, kSide * kSide> row{};  // per row of corners along x: a bit for each corner to visit
   for (int z = 0; z < TissueVoxels::kBrick; ++z)
     for (int y = 0; y < TissueVoxels::kBrick; ++y) {
       const unsigned voxels = brick.mask[z] >> (8 * y) & 0xff, corners = voxels | voxels << 1;

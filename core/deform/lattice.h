@@ -87,8 +87,10 @@ class PosedLattice {
   const OutputLattice& output() const { return output_; }
   const LabelVolume& volume() const { return *volume_; }
   const TissueVoxels& tissue() const { return *tissue_; }
-  const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }  // bounding box of its posed corners
-  // Returns whether every cell of the brick stays at its rest position, and output voxels are as large as the volume's.
+  // Returns the bounding box of the brick's posed corners.
+  const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }
+  // Returns true if the pose moves no cell of the brick. Always false if output voxels have another size than the
+  // volume's.
   bool is_still(std::int64_t brick) const { return still_[brick]; }
   // Returns the bone that the brick and all tissue around it follow with full weight, so that its cells move as one
   // rigid body; -1: several bones.
@@ -122,17 +124,17 @@ class PosedLattice {
   const SkinWeights* weights_;
   AffineTransform world_from_voxel_, voxel_from_world_;
   std::vector<SkinTransform> bones_;
-  std::vector<AffineTransform> shift_;  // per bone: maps a rest point to posed - rest, all in voxel coordinates
+  std::vector<AffineTransform> shift_;  // for each bone: rest point -> posed - rest, in voxels
   Blend blend_;
   const SettledFlesh* settled_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
-  std::vector<std::uint8_t> still_, split_;       // by brick: values of is_still(), is_split()
-  std::vector<AffineTransform> rest_from_posed_;  // per bone: values of rest_from_posed()
-  std::vector<int> moves_as_;                     // per bone: the first bone with the same motion
-  std::vector<int> rigid_;                        // by brick: values of only_bone()
+  std::vector<std::uint8_t> still_, split_;       // values of is_still() and is_split() for each brick
+  std::vector<AffineTransform> rest_from_posed_;  // values of rest_from_posed() for each bone
+  std::vector<int> moves_as_;                     // for each bone, the first bone with the same motion
+  std::vector<int> rigid_;                        // values of only_bone() for each brick
   std::unique_ptr<Corners[]> kept_;               // stored corners of the bricks that bend; null: not stored
-  std::vector<std::int32_t> kept_at_;             // by brick that bends: index of its corners in kept_
+  std::vector<std::int32_t> kept_at_;             // index in kept_ of the corners of each brick that bends
 };
 
 }  // namespace limber

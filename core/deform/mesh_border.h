@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the nearest point on the border of a tet mesh at rest. Points outside the mesh move with their nearest point
-// there.
+// Finds, for a rest point outside a tet mesh, the nearest point on the mesh's border. The point outside moves with this
+// border point.
 #pragma once
 
 #include <array>

@@ -41,7 +41,7 @@ PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, co
     rest_from_posed_.push_back(in_mm(inverse(motion)));
   }
 
-  // The posed bounding box of each bone's voxels in each brick.
+  // The posed bounding box of the voxels that one bone has in one brick.
   struct Around {
     int bone;
     glm::dvec3 low, high;

@@ -105,7 +105,7 @@ class PosedTets::Border {
       return places;
     });
     if (way == kBoth) return tets_.fixed(whole);
-    // If the other part of the mesh was that near at rest already, the point keeps its distance from the border.
+    // If the other part of the mesh is no nearer than at rest, the point keeps its distance from the border.
     const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners,
                                      [&](int t) { return tets_.rest_corners(t); });
     if (way > rest_way - kRounding) return tets_.fixed(whole);
@@ -114,16 +114,17 @@ class PosedTets::Border {
   }
 
  private:
-  // Range of the search for another part of the mesh, in distances from the border to the point. Twice that distance is
-  // enough, since the tissue outside either border shares the air between them.
+  // Range of the search for another part of the mesh, as a multiple of the point's distance from the border. Twice this
+  // distance is enough, since the point may use half of the air between the two parts.
   static constexpr double kBoth = 2;
   static constexpr double kRounding = 1.0 / 64;  // tolerance of the results of free_way()
-  // Share of its half of the air that a point may take. It is below 1, so that the tissue of both sides never meets in
-  // a voxel centre.
+  // Share of its half of the air that a point may use. It is below 1, so that the tissue of the two parts of the mesh
+  // never claims the same voxel centre.
   static constexpr double kApart = 0.98;
 
-  // Returns where another part of the mesh begins on the line from `from` through `to`: 0 is at `from`, 1 at `to`; at
-  // most kBoth. Does not find a tet so flat that no voxel centre lies in its box, but finds that tet's neighbours.
+  // Returns where the line from `from` through `to` first enters another part of the mesh: 0 is at `from`, 1 at `to`,
+  // and kBoth means not before there. A tet so flat that its bounding box contains no voxel centre is not found, but
+  // its neighbours are.
   template <class CornersOf>
   double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own,
                   const CornersOf& corners_of) const {
@@ -234,7 +235,7 @@ void PosedTets::place_nodes() {
   for (int i = 0; i < mesh_->V.rows(); ++i) {
     const glm::dvec3 at = voxel * in_mm(mesh_->V, i);
     rest_.push_back(glm::round(at * double(kFixedOne)) / double(kFixedOne));
-    // Uses the rounded rest position, so that a node that does not move is not rounded twice.
+    // The node's motion is added to its rounded rest position, so that a node that does not move stays there exactly.
     posed_.push_back(fixed(lattice_->output().from_rest(rest_[i] + voxel.linear * in_mm(moved_, i))));
   }
 }

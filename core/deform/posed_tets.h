@@ -2,8 +2,8 @@
 // Poses tissue that a tet mesh carries. In PosedLattice every tissue voxel is a cell; here the mesh's tets are the
 // cells. Each posed voxel centre in a tet is the image of a rest point, which the tet's affine map gives. The posed
 // voxel gets the tissue of the voxel around that rest point; if that voxel is air, the tet does not claim it. Tets are
-// rasterized by the same exact half-open rule (rasterize.h), after rounding to the same fixed point, so the rest pose
-// is exact.
+// rasterized by the exact half-open rule of rasterize.h, after rounding to fixed point as in lattice.h, so the rest
+// pose is exact.
 //
 // A mesh follows the tissue's border only approximately. Tissue voxels of the mesh whose centre or a corner lies
 // outside it are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
@@ -12,8 +12,8 @@
 // presses on skin. Riders fill only voxels that no tet covers. A voxel that another claims too is an overlap, except
 // where a rider pressed flat gives way: tissue lies between there, and none of it passes through other tissue.
 //
-// A mesh need not contain the whole body. The lattice carries all other tissue, and also one layer of the mesh's voxels
-// next to it: both move alike there, and no rounding opens a gap.
+// A mesh need not contain the whole body. The lattice (lattice.h) carries all other tissue. It also carries one layer
+// of voxels of the mesh next to that tissue: lattice and mesh move equally there, and no rounding error opens a gap.
 #pragma once
 
 #include <array>
@@ -42,7 +42,8 @@ class PosedTets {
   std::int64_t rider_count() const { return std::ssize(riders_); }
   // Returns whether the mesh carries any of the brick's tissue.
   bool shares(std::int64_t brick) const { return in_mesh_[brick] != std::array<std::uint64_t, 8>{}; }
-  // Returns the output voxels whose centres lie in the bounding box of the posed tissue of all bricks with mesh tissue.
+  // Returns the range of output voxels that the posed tissue can reach, for all bricks with tissue that the mesh
+  // carries.
   const VoxelRange& posed_tissue() const { return posed_tissue_; }
 
   // Enters the output voxels that the posed tets cover into the map.
@@ -76,7 +77,7 @@ class PosedTets {
   std::vector<glm::dvec3> rest_;   // #V node positions at rest, voxel coordinates, whole numbers of 1/65536
   std::vector<FixedPoint> posed_;  // #V posed node positions
   Eigen::MatrixX3d moved_;         // #V motions of the nodes (posed - rest), world, mm
-  BoxBins bins_, rider_bins_;      // bounding boxes of tets, of riders; output voxels
+  BoxBins bins_, rider_bins_;      // posed bounding boxes of the tets and of the riders, in output voxels
   std::vector<Rider> riders_;
   VoxelRange posed_tissue_;
 };

@@ -22,11 +22,15 @@ namespace {
 constexpr std::int64_t kMostFineVoxels = 1'500'000;
 constexpr int kGrain = 256;                  // cells per task
 constexpr double kLeastWeight = 1.0 / 1024;  // smaller shares of a vertex's weight are dropped
-constexpr double kStiff = 0.999;  // a cell whose corners all have this weight on one bone needs no stiff part
+// If all corners of a cell have at least this weight on one bone, the cell itself moves rigidly with the bone. The
+// bone's tissue then needs no stiff part (CellPart) of its own.
+constexpr double kStiff = 0.999;
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
-constexpr double kApart = 0.1;  // share of the weight in which corners of two separate sides must differ
-// Share of the weight in which a cell's vertex must differ from the cell's own tissue to count as following other
-// tissue.
+// Two unconnected pieces of tissue in a cell are posed separately only if, at some corner of the cell, at least this
+// share of their weights belongs to different bones.
+constexpr double kApart = 0.1;
+// A vertex of a cell counts as following tissue across a gap if more than this share of its weight belongs to other
+// bones than the weight of the cell's own tissue there.
 constexpr double kStrays = 0.25;
 
 using Influences = std::vector<BoneWeight>;
@@ -64,7 +68,7 @@ void normalize(Influences& influences) {
   influences = std::move(sums);
 }
 
-// Returns the share of the weight, [0, 1], in which two corners follow different bones.
+// Returns how different the bone weights of two corners are: 0 if they are equal, 1 if they have no bone in common.
 double apart(const Influences& a, const Influences& b) {
   double common = 0;
   for (const BoneWeight& x : a)
@@ -128,15 +132,15 @@ class Sides {
       }
   }
 
-  // Returns the first piece of each side. There are two or more sides if the tissue there moves apart.
+  // Returns the first piece of each side. If there are two or more sides, they are posed separately.
   std::vector<int> sides() const {
     std::vector<int> found;
     for (size_t i = 0; i < side_.size(); ++i)
       if (side_[i] == static_cast<int>(i)) found.push_back(static_cast<int>(i));
     return found;
   }
-  // Returns the bone weights at the cell's corners, taken only from the tissue on one side of the seam through the
-  // cell.
+  // Returns the bone weights at the cell's corners, taken only from the tissue of one side. A corner without such
+  // tissue gets the weights of the other corners, by their inverse squared distance.
   std::array<Influences, 8> influences(int side) const {
     std::array<Influences, 8> corners;
     for (size_t i = 0; i < pieces_.size(); ++i) {
@@ -202,10 +206,11 @@ class Sides {
   const PreviewLattice& lattice_;
   glm::ivec3 cell_;
   std::vector<const CellPiece*> pieces_;
-  std::vector<int> side_;  // per piece: the first piece of its side
+  std::vector<int> side_;  // first piece of each piece's side
 };
 
-// Returns whether the vertices of the cell and of those around it follow bones that may move apart.
+// Returns true if the vertices of the cell and of the 26 cells around it do not all follow the same bone, so that a
+// pose may move tissue in the cell apart.
 bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& influences, const glm::ivec3& cell) {
   const Influences& first = influences[lattice.place(cell)];
   const glm::ivec3 low = glm::max(cell - 1, lattice.first), high = glm::min(cell + 2, lattice.first + lattice.size);
@@ -221,17 +226,18 @@ bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& infl
   return false;
 }
 
-// Returns the parts of a cell that are posed by their own corners: its sides, then its stiff parts, ascending by bone.
+// Returns the parts of a cell that have their own posed corners: first its sides (unconnected tissue that follows
+// different bones), then its stiff parts (tissue that follows one bone with full weight), ascending by bone.
 std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces,
                                const std::vector<Influences>& influences, std::int32_t index) {
   const glm::ivec3 cell = lattice.cells[index];
   std::vector<CellPart> parts;
-  std::vector<std::uint64_t> tissue;  // per side: bits for the subcells that contain its tissue
+  std::vector<std::uint64_t> tissue;  // bits for the subcells that contain each side's tissue
   if (may_part(lattice, influences, cell)) {
     const Sides sides(lattice, pieces, cell);
     const std::vector<int> found = sides.sides();
     bool differs = found.size() > 1;
-    if (found.size() == 1) {  // even then the cell's vertices may follow tissue on the other side of a gap
+    if (found.size() == 1) {  // the cell's vertices may still follow tissue across a gap
       const std::array<Influences, 8> alone = sides.influences(found[0]);
       for (int c = 0; c < 8; ++c)
         differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;

@@ -7,11 +7,10 @@
 //
 // Some cells also have *parts*, which are posed by their own corners:
 //    stiff  tissue that follows one bone with full weight, in a cell with corners that follow other bones too
-//    side   tissue in a cell whose surroundings are connected only far away from the cell and move apart, such as a
-//    hand
-//           beside a thigh or two fingers: each side follows its own bones, and the cell itself is not posed. A cell
-//           with one side only also has this part if the cell's vertices follow tissue on the other side of a gap. [the
-//           virtual nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
+//    side   one of several pieces of tissue in a cell that are connected only far from the cell and can move apart, as
+//           hand and thigh or two fingers: each side follows its own bones, and the cell itself is not posed. A cell
+//           with only one side has this part too if the cell's vertices also follow tissue across a gap. [the virtual
+//           nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
 //
 // Coordinates. Cell c covers the voxels c * step .. c * step + step - 1. In *cell coordinates* its centre is the whole
 // number c, and its lowest corner, vertex c, lies at c - 1/2; so cells of this lattice are like voxels in lattice.h.
@@ -34,8 +33,9 @@ struct CellPart {
   std::int32_t cell;                                  // index into PreviewLattice::cells
   bool is_stiff;                                      // true: tissue that follows one bone; false: one side of a gap
   std::uint64_t places;                               // bits for the 4^3 subcells that the part poses, x fastest
-  std::array<std::vector<BoneWeight>, 8> influences;  // by corner: weights that sum to one, ascending by bone
-  // By subcell: the distance from the tissue of other sides, in cell edges / kStepApart. kFarApart: further away.
+  std::array<std::vector<BoneWeight>, 8> influences;  // weights of each corner: sum 1, ascending by bone
+  // Distance of each of the 4^3 subcells from the tissue of other sides, in units of a cell edge / kStepApart.
+  // kFarApart: further away than can be stored.
   std::array<std::int8_t, 64> apart;
 
   static constexpr int kStepApart = 63, kFarApart = 127;
@@ -58,10 +58,10 @@ struct PreviewLattice {
   std::vector<glm::ivec3> cells;        // cells in use, x fastest
   std::vector<glm::ivec3> vertices;     // vertices in use, x fastest
   std::vector<std::int64_t> offsets;    // #vertices + 1: where the influences of each vertex begin
-  std::vector<BoneWeight> influences;   // per vertex: weights that sum to one, ascending by bone
-  std::vector<std::uint8_t> has_sides;  // by cell: whether it has parts that are sides
+  std::vector<BoneWeight> influences;   // weights of each vertex: sum 1, ascending by bone
+  std::vector<std::uint8_t> has_sides;  // 1 for each cell with parts that are sides
   std::vector<CellPart> parts;          // in the order of their cells
-  std::vector<float> depth;  // by place(): mm below air in tissue; elsewhere minus the distance from tissue, mm
+  std::vector<float> depth;  // by place(vertex): depth below air, mm; in air, minus the distance from tissue, mm
 
   // Returns the index of a vertex in arrays with one value for every corner of the box of cells.
   std::int64_t place(const glm::ivec3& vertex) const {

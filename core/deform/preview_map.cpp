@@ -20,14 +20,18 @@ namespace limber {
 namespace {
 
 constexpr int kTile = 8;             // nodes along the edge of a tile, the unit in which nodes are recomputed
-constexpr int kMargin = 3;           // width in cells of the border around the grid in which rest points may lie
+constexpr int kMargin = 3;           // distance from the grid up to which rest points can be stored, cells
 constexpr double kFurthest = 32000;  // largest coordinate of a posed vertex, cells; fixed point allows 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
-constexpr double kHeld = 2;         // largest distance from a tet mesh at which it carries vertices, cells
-constexpr double kNear = 1.0 / 32;  // a smaller error of the trilinear map is not corrected, cells
-constexpr double kFar = 1.0 / 8;    // a larger error is corrected by two Newton steps, cells
-constexpr float kAcross = 2.5;      // largest distance at rest of two nodes of one sheet, steps per step between them
-constexpr std::int8_t kMostApart = CellPart::kStepApart;  // larger distances are stored as this value
+constexpr double kHeld = 2;  // a tet mesh carries vertices up to this distance from it, cells
+// Errors of a cell's trilinear map, in cells. Errors below kNear are not corrected, errors above kFar by two Newton
+// steps, and those between by one.
+constexpr double kNear = 1.0 / 32;
+constexpr double kFar = 1.0 / 8;
+// Largest ratio of the distance of two nodes' rest points to the distance of the nodes themselves. Nodes with a larger
+// ratio lie on different sheets of the body, as on the two sides of a fold.
+constexpr float kAcross = 2.5;
+constexpr std::int8_t kMostApart = CellPart::kStepApart;  // upper limit of the values in PreviewMap::apart
 constexpr std::array<glm::ivec3, 8> kCorners = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 
@@ -36,8 +40,9 @@ glm::ivec3 tile_of(const glm::ivec3& node) {
   return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)};
 }
 
-// The range of rest coordinates that nodes store as fractions (16-bit integers). A step is a whole number of fractions,
-// and `low` lies whole steps from the nodes, so that every node is exact at rest.
+// The range of rest coordinates that nodes store as 16-bit integers (fractions of the range). The step from node to
+// node is a whole number of these fractions, and `low` is a whole number of steps away from a node. So the rest pose is
+// exact.
 struct Span {
   glm::dvec3 low, extent;
 };
@@ -87,7 +92,7 @@ double PreviewMap::apart_between(const glm::dvec3& place) const {
   return sum;
 }
 
-// Interpolates the rest points of those nodes around a position that have one (covered nodes).
+// Interpolates the rest points of the nodes around a position. Nodes without a rest point (not covered) are left out.
 std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   const glm::dvec3 corner = glm::floor(place), t = place - corner;
   glm::dvec3 sum(0);
@@ -104,7 +109,7 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   return sum / total;
 }
 
-// Computes the stale rows of PreviewMap::nodes and of its cubes from the cells' claims.
+// Brings the stale rows of a PreviewMap up to date. The input is the rest point that a posed cell claims for each node.
 class LivePreview::Finish {
  public:
   Finish(Made& made, const LivePreview& preview)
@@ -141,7 +146,8 @@ class LivePreview::Finish {
     }
   }
 
-  // Finds the edges of a layer whose two nodes lie on different sheets of the body. All layers must be filled.
+  // Finds the edges of a layer whose two nodes lie on different sheets of the body, as across a fold. layer() must have
+  // run for all layers.
   void edges(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -168,8 +174,9 @@ class LivePreview::Finish {
  private:
   const std::array<int, 2>& stale(int y, int z) const { return stale_[y + std::int64_t{map_.size.y} * z]; }
 
-  // Extrapolates the rest point of a node from claimed neighbours and the nodes behind these: the mean of all results
-  // that agree with the first. (At every border of the tiles are two nodes that no cell claims.)
+  // Extrapolates the rest point of a node that no cell claims. Each claimed neighbour, with the next node in the same
+  // direction, gives one result; the node gets the mean of all results that agree with the first one. (At the borders
+  // of the grid of nodes, two nodes are never claimed, so all these indices are valid.)
   void carry_on(std::int64_t at) {
     Lanes sum{}, first{};
     int count = 0, border = CellPart::kFarApart;
@@ -215,7 +222,8 @@ class LivePreview::Finish {
     }
     bool bordered = false, jumps = false;
     for (int i = 0; i < 8; ++i) {
-      bordered = bordered || map_.apart[at + offsets_[i]] < 0;  // the value is 0 where not covered
+      bordered =
+          bordered || map_.apart[at + offsets_[i]] < 0;  // negative beyond the border; 0 at nodes that no cell covers
       jumps = jumps || (jumps_[at + offsets_[i]] & ~i & 7);
     }
     if (low.w) map_.reach[at] = {glm::u16vec3(low), glm::u16vec3(high)};
@@ -245,8 +253,8 @@ class LivePreview::Finish {
     return {glm::min(lows[0], lows[1]), glm::max(highs[0], highs[1])};
   }
 
-  // Returns whether any two nodes of a cube lie on different sheets. The edges alone cannot tell if nodes are not
-  // covered. Also sets the bounding box of the covered nodes' rest points.
+  // Returns true if any two of a cube's nodes lie on different sheets of the body. It compares all pairs of nodes,
+  // since edges to nodes without a rest point tell nothing. Also sets the bounding box of the nodes' rest points.
   bool jumps_across(std::int64_t at) {
     std::array<Lanes, 8> c{};
     int count = 0;
@@ -278,7 +286,7 @@ class LivePreview::Finish {
   std::array<std::int64_t, 3> strides_;
   std::array<std::int64_t, 8> offsets_;  // index offsets of a cube's eight nodes
   Lanes jump_{}, steepest_{};
-  glm::vec3 steps_{0};  // by axis: length of one fraction unit, in steps
+  glm::vec3 steps_{0};  // by axis: the number of steps per unit of stored rest coordinates
 };
 
 // The tiles of nodes, and which of them must be recomputed (dirty).
@@ -324,7 +332,7 @@ class LivePreview::Tile {
     inverted_[at] = inverted;
   }
 
-  // Writes the claims on row y of layer z to the arrays of all nodes.
+  // Writes the claims on the nodes in row y of layer z of this tile to the arrays of all nodes.
   void write(int y, int z, glm::u16vec4* row, std::int32_t* cells, std::int8_t* apart, const Span& span) const {
     const double step = preview_.lattice_.step;
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / span.extent;
@@ -428,7 +436,7 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
   return map_;
 }
 
-// Finds the vertices and the parts' corners that move with a tet mesh.
+// Finds the vertices, and the corners of cell parts (CellPart), that move with a tet mesh.
 void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   carried_.reset();
   if (!mesh) return;
@@ -438,7 +446,8 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   for (const glm::ivec3& vertex : lattice_.vertices)
     points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
   for (const CellPart& part : lattice_.parts) {
-    // The anchor is the part's subcell that is furthest from other sides of the gap: it surely belongs to this side.
+    // The corners of a part are anchored in the subcell of the part that is furthest from the tissue of other sides, so
+    // that the mesh does not move them with another side.
     int deepest = 0;
     for (int place = 0; place < 64; ++place)
       if (part.holds(place) && (!part.holds(deepest) || part.apart[place] > part.apart[deepest])) deepest = place;
@@ -474,7 +483,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
-  // By bone: maps a vertex index to the motion of that vertex under this bone alone, in cells.
+  // One map for each bone: vertex index -> motion of the vertex (posed - rest, in cells) if it follows only this bone.
   std::vector<AffineTransform> moves;
   for (const RigidTransform& bone : posed_from_rest) {
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
@@ -488,8 +497,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
                     "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
-  // Returns the posed position of a vertex. If `motion` is not null, also stores the blended motion of the vertex's
-  // bones there, which cells that do not move rigidly need.
+  // Returns the posed position of a vertex. If `motion` is not null, also writes the blended motion of the vertex's
+  // bones to it. Cells that bend need this motion.
   const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
     glm::dvec3 at = glm::dvec3(vertex) - 0.5;
     if (influences.size() == 1) {
@@ -553,8 +562,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   return true;
 }
 
-// Returns the rest point that the blended motion moves to a node, in a cell that bends.
-//   rest  the rest point by the trilinear map of the cell's corners, where the search starts
+// Returns the rest point, in a cell that bends, that the blended motion of the cell's corners moves to a node.
+//   rest  first guess: the rest point that the trilinear map of the posed corners gives
 glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
   if (mesh_.rest) return rest;
   const glm::ivec3 middle = this->middle(cell);
@@ -570,7 +579,7 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);
   const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };
   if (is_within(kNear)) return rest;
-  // The slope of the trilinear map is close enough for Newton steps.
+  // The Newton steps use the slope of the trilinear map, which is close enough to that of the blended motion.
   const glm::dmat3 slope = this->slope(cell);
   if (!(glm::determinant(slope) > 0.05)) return rest;
   const glm::dmat3 back = glm::inverse(slope);
@@ -602,10 +611,12 @@ glm::dmat3 LivePreview::slope(std::int64_t cell) const {
   return slope;
 }
 
-// Returns whether two neighbouring nodes are each far from where the other node's cell would place them.
+// Returns true if two neighbouring nodes do not continue each other: the map of either node's cell, extended to the
+// other node, gives a rest point far from the other node's own rest point.
 //   apart  vector from the node's rest point to that of the next node, voxels
 bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
-  // Doubled away from gaps: only folds separate sheets there, and a joint may twist strongly in little space.
+  // The limit is doubled where no gap between sides is near: only a fold separates sheets there, and tissue that a
+  // joint twists strongly in little space is not a fold.
   const bool at_gap = claimed_apart_[node] < CellPart::kFarApart || claimed_apart_[next] < CellPart::kFarApart;
   const double stray = (at_gap ? 1 : 2) * PreviewMap::kStray * lattice_.step;
   for (const std::int64_t each : {node, next}) {
@@ -713,8 +724,8 @@ void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* 
     }
 }
 
-// Marks all values that depend on the nodes of a tile as stale: nodes extrapolated from them, edges to those, and
-// cubes.
+// Marks all values that depend on the nodes of a tile as stale: nodes that are extrapolated from the tile's nodes,
+// edges to the extrapolated nodes, and cubes around all of them.
 //   low  the tile's lowest node
 void LivePreview::mark_stale(const glm::ivec3& low) {
   const glm::ivec3 from = glm::max(low - 3, glm::ivec3(0)), to = glm::min(low + kTile + 2, size_);
@@ -731,7 +742,7 @@ void LivePreview::mark_stale(const glm::ivec3& low) {
 LivePreview::Made& LivePreview::spare() {
   Made& made = made_[made_[0].map.use_count() > made_[1].map.use_count()];
   const bool is_free = made.map && made.map.use_count() == 1;
-  std::atomic_thread_fence(std::memory_order_acquire);  // orders this after the last reads of other owners
+  std::atomic_thread_fence(std::memory_order_acquire);  // former owners' last reads come before this thread's writes
   if (is_free && made.map->first == first_ && made.map->size == size_) return made;
   const Span span = span_of(lattice_);
   if (!is_free) made.map = std::make_shared<PreviewMap>();

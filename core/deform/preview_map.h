@@ -12,8 +12,8 @@
 // may lead into tissue of another side (preview_lattice.h), which is posed elsewhere. So each node stores its distance
 // from such tissue; where the distance falls below zero, beyond the sheet's border, the map is empty.
 //
-// Where a tet mesh carries tissue, as while finite elements settle, vertices near the mesh move with it
-// (carried_points.h) instead of with their bones. Cells are then read by the straight map of their corners.
+// Where a tet mesh carries tissue, as while a FEM solve runs, vertices near the mesh move with the mesh
+// (carried_points.h) instead of with their bones. All cells are then read by the straight map of their corners.
 //
 // Only the surroundings of cells that moved are recomputed, in the memory of the map before last if no one else uses
 // it. The result never depends on earlier poses.
@@ -39,21 +39,21 @@ struct PreviewMap {
   // kBordered: all lie on one sheet, but some beyond its border. kBroken: they lie on different sheets.
   static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBordered = 64, kBroken = 128;
 
-  // A bounding box of rest points, in fractions as in `nodes`.
+  // A bounding box of rest points, whose coordinates are fractions as in the member `nodes`.
   struct RestBox {
     glm::u16vec3 low, high;
   };
 
   int step = 4;
-  Grid grid;                     // the volume's grid, in whose voxel coordinates posed points are too
+  Grid grid;                     // grid of the volume; posed points are in its voxel coordinates
   glm::ivec3 first{0}, size{0};  // node n lies at voxel coordinates (first + n + 1/2) * step - 1/2
   // Rest points as fractions of [low, low + extent]. The last component is kFullFraction for nodes with a rest point
   // (covered nodes), else 0.
   std::vector<glm::u16vec4> nodes;
-  // By node: the distance at rest from tissue beyond the border of the node's sheet, in steps / CellPart::kStepApart.
-  // Negative beyond the border; 0 where not covered.
+  // Distance at rest of each node from tissue beyond the border of the node's sheet, in units of a step /
+  // CellPart::kStepApart. Negative for a node beyond the border; 0 for a node without a rest point.
   std::vector<std::int8_t> apart;
-  std::vector<std::uint8_t> cubes;  // state of the cube from node n to n + 1, at index n
+  std::vector<std::uint8_t> cubes;  // state of each cube, at the index of its lowest node
   std::vector<RestBox> reach;       // bounding box of each cube's covered nodes; undefined if it has none
   glm::dvec3 low{0}, extent{1};     // range of rest points, voxel coordinates
 
@@ -75,10 +75,12 @@ struct PreviewMap {
   // Largest distance at rest between neighbouring nodes of one sheet, voxels. (A joint twisted by a right angle moves
   // them as much as 3 steps apart without a fold.)
   double jump() const { return 5.0 * step; }
-  // Largest distance, in steps, of a node from where the cell of a neighbouring node of the same sheet would place it.
-  // It is doubled where no gap is near.
+  // Upper limit, in steps, on the error at a node when the map of a neighbouring node's cell is extended to the node. A
+  // larger error means that the two nodes lie on different sheets. The limit is doubled where no gap between sides is
+  // near.
   static constexpr double kStray = 1.5;
-  // Steepest slope that is extrapolated beyond the nodes of a sheet, voxels per step.
+  // Upper limit on the change of rest points from node to node, if they are extrapolated beyond the nodes of a sheet,
+  // voxels per step. Steeper changes are not extrapolated.
   double steepest() const { return 1.5 * step; }
 
   // Returns the rest point of a posed point, both in voxel coordinates; nothing if the point is not near the body.
@@ -122,11 +124,11 @@ class LivePreview {
   // A map, and the rows of nodes that must be recomputed before it matches the current pose.
   struct Made {
     std::shared_ptr<PreviewMap> map;
-    std::vector<std::uint8_t> jumps;        // by node: a bit per axis along which the next node lies on another sheet
-    std::vector<std::array<int, 2>> stale;  // by row of nodes (y, then z): first and end of the stale nodes
+    std::vector<std::uint8_t> jumps;        // bits of the axes along which each node's next one is on another sheet
+    std::vector<std::array<int, 2>> stale;  // first and end of the stale nodes in each row (y, then z)
   };
 
-  // In these functions `cell` is an index into the lattice's cells, followed by its parts.
+  // In these functions `cell` is an index into one list: first all cells of the lattice, then all its parts.
   std::int64_t cell_count() const { return std::ssize(range_); }
   std::int64_t part_of(std::int64_t cell) const { return cell - std::ssize(lattice_.cells); }
   const CellPart* part(std::int64_t cell) const { return part_of(cell) < 0 ? nullptr : &lattice_.parts[part_of(cell)]; }
@@ -151,32 +153,34 @@ class LivePreview {
 
   std::shared_ptr<const LabelVolume> volume_;
   PreviewLattice lattice_;
-  std::vector<int> priority_;                // by label: priority of its tissue; air has the lowest
-  std::vector<std::int32_t> motion_of_;      // by lattice place: index into motion_; -1: no posed cell there bends
-  std::vector<std::int32_t> first_motion_;   // by part: index into motion_ of its corner 0; -1: it cannot bend
+  std::vector<int> priority_;  // priority of each label's tissue; air has the lowest
+  // By PreviewLattice::place(vertex): index into motion_; -1: no cell bends there.
+  std::vector<std::int32_t> motion_of_;
+  std::vector<std::int32_t> first_motion_;   // index in motion_ of each part's corner 0; -1: cannot bend
   std::vector<BoneWeight> part_influences_;  // influences of corner c of part p begin at part_offsets_[8 * p + c]
   std::vector<std::int32_t> part_offsets_;
 
   AffineTransform world_from_cell_;
-  glm::dmat3 cell_from_world_{1};  // for directions only
+  glm::dmat3 cell_from_world_{1};  // converts vectors, not points
 
   // The state of the last pose that was computed.
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   MeshPose mesh_;
   std::optional<CarriedPoints> carried_;  // points that mesh_ may carry: all vertices, then eight corners per part
-  std::vector<FixedPoint> posed_;         // by lattice place: posed position of the vertex
+  std::vector<FixedPoint> posed_;         // by PreviewLattice::place(vertex): posed position of the vertex
   std::vector<SkinTransform> motion_;     // blended motions at corners of cells that can bend
   std::vector<std::array<FixedPoint, 8>> posed_parts_;
-  std::vector<std::uint8_t> moved_, part_moved_;  // by lattice place, by part: whether this update moves it
+  // 1 for each vertex (in the order of PreviewLattice::place()) and for each part that this update moves.
+  std::vector<std::uint8_t> moved_, part_moved_;
   std::vector<std::uint8_t> bone_moved_;
-  // By cell: the range of nodes (counted from the voxel grid, not from first_) that its posed image can contain, in
-  // this update and in the last one.
+  // Range of nodes that the posed image of each cell can contain, in this update and in the one before. Node (0, 0, 0)
+  // is the first node of the voxel grid, not first_.
   std::vector<VoxelRange> range_, before_;
   glm::ivec3 first_{0}, size_{0};      // range of nodes, in whole tiles
-  std::vector<glm::u16vec4> claimed_;  // by node: the rest point that a cell claims, as in PreviewMap::nodes
+  std::vector<glm::u16vec4> claimed_;  // rest point that a cell claims for each node, as in PreviewMap::nodes
   std::vector<std::int8_t> claimed_apart_;
-  std::vector<std::int32_t> claiming_;  // by node: the cell that claims it, -1: none
+  std::vector<std::int32_t> claiming_;  // cell that claims each node, -1: none
   std::array<Made, 2> made_;
   std::shared_ptr<const PreviewMap> map_;  // result of the last update
   std::int64_t cells_rasterized_ = 0;

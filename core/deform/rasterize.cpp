@@ -109,7 +109,7 @@ int PosedCell::first_tet_with(const glm::ivec3& voxel) const {
 }
 
 int PosedCell::find_tet_exactly(const glm::ivec3& voxel) const {
-  const glm::ivec3 size = box_.high - box_.low;  // up to two voxels smaller than the cube's extent
+  const glm::ivec3 size = box_.high - box_.low;  // smaller than the cube's extent by up to two voxels
   const bool is_small = std::max({size.x, size.y, size.z}) + 2 <= kSmallExtent && box_.contains(voxel);
   return is_small ? first_tet_with<std::int64_t>(voxel) : first_tet_with<__int128>(voxel);
 }

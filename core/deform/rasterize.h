@@ -11,9 +11,10 @@
 // (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity]. This is the
 // half-open rule of triangle rasterizers, extended to tets. It holds where no tet is inverted and no tets overlap.
 //
-// Exact tests are the last resort. A cube's map is nearly affine: the inverse of its affine part gives each centre's
-// position in the cube, with an error that the cube's deviation from affine bounds. Only centres within that bound of a
-// face are tested exactly. If the deviation is tiny, that position also gives the rest point, and no tet is needed.
+// Exact tests are the last resort. The map from a cube at rest to the posed cube is nearly affine. The inverse of its
+// affine part gives each centre's position in the cube, with an error that is at most the *slack*. Only centres that
+// are nearer to a face than the slack are tested exactly. If the slack is tiny, the position in the cube also gives the
+// rest point, and no tet is needed.
 #pragma once
 
 #include <algorithm>
@@ -70,8 +71,8 @@ class TetFaces {
 
   int orientation() const { return determinant_ > 0 ? 1 : determinant_ < 0 ? -1 : 0; }
 
-  // Returns a positive number if the voxel centre lies on the tet's side of face f, and only then. A centre on the face
-  // counts as moved by (d, d^2, d^3), as above.
+  // Returns a positive number if the voxel centre lies on the inner side of face f of the tet, otherwise zero or less.
+  // A centre exactly on the face counts as moved by (d, d^2, d^3) for an infinitely small d > 0.
   Whole side(int f, const glm::ivec3& voxel) const {
     const auto& n = normal_[f];
     return n[0] * (Whole(voxel.x) * kFixedOne - from_[f].x) + n[1] * (Whole(voxel.y) * kFixedOne - from_[f].y) +
@@ -90,8 +91,8 @@ class TetFaces {
   Whole determinant_;
 };
 
-// Clips a row of voxels `first` .. `last` to those whose side() is above 0. These form an interval, whose ends follow
-// by integer division.
+// Clips a row of voxels `first` .. `last` to the voxels whose side() is above 0. They form an interval. Its ends are
+// computed by integer division, since side() changes by `step` from voxel to voxel.
 template <class Whole>
 void clip_row(Whole side_at_first, Whole step, Whole& first, Whole& last) {
   auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };  // requires b > 0
@@ -124,7 +125,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
-      if (first > last) continue;  // before the conversion to int: along a parallel face `first` may be too large
+      if (first > last) continue;  // `first` may then be too large for an int, if a face is nearly parallel to the row
       for (int x = int(first); x <= int(last); ++x) visit(glm::ivec3(x, y, z), orientation);
     }
 }
@@ -227,23 +228,25 @@ class PosedCell {
 
  private:
   static constexpr int kTets = 5;
-  // Upper limit on the slack; cubes with a larger slack are rasterized tet by tet. With a slack below 0.2 no tet of the
-  // cube can be inverted (its edge matrix stays diagonally dominant).
+  // Upper limit on Inverse::slack; cubes with a larger slack are rasterized tet by tet. With a slack below 0.2 no tet
+  // of the cube can be inverted (its edge matrix stays diagonally dominant).
   static constexpr double kLargestSlack = 0.1;
-  // Upper limit on the slack of cubes that count as affine: their rest points are correct to within 0.005 voxel.
+  // Upper limit on Inverse::slack of cubes whose map counts as affine: their rest points are correct to within 0.005
+  // voxel.
   static constexpr double kAffineSlack = 0.01;
 
   // The inverse of the affine part of the map from a cube's rest position to its posed position.
   struct Inverse {
-    glm::dmat3 place_from_posed{1};  // gives positions in the cube, [-1, 1]^3
+    glm::dmat3 place_from_posed{1};  // posed point - middle -> position in the cube, [-1, 1]^3
     glm::dvec3 middle{0};            // posed centre of the cube
     double posed_per_rest = 0;
-    double slack = 1;  // largest error of a position in the cube along each axis
+    double slack = 1;  // upper limit on the error of a position in the cube along each axis
   };
 
   Inverse affine_inverse() const;
-  int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;  // requires a voxel in the cube
-  int find_tet_exactly(const glm::ivec3& voxel) const;                                 // -1: outside
+  // Returns the index of the tet that contains the centre of a voxel. The centre must lie in the cube.
+  int find_tet(const glm::ivec3& voxel, const glm::dvec3& place, double slack) const;
+  int find_tet_exactly(const glm::ivec3& voxel) const;  // -1: the voxel's centre is outside the cube
   template <class Whole>
   int first_tet_with(const glm::ivec3& voxel) const;
   std::array<FixedPoint, 4> posed_tet(int t) const;

@@ -38,8 +38,8 @@ SettledFlesh::SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue
   progress.update("flesh", 1);
 }
 
-// Returns the trilinear shares that a cell's nodes have in a voxel corner. They are in the order of the nodes' indices
-// in the cell, so that cells that share a face list the same nodes.
+// Returns the trilinear weights of a cell's nodes at a voxel corner. They are in the order of the nodes' indices in the
+// cell, so that two cells that share a face list the same nodes in the same order.
 SettledFlesh::Shares SettledFlesh::shares_in(std::int32_t cell, const glm::ivec3& corner) const {
   const glm::ivec3 at = corner - cells_.lowest[cell];
   const float step = 1 / static_cast<float>(cells_.step);

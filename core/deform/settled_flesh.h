@@ -30,7 +30,8 @@ class SettledFlesh {
  public:
   struct Report {
     std::int64_t cells = 0;
-    double volume_error_before = 0, volume_error_after = 0;  // mean |V - V0| / V0 over the tissue of all cells
+    // Mean of |V / V0 - 1| over the tissue, where V0 and V are the rest volume and the posed volume of a cell.
+    double volume_error_before = 0, volume_error_after = 0;
     double largest_shift_mm = 0;
   };
 
@@ -43,17 +44,17 @@ class SettledFlesh {
   const Report& report() const { return report_; }
 
   // The shifts of the 9^3 corners of a brick's voxels, in the order of PosedLattice::Corners, in voxels along the
-  // volume's axes. Where the cells around a corner have different shifts, this is their mean.
+  // volume's axes. Where the cells around a corner have different shifts, the corner has the mean shift.
   using CornerShifts = std::array<glm::vec3, 729>;
   // Computes the corner shifts of a brick. Returns whether the brick bends; if not, `shifts` is not written.
   bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const;
   // Returns the shift of one corner of a voxel near a seam.
   //   lowest  the lowest of the eight voxels around the corner
-  //   around  a bit for each of these eight voxels that counts, starting with the lowest; at least one is set
+  //   around  bits of those of the eight voxels whose cells give the shift: bit 0 for the lowest, and x fastest; not 0
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const;
 
  private:
-  // The nodes of a cell whose trilinear share in a voxel corner is above zero, with these shares.
+  // The nodes of a cell that have a trilinear weight above zero at a voxel corner, with these weights.
   struct Shares {
     int count = 0;
     std::array<std::int32_t, 8> node;

@@ -13,12 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr float kSurface = 98 / 255.0f;  // the share of tissue at which the renderer's rays stop
+constexpr float kSurface = 98 / 255.0f;  // the blurred share of tissue at which the renderer's rays stop
 constexpr int kLayersInside = 6;         // number of half-voxel steps inwards in which visible tissue is searched
 constexpr std::int64_t kGrain = 4096;
 constexpr double kMostCells = 16e6;  // upper limit on the number of the finest cells; each takes 8 bytes for a while
 
-// Blurs the shares of tissue as the renderer does, and shifts them so that the surface lies at one half.
+// Blurs the cells' shares of tissue as the renderer does. Then adds a constant, so that the surface lies at one half.
 //   voxels  number of voxels along an edge of a cell
 void soften(Occupancy& body, float voxels) {
   const glm::ivec3 size = body.grid.size;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Builds the surface of the visible part of a body as triangles with bone weights, for outlines of other poses. Surface
 // nets (core/mesh/surface.h) put the surface where the renderer's rays meet the body: the set of visible labels is
-// blurred twice by [1 2 1] / 4 along each axis, and the surface lies at the share of tissue that keeps the size of a
-// silhouette. A pose moves its vertices by the blend kernel (skinning.h). The result does not depend on the number of
-// threads.
+// blurred twice by [1 2 1] / 4 along each axis, and the surface lies where the blurred share of tissue has the value at
+// which the silhouette is as large as the body's. A pose moves the vertices by the blend kernel (skinning.h). The
+// result does not depend on the number of threads.
 #pragma once
 
 #include <cstdint>

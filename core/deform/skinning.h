@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The blend kernel: computes the position of a point that follows several bones. Influences are spans of (bone, weight)
 // of any length. All is in double precision, with lengths in the unit of the points.
-//    linear blend      p + sum w (M p - p), so that rest is exact: bones that do not move leave p unchanged, bit for
-//    bit dual quaternion   the unit dual quaternions of the bones are added, each with the sign that agrees with the
-//                      *running sum in influence order* (Blender's rule, which differs from aligning to the first or to
-//                      the heaviest bone where rotations are more than 180 degrees apart), and the sum is normalized
-//                      [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual quaternion
-//                      blending]
-//    mixed             between the two, kQuaternionShare of the way from linear to dual quaternions: linear blending
-//                      thins bent and twisted joints, dual quaternions make them bulge, and most of both errors
-//                      cancels. Whole bodies that sit or raise their arms keep their volume best that way
-//                      (assets/docs/guide.md has the figures).
+//    linear blend     p + sum w (M p - p), with the weight w and the motion M of each bone. So the rest pose is exact:
+//                     bones that do not move leave p unchanged, bit for bit.
+//    dual quaternion  The unit dual quaternions of the bones are added, each with the sign that agrees with the
+//                     running sum in influence order, and the sum is normalized. (The sign is Blender's rule; it
+//                     differs from aligning to the first or heaviest bone if rotations are more than 180 degrees
+//                     apart.) [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual
+//                     quaternion blending]
+//    mixed            kQuaternionShare of the way from the linear blend to dual quaternions. Linear blending thins bent
+//                     and twisted joints, dual quaternions make them bulge, and most of both errors cancels. Whole
+//                     bodies that sit or raise their arms keep their volume best (figures in assets/docs/guide.md).
 // Dual quaternions contain no scale. A bone that stretches is split into a stretch along its own rest axes, then a
 // rigid motion; the stretches are blended linearly and applied first.
 #pragma once

@@ -14,9 +14,12 @@ namespace {
 
 constexpr double kVolume = 100;  // weight of the cells' volumes, relative to the smoothness of the shifts
 constexpr double kReach = 10;    // distance over which a shift fades out, in cell edges
-constexpr double kLeast = 0.2;   // least det F demanded of a cell (deformation gradient F); the largest is 1 / kLeast
-constexpr double kBone = 1e4;    // weight that keeps bone in place, relative to the smoothness of the shifts
-constexpr double kPush = 500;  // stiffness of the spring on a node inside a bone or other flesh, if its cells are full
+// Smallest determinant of a cell's deformation gradient at which the solve aims. The largest is 1 / kLeast.
+constexpr double kLeast = 0.2;
+constexpr double kBone = 1e4;  // weight that keeps bone in place, relative to the smoothness of the shifts
+// Stiffness of the spring that pulls a node out of a bone or other flesh, for a node with eight cells full of tissue
+// around it. With less tissue the stiffness falls in proportion.
+constexpr double kPush = 500;
 constexpr double kMostlySoft = 0.2;  // in cell volumes: a node with less bone around it counts as soft
 constexpr int kLook = 2;             // number of steps from one search for flesh inside flesh to the next
 // Number of steps. For a sitting body with voxels of 4 mm, the mean volume error of its cells is 2.6, 0.9 and 0.8 %
@@ -179,7 +182,8 @@ class Minimizer {
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b) K[a][b] = h2_ * (smooth[a][b] + kVolume * glm::dot(gradients_[a], gradients_[b]));
     const double reach = 1 / (kReach * kReach);
-    // A row has up to 27 nodes, or more if cells at one position that are not connected share a node.
+    // A row of the matrix has up to 27 entries, one per node. It has more if unconnected cells at the same position
+    // share a node.
     std::vector<std::vector<std::pair<std::int32_t, float>>> blocks((count_ + kGrain - 1) / kGrain);
     row_.assign(count_ + 1, 0);
     diagonal_.assign(count_, 1);
@@ -238,8 +242,8 @@ class Minimizer {
     });
   }
 
-  // Returns the stiffness of the spring on a node, in proportion to the tissue around the node. A crumb of flesh would
-  // otherwise be pulled as strongly as full cells.
+  // Returns the stiffness of the spring on a node. It is in proportion to the tissue around the node, since a crumb of
+  // flesh would otherwise be pulled as strongly as full cells.
   float strength(std::int64_t node) const {
     double fill = 0;
     for (auto i = of_node_.begin[node]; i < of_node_.begin[node + 1]; ++i) fill += cells_.fill[of_node_.place[i] >> 3];
@@ -331,16 +335,17 @@ class Minimizer {
   const double h2_;  // squared edge of a cube with the volume of a cell, mm2
   const std::int64_t count_;
   int taken_ = 0;
-  std::vector<glm::mat3> start_, pull_;                             // by cell
-  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // by node
-  std::vector<FourFloats> direction_;  // by node; four floats, since this array is read most often
+  std::vector<glm::mat3> start_, pull_;                             // one matrix for each cell
+  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // one vector for each node
+  // Search direction of each node. It has four floats, which load faster, since this array is read most often.
+  std::vector<FourFloats> direction_;
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;
-  std::vector<float> push_;  // by node: stiffness of the spring that pulls it out of a bone or other flesh, 0: none
-  std::vector<std::uint8_t> is_inside_;  // by node: whether it is inside other flesh
-  std::vector<glm::vec3> apart_;         // by node inside other flesh: the shift that moves it half of the way out
-  std::vector<glm::vec3> outward_;       // by node with a spring: the shift to which the spring pulls it
+  std::vector<float> push_;  // stiffness of the spring that pulls each node out of bone or flesh, 0: no spring
+  std::vector<std::uint8_t> is_inside_;  // 1 for each node inside other flesh
+  std::vector<glm::vec3> apart_;         // shift that moves each node inside other flesh half of the way out
+  std::vector<glm::vec3> outward_;       // shift to which the spring on each node pulls it
 };
 
 }  // namespace

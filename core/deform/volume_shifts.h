@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the shifts of nodes that restore the volume of flesh cells: the minimisation of settled_flesh.h.
+// Computes the shifts of nodes that restore the volume of flesh cells. The shifts minimise the sum that settled_flesh.h
+// describes.
 #pragma once
 
 #include <vector>
@@ -12,8 +13,9 @@
 namespace limber {
 
 struct VolumeShifts {
-  std::vector<glm::vec3> shift;              // shift of each node, mm along the volume's axes; zero for fixed nodes
-  double error_before = 0, error_after = 0;  // mean |V - V0| / V0 over the tissue of all cells
+  std::vector<glm::vec3> shift;  // shift of each node, mm along the volume's axes; zero for fixed nodes
+  // Mean of |V / V0 - 1| over the tissue, where V0 and V are the rest volume and the posed volume of a cell.
+  double error_before = 0, error_after = 0;
 };
 
 // Computes the shifts of all nodes.

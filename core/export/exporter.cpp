@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// Each function returns its target's row of the table and is defined in the target's own source file.
+// Each function returns the row of exporters() for one export target, and is defined in the target's own source file.
 Exporter surface_exporter();
 Exporter openems_exporter();
 Exporter disc_material_exporter();

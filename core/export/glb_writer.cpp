@@ -16,9 +16,9 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "numbers are written in native byte order");
 
-// Numbers of component types [glTF 2.0, 3.6.2.2].
+// glTF's numbers for the component types of arrays [glTF 2.0, 3.6.2.2].
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125;
-constexpr int kVertices = 34962, kIndices = 34963;  // values of a buffer view's `target`
+constexpr int kVertices = 34962, kIndices = 34963;  // glTF's numbers for the `target` of a buffer view
 
 std::size_t whole_words(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 }  // namespace

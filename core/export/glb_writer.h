@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes glTF 2.0 as one file (.glb): a JSON description and binary data. The description refers to arrays in the data
-// by accessors.
+// Writes glTF 2.0 as one file (.glb), which consists of a JSON description and binary data. The binary data is a list
+// of arrays; each is described by a JSON object, its accessor, and the description refers to an array by its accessor.
 //
-// glTF's coordinates are right-handed, in metres, with Y up, and a model faces +Z. So the world point (x, y, z) in LPS,
-// mm, becomes (x, z, -y) / 1000.
+// glTF's coordinates are right-handed, in metres, with Y up, and a model faces +Z. So the world position (x, y, z) in
+// mm (LPS: x to the left, y to the back, z up) becomes (x, z, -y) / 1000.
 #pragma once
 
 #include <array>
@@ -25,11 +25,11 @@ class GlbData {
   enum class Use { Any, Vertices, Indices };
   struct Accessor {
     std::size_t offset, bytes, count;
-    int component;  // number of the component type [glTF 2.0, 3.6.2.2]
+    int component;  // glTF's number for the type of a component [glTF 2.0, 3.6.2.2]
     std::string type;
     Use use;
-    bool normalized = false;         // the integers stand for numbers from 0 to 1
-    std::vector<float> least, most;  // bounds of the values, where glTF requires them; empty: not stated
+    bool normalized = false;         // true: the integers stand for numbers in [0, 1]
+    std::vector<float> least, most;  // least and largest value per component, if glTF requires them; empty: not written
   };
 
   // Appends an array to the binary data and returns the index of its accessor.
@@ -39,7 +39,7 @@ class GlbData {
   int add(const std::vector<glm::mat4>& values, Use use = Use::Any);
   int add(const std::vector<std::array<std::uint16_t, 4>>& values, Use use = Use::Any);
   int add(const std::vector<std::uint32_t>& values, Use use = Use::Any);
-  int add_places(const std::vector<glm::vec3>& places);  // appends vertex positions and states their bounds
+  int add_places(const std::vector<glm::vec3>& places);  // appends vertex positions, with their bounds, as add()
   Accessor& accessor(int index) { return accessors_[static_cast<std::size_t>(index)]; }
 
   // Returns the bytes of the .glb file. Throws Error for more than 4 GB.
@@ -53,7 +53,7 @@ class GlbData {
   std::vector<Accessor> accessors_;
 };
 
-// Converts an sRGB colour to a linear one, as glTF's colour factors are.
+// Converts a colour from sRGB to linear RGB, which glTF uses for the colours of materials.
 glm::dvec3 linear_colour(const glm::vec3& colour);
 
 }  // namespace limber

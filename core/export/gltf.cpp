@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Number of surface cells along the volume's longest side, unless GltfSettings::step is given.
+// Number of the cells from which the surface is made, along the volume's longest side; used if GltfSettings::step is 0.
 constexpr double kLongestSide = 400;
 
 // The JSON description of a .glb file and the binary data that it refers to.
@@ -39,9 +39,9 @@ void check(const GltfBody& body, const TissueVoxels& tissue) {
     throw Error("the weights belong to another volume", "glTF export", "compute them again for this one");
 }
 
-// ---- the surface mesh
+// ---- Surface mesh
 
-// Returns the colour of the tissue that lies under more vertices of the surface than any other.
+// Returns the colour (linear RGB) of the tissue to which more surface vertices belong than to any other.
 Json colour_under(const std::vector<SkinAt>& skin, const TissueTable& tissues) {
   std::vector<std::int64_t> count(1 << 16, 0);
   for (const SkinAt& at : skin) ++count[at.label];
@@ -97,7 +97,7 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
          {{"baseColorFactor", colour_under(skin, body.tissues)}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
 }
 
-// ---- the skeleton: node b is bone b. After the bones come two nodes: the armature, which is the parent of the root
+// ---- Skeleton. Node b of the file is bone b. Two more nodes follow: the armature, which is the parent of the root
 // bones, and the surface.
 
 void add_skeleton(Glb& glb, const Armature& armature) {
@@ -124,7 +124,7 @@ void add_skeleton(Glb& glb, const Armature& armature) {
   glb.json["scene"] = 0;
 }
 
-// ---- the animations, one per clip
+// ---- Animations, one per clip
 
 class Animation {
  public:
@@ -149,8 +149,8 @@ class Animation {
   int times_;
 };
 
-// Returns the glTF animation of a clip. A bone that never leaves its rest pose gets no curve. When no bone moves, the
-// last bone gets one, so that the animation is not empty.
+// Returns the glTF animation of a clip. A bone that stays at rest gets no curve. If no bone moves, the last bone gets a
+// curve nevertheless, since glTF does not allow an empty animation.
 Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature,
                   Progress& progress, double done) {
   const ClipOnRig on_rig(clip, armature);
@@ -167,8 +167,8 @@ Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::
     const Pose pose = on_rig.at(clip->range_start + frame);
     times.push_back(static_cast<float>(frame / clip->rate));
     for (std::size_t b = 0; b < count; ++b) {
-      // q and -q are the same rotation; uses the one nearer to the previous key, so that players interpolate along the
-      // shorter arc.
+      // The quaternions q and -q are the same rotation. Writes the one that is nearer to the previous key, so that
+      // other programs interpolate in the direction of the smaller angle.
       const glm::dquat& q = pose.rotation[b];
       turns[b].push_back(!turns[b].empty() && glm::dot(q, turns[b].back()) < 0 ? -q : q);
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes a posable body as glTF 2.0 in one .glb file: the surface of its tissue with up to four bones per vertex, the
-// skeleton at rest, and every clip as an animation. Axes and units are glTF's [core/export/glb_writer.h].
+// Writes a posable body as glTF 2.0 in one .glb file: the surface of its tissue with the weights of up to four bones
+// per vertex, the skeleton at rest, and every clip as an animation. Axes and units are glTF's (glb_writer.h).
 //
-// Each bone is a node at the bone's head without a rotation at rest, so the rotations of a pose are the nodes'
-// rotations. An animation has a key at each frame of its clip. Other programs deform the surface by linear blend
-// skinning, as Limber's linear blend does. The format cannot store a bone's tail, roll and limits.
+// Each bone is a node at the bone's head, without rotation at rest, so that the node's rotation is that of the bone in
+// a pose. An animation has a key at each frame of its clip. Other programs deform the surface by linear blend skinning,
+// as Limber does with the linear blend. The format cannot store a bone's tail, roll and limits.
 #pragma once
 
 #include <memory>
@@ -34,8 +34,9 @@ struct GltfSettings {
 };
 
 // Returns the bytes of the .glb file.
-//   clips  become animations, each from frame range_start to range_end
-// Throws Error for weights of another volume or rig, for a volume without a surface, and for more than 4 GB.
+//   clips  written as animations, each from its frame range_start to range_end
+// Throws Error if the weights belong to another volume or rig, the volume has no surface, or the file would exceed 4
+// GB.
 std::string glb_of(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips,
                    const GltfSettings& settings = {}, Progress& progress = no_progress());
 void write_glb(const GltfBody& body, const std::vector<std::shared_ptr<const Clip>>& clips, const Path& path,

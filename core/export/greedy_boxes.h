@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Divides a label volume into few boxes of one label each. Each box starts at the first voxel that is in no box yet. It
-// is extended along x while the label continues, then along y by rows of the same length and label, then along z by
-// layers of the same size and label.
+// Divides the tissue of a label volume into few boxes, each with a single label. A box starts at the first tissue voxel
+// that is in no box yet. It is extended along x as far as the voxels have its label, then along y as far as whole rows
+// do, then along z as far as whole layers do.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct LabelBox {
   Label label = 0;
 };
 
-// Returns boxes of one label each; every tissue voxel is in exactly one box, air is in none.
+// Returns the boxes, each with a single label. Every tissue voxel is in exactly one box, air is in none.
 std::vector<LabelBox> greedy_boxes(const LabelVolume& volume);
 
 }  // namespace limber

@@ -54,7 +54,7 @@ bool write_item(hid_t file, const LimberHdf5Item& item) {
   }
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  H5Pset_obj_track_times(layout, 0);  // without times, so that the same data give the same file
+  H5Pset_obj_track_times(layout, 0);  // stores no times, so that equal data give equal files
   if (item.rank == 3) {
     const hsize_t chunk[3] = {1, size[1], size[2]};
     H5Pset_chunk(layout, 3, chunk);

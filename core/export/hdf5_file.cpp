@@ -25,8 +25,9 @@ constexpr int kTypeOf<double> = kLimberHdf5Double;
 template <>
 constexpr int kTypeOf<char> = kLimberHdf5Text;
 
-// Loads the module that contains HDF5 (hdf5_codec.h) and returns the module's function limber_hdf5_make(). `path` is
-// the file, for the error message.
+// Loads the shared library that contains HDF5 (hdf5_codec.h), if it is not loaded yet, and returns its function
+// limber_hdf5_make().
+//   path  the file to write, for the error message
 decltype(&limber_hdf5_make) codec(const Path& path) {
   static const auto loaded = [] {
     void* module = open_module("limber_hdf5");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds and writes an HDF5 file of data sets and attributes. Data sets have up to three dimensions, of which the last
-// one is stored fastest; those with three are compressed. The HDF5 library is loaded when the first file is written
-// (hdf5_codec.h).
+// Builds and writes an HDF5 file of data sets and attributes. Data sets have up to three dimensions, in the order of C
+// arrays (the last index varies fastest). Data sets with three dimensions are compressed. The HDF5 library is loaded
+// when the first file is written (hdf5_codec.h).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class Hdf5File {
   void data(const std::string& name, const std::vector<std::int16_t>& values, const std::vector<std::int64_t>& size);
   void data(const std::string& name, const std::vector<float>& values, const std::vector<std::int64_t>& size);
 
-  // Adds an attribute to the object "/" (the file) or to a data set, which must have been added before.
+  // Adds an attribute to an object: "/" (the whole file) or the name of a data set that has been added before.
   void attribute(const std::string& object, const std::string& name, double value);
   void attribute(const std::string& object, const std::string& name, std::int32_t value);
   void attribute(const std::string& object, const std::string& name, const std::string& text);
@@ -30,7 +30,7 @@ class Hdf5File {
 
  private:
   struct Item {
-    std::string object, attribute;  // names; an empty attribute: the item is a data set
+    std::string object, attribute;  // name of the object and of its attribute; attribute empty: a data set
     int type;
     std::vector<std::int64_t> size;
     std::vector<char> bytes;

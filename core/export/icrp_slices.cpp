@@ -27,8 +27,9 @@ std::string organs_text(const LabelVolume& volume, const TissueTable& tissues, c
   return text;
 }
 
-// Returns the table of the media in `used`, with a column per element. Elements of implants get columns only when one
-// of these media contains such an element.
+// Returns the text of the table of media (materials), with a row per medium and a column per chemical element. Elements
+// that occur only in implants get columns only if one of the media contains such an element.
+//   used  the media to write, indices into `media`
 std::string media_text(const CompositionTable& media, const std::vector<int>& used) {
   const bool has_implant = std::any_of(used.begin(), used.end(), [&](int row) {
     const Composition& shares = media.shares[row];

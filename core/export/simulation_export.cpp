@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-// Returns a unique name for each material that every program accepts: letters, digits and underscores.
+// Returns a unique name for each material, of letters, digits and underscores, which every program accepts.
 std::vector<std::string> plain_names(const std::vector<TissueMaterial>& materials) {
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -29,14 +29,14 @@ std::vector<std::string> plain_names(const std::vector<TissueMaterial>& material
   return names;
 }
 
-// Returns for each label 0 .. 65535 its index in SimulationBody::materials; -1 for air.
+// Returns, for each label 0 .. 65535, the index of its material in SimulationBody::materials; -1: air.
 std::vector<int> material_of_label(const SimulationBody& body) {
   std::vector<int> of(65536, -1);
   for (std::size_t i = 0; i < body.materials.size(); ++i) of[body.materials[i].label] = static_cast<int>(i);
   return of;
 }
 
-// Returns the positions of all voxel faces along an axis, mm.
+// Returns the coordinates of the grid's voxel faces along an axis, ascending, mm.
 std::vector<double> faces(const Grid& grid, int axis) {
   const double first = glm::dot(grid.direction[axis], grid.origin) - grid.spacing[axis] / 2;
   std::vector<double> lines;
@@ -155,7 +155,8 @@ void write_gprmax(const SimulationBody& body, const Path& path) {
             "\n#material: " + text_of(m.dielectric.permittivity) + " " + text_of(m.dielectric.conductivity) + " 1 0 " +
             names[i] + "\n";
   }
-  // gprMax stores z fastest. At voxels with index -1 (air), gprMax keeps the material that the user's model has there.
+  // In gprMax's files z varies fastest. At a voxel with index -1 (air), gprMax leaves the material of the user's model
+  // unchanged.
   const std::vector<int> material_of = material_of_label(body);
   std::vector<std::int16_t> index;
   index.reserve(body.volume.voxels.size());

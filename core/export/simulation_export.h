@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes a label volume for simulation programs. The voxel axes are first permuted and flipped to L, P, S; no voxel is
-// resampled. On an oblique grid the written coordinates are along the voxel axes. Each file is written completely or
-// not at all. The formats:
+// Writes a label volume for simulation programs. First the voxel axes are permuted and flipped so that they point to
+// the left, back and top (L, P, S); voxels are not resampled. If the grid is oblique, the written coordinates are along
+// the voxel axes. Each file is written completely or not at all. The formats:
 //   .xml         openEMS with its CSXCAD structure: greedy boxes of materials with permittivity, conductivity and
 //                density, a mesh line at every voxel face, millimetres. The file also sets a Gaussian pulse around the
 //                frequency and absorbing walls; the user adds the source. (openEMS 0.0.35 of Debian cannot read voxels
@@ -24,24 +24,25 @@
 namespace limber {
 
 struct SimulationBody {
-  LabelVolume volume;                     // voxel axes L, P, S
-  std::vector<TissueMaterial> materials;  // one for every label in the volume
+  LabelVolume volume;                     // with voxel axes to the left, back and top (L, P, S)
+  std::vector<TissueMaterial> materials;  // material of every label in the volume
   double frequency = 0;                   // Hz
 };
 
-// Returns the volume with its voxel axes permuted and flipped to L, P, S. Adds a warning when the grid is oblique.
+// Returns the volume with its voxel axes permuted and flipped so that they point to the left, back and top (L, P, S).
+// Adds a warning if the grid is oblique.
 LabelVolume turned_to_lps(const LabelVolume& volume, std::vector<std::string>& warnings);
 
 std::string openems_xml(const SimulationBody& body);
-// Each of these functions writes a body. Throws Error when a file cannot be written or the format cannot hold so many
-// materials.
+// Each of these functions writes a body in one format. They throw Error if a file cannot be written, or if the format
+// does not allow so many materials.
 void write_openems(const SimulationBody& body, const Path& path);
 void write_disc_material(const SimulationBody& body, const Path& path);
 void write_gprmax(const SimulationBody& body, const Path& path);
 void write_icrp_slices(const LabelVolume& volume, const TissueTable& tissues, const CompositionTable& media,
                        const Path& path);
 
-// Returns the path of a file beside `path`: NAME + `end` when `path` is NAME.gprmax.h5 or NAME.dat.
+// Returns the path of an additional file beside `path`: NAME + `end`, for the `path` NAME.gprmax.h5 or NAME.dat.
 Path beside(const Path& path, const std::string& end);
 
 }  // namespace limber

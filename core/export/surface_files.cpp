@@ -28,8 +28,8 @@ std::string title_of(const LabelSurface& surface, const TissueTable& tissues) {
                                          : "label " + text_of(tissue ? tissue->file_value : surface.label);
 }
 
-// Returns a unique name for each surface from letters, digits and underscores, which is valid in file names and as a
-// group in OBJ.
+// Returns a unique name for each surface, of letters, digits and underscores, so that it can be part of a file name and
+// the name of a group in an OBJ file.
 std::vector<std::string> words_for(const LabelSurfaces& all, const TissueTable& tissues) {
   std::vector<std::string> words;
   std::set<std::string> used;
@@ -86,8 +86,8 @@ std::string ply(const LabelSurfaces& all, const LabelSurface& surface, const std
   return bytes;
 }
 
-// Returns the text of an OBJ file. A vertex that several surfaces share is written once. A vertex that occurs twice in
-// one surface is written twice, so that the surface stays separate there.
+// Returns the text of an OBJ file. A vertex that several surfaces share is written once. If two vertices of one surface
+// are at the same position, both are written, so that the surface's parts stay separate there.
 std::string obj(const LabelSurfaces& all, const std::vector<std::string>& names) {
   std::string text = "# surfaces of tissues, mm, LPS; neighbours share their vertices\n", faces;
   const auto line = [&](const glm::dvec3& v) {
@@ -138,8 +138,8 @@ std::vector<glm::vec3> normals_of(const std::vector<glm::vec3>& places, const La
   return normals;
 }
 
-// Returns the bytes of a .glb file with a node, a mesh and a material per surface. The `extras` of a node contain the
-// label's file value.
+// Returns the bytes of a .glb file (glTF) with a node, a mesh and a material per surface. The `extras` of a node
+// contain the label's value in the user's files.
 std::string glb(const LabelSurfaces& all, const TissueTable& tissues) {
   using Json = nlohmann::ordered_json;
   GlbData data;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Writes a tet mesh as TetGen's text files NAME.node and NAME.ele, which TetGen, Gmsh, Geant4 and PHITS read. Nodes and
-// tets are numbered from 0. A tet's only attribute is its region: 0 for soft tissue, 1 + the index of the rig bone, or
-// an organ number. Positions are written with enough digits to be read back bit for bit.
+// tets are numbered from 0. Each tet has one attribute, its region. In a solver's mesh the region is 0 for soft tissue
+// and 1 + the index of the rig bone for bone; in a phantom it is an organ number (tet_phantom.h). Positions are written
+// with enough digits to be read back bit for bit.
 #pragma once
 
 #include "core/base/file.h"

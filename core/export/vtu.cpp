@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes VTK's XML unstructured grid (.vtu) [VTK File Formats], which ParaView and meshio read. Its cells are the tets
-// of the mesh when there is one, else the tissue voxels. Coordinates are world (LPS), mm. The cell data `Label` is the
-// label's file value, for a tet its organ number. The arrays are appended to the XML as raw bytes, little-endian.
+// Writes VTK's XML unstructured grid (.vtu) [VTK File Formats], which ParaView and meshio read. If there is a tet mesh,
+// the grid's cells are the tets, else the tissue voxels. Coordinates are world (LPS), mm. The cell data `Label` is the
+// organ number of a tet, or the value of a voxel's label in the user's files. The arrays are appended to the XML as raw
+// little-endian bytes.
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -14,11 +15,11 @@ namespace limber {
 
 namespace {
 
-constexpr std::uint8_t kTet = 10, kVoxel = 11;  // VTK's numbers of the cell types tet and voxel
+constexpr std::uint8_t kTet = 10, kVoxel = 11;  // VTK's numbers for the cell types tet and voxel
 
 struct Cells {
   std::vector<glm::dvec3> points;
-  std::vector<std::int64_t> corners;  // indices into `points`, `per_cell` for each cell
+  std::vector<std::int64_t> corners;  // indices into `points` of the cells' corners, `per_cell` for each cell
   std::vector<std::int32_t> labels;
   int per_cell = 0;
   std::uint8_t type = 0;
@@ -32,8 +33,7 @@ Cells tets_of(const TetMesh& mesh) {
   return cells;
 }
 
-// Returns one cell per tissue voxel. Neighbouring cells share their points, and only corners of tissue voxels are
-// points.
+// Returns one cell per tissue voxel. The points are the corners of tissue voxels; neighbouring cells share points.
 Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
   const glm::ivec3 size = volume.grid.size;
   const auto corner_index = [&](const glm::ivec3& c) {
@@ -56,7 +56,7 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
         const Label label = volume.voxels[place++];
         if (label == 0) continue;
         cells.labels.push_back(file_value[label]);
-        for (int corner = 0; corner < 8; ++corner) {  // x fastest, VTK's order of a voxel's corners
+        for (int corner = 0; corner < 8; ++corner) {  // in VTK's order of a voxel's corners: x fastest
           const glm::ivec3 at = glm::ivec3(x, y, z) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
           std::int64_t& point = point_of[static_cast<std::size_t>(corner_index(at))];
           if (point < 0) {
@@ -71,7 +71,8 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
 
 class Arrays {
  public:
-  // Adds an array and returns its XML element. write() writes the arrays' bytes in the order in which they were added.
+  // Adds an array and returns the XML element that describes it. write() writes the bytes of all arrays in the order in
+  // which they were added.
   template <class T>
   std::string array(const char* type, const std::string& name, const std::vector<T>& values, int components = 1) {
     const std::string many = components > 1 ? " NumberOfComponents=\"" + std::to_string(components) + "\"" : "";

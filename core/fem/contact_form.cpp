@@ -14,17 +14,17 @@ namespace {
 // Upper limit on a pair's thickness h (below which the pair is pushed apart), as a share of the pair's distance at
 // rest.
 constexpr double kOfRest = 0.5;
-// Distance, in thicknesses h, below which a pair that may touch during the motion is put into the matrix's sparsity
-// pattern before it touches.
+// Distance at the current positions, in thicknesses h, below which a pair is put into the matrix's sparsity pattern.
+// It is above 1, so that pairs are in the pattern a little before they touch.
 constexpr double kSoon = 1.6;
 // Distance, as a share of the thickness h, below which a pair must be in the matrix's sparsity pattern. If it is not,
 // the pattern is analysed again.
 constexpr double kPressed = 0.6;
-// Distance, as a share of the largest thickness H, above which one step may bring a pair as near as half of this
-// distance. Pairs as far apart as this feel almost no barrier yet. A step keeps at least half of any smaller distance.
+// A step must keep at least half of a pair's distance, but need not keep more than half of this distance, which is a
+// share of the largest thickness H. At this distance the barrier is still almost zero.
 constexpr double kNear = 0.5;
-// Distance, as a share of the thickness, by which a node's motion may change before pairs near the node are searched
-// again.
+// Upper limit on the change of a node's motion for which the pairs found earlier stay valid, as a share of the largest
+// thickness H. If a node's motion changes more, the pairs near it are searched again.
 constexpr double kAbout = 0.2;
 // Two edges count as parallel if their squared cross product is below this share of the product of their squared
 // lengths at rest.
@@ -88,11 +88,11 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   NodePositions end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
   if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
-  watched_to_.resize(0, 3);  // invalid until the search below is done
+  watched_to_.resize(0, 3);  // stays empty if the search below throws
   extend_broad_phase(x, end);
 
-  // Drops known pairs that are no longer near each other. This happens when the new motion covers only a part of the
-  // known one.
+  // Drops pairs of earlier searches whose two parts stay apart during the new motion. There are such pairs when the new
+  // motion is shorter than the motion that was searched.
   const double about = kAbout * settings_.thickness_mm;
   std::vector<std::vector<Watched>> near((known_.size() + kGrain - 1) / kGrain), still_known(near.size());
   parallel_for(std::ssize(known_), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -116,9 +116,9 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   watched_limit_ = limit;
 }
 
-// A motion often equals the known motion except for a few nodes, or continues from a position on it and moves only a
-// few nodes far. So the known motion is cut to the part that is nearest to the new motion, and pairs are searched again
-// only around nodes that are not close to that part.
+// A new motion often differs from the searched motion (known_from_ -> known_to_) at few nodes only, or starts on it and
+// moves few nodes far. So the searched motion is cut to its section nearest to the new motion, and pairs are searched
+// again only around nodes that move differently from that section.
 void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositions& to) {
   const double about = kAbout * settings_.thickness_mm;
   const auto is_away = [&](const NodePositions& a, const NodePositions& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
@@ -157,7 +157,7 @@ void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositi
     });
   }
   NodePositions steps = known_to_ - known_from_, begins;
-  begins.swap(known_from_);  // no motion counts as known until the search is done
+  begins.swap(known_from_);  // empty during the search: if it throws, the next call searches again
   for (const ContactPair& pair :
        surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
     known_.push_back({pair, thickness(pair), {}});
@@ -238,8 +238,8 @@ void ContactForm::add_gradient(NodePositions& gradient) const {
           (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
 }
 
-// Adds the second derivative by the distance only. Leaves out all other terms; those from the turning of the shortest
-// line between a pair's two parts would be negative.
+// Adds only the term of the Hessian that has the barrier's second derivative by a pair's distance. The other terms are
+// left out, because those from the turning of the shortest line between the pair's two parts would be negative.
 void ContactForm::add_curvature(std::span<double> values) const {
   for (const Touch& touch : touching_)
     for (int a = 0, k = 0; a < 4; ++a)
@@ -279,7 +279,7 @@ bool ContactForm::assign_nodes(const Cholesky& matrix, std::span<const int> unkn
       }
     if (!unforeseen) continue;
     if (touch.pressed) return false;
-    // The number of nodes that belong to the pair's first part (point or edge).
+    // The number of nodes of the pair's first part: one for a point, two for an edge.
     const int sides = touch.pair.kind == ContactPair::Kind::EdgeEdge ? 2 : 1;
     for (int a = 0, k = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b, ++k)

@@ -4,11 +4,11 @@
 // Potential Contact, SIGGRAPH 2020]. If the skin does not cross itself at the start, it never does. A pair is a point
 // and a triangle, or two edges (contact_surface.h). At distance d it has the energy
 //   c A H b(d / h),   b(t) = -(t - 1)^2 ln t below 1, else 0
-// with the stiffness c in kPa and the mean area A of skin per node (half of it for edges). H is the largest thickness
-// of the barrier. The pair's own thickness h is H, but at most half of the pair's distance at rest. So nothing pushes
-// at rest, however close the skin's triangles are, and small triangles, whose folds would close soonest, push as hard
-// as large ones. The energy of two edges fades out as they become parallel, because the shortest line between them
-// jumps there.
+// with the stiffness c in kPa and the mean area A of skin per node (for a pair of edges, half of that area). H is the
+// largest thickness of the barrier. The pair's own thickness h is H, but at most half of the pair's distance at rest.
+// So no pair pushes at rest, however close the skin's triangles are. The force depends on the mean area, not on the
+// pair's own triangles: small triangles, whose folds would close soonest, push as hard as large ones. The energy of
+// two edges fades out as they become parallel, because the shortest line between parallel edges jumps.
 //
 // An alternative would be to mesh the air between the parts (Mueller et al. 2015, Air Meshes). But an air mesh cannot
 // distinguish skin that unfolds from skin that meets skin, and slivers of air between neighbouring triangles push where
@@ -44,13 +44,14 @@ class ContactForm {
     double length;
     std::array<int, 4> node;  // nodes of the pair that limits the step, -1: none
   };
-  // Returns the largest share of `step`, up to `limit`, that all pairs allow.
+  // Returns the largest share of `step`, up to `limit`, that brings no pair's two parts too near each other.
   //   x, step, limit  as given to build_broad_phase(); limit may be smaller
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit) const;
 
-  // Marks the pairs that the whole `step` would bring too near each other. x is the one given to build_broad_phase().
+  // Marks the pairs whose two parts the whole `step` would bring too near each other.
+  //   x        the positions given to build_broad_phase()
   //   changed  #nodes: 1 for nodes whose step has changed since the last call; only pairs with such a node are tested
-  //            again. Empty: tests all pairs, with the step given to build_broad_phase()
+  //            again. Empty: all pairs are tested, and `step` must be the step given to build_broad_phase()
   void mark_blocking_pairs(const NodePositions& x, const NodePositions& step, const std::vector<char>& changed);
   // Calls visit(nodes) for each pair that mark_blocking_pairs() has marked.
   template <class Visit>
@@ -60,15 +61,15 @@ class ContactForm {
   }
 
   double value(const NodePositions& x) const;
-  // Finds the pairs that are nearer at x than their thickness. add_gradient() and add_curvature() add the derivatives
-  // of these pairs' energies.
+  // Finds the pairs that touch at x: those whose distance is less than the barrier's thickness h. add_gradient() and
+  // add_curvature() add the derivatives of these pairs' energies.
   void update_active_pairs(const NodePositions& x);
   void add_gradient(NodePositions& gradient) const;
   void add_curvature(std::span<double> values) const;
 
-  // Adds to the matrix's sparsity pattern the pairs that touch at x, and those that may soon touch during the motion.
-  // If another pair begins to touch, the matrix lacks the blocks that couple its two parts: each part then reacts as if
-  // the other did not move. This is accurate enough until the pair is nearer than kPressed thicknesses.
+  // Adds to the matrix's sparsity pattern the pairs that touch at x or nearly touch. If another pair begins to touch,
+  // the matrix lacks the blocks that couple the pair's two parts: each part then reacts as if the other did not move.
+  // This is accurate enough until the pair is nearer than kPressed thicknesses.
   void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown, const NodePositions& x);
   // Finds the positions of the touching pairs' blocks in the matrix. Call it after update_active_pairs(). Returns false
   // if a pair nearer than kPressed thicknesses is not in the sparsity pattern, so that the matrix must be analysed
@@ -81,11 +82,11 @@ class ContactForm {
   struct Touch {
     ContactPair pair;
     double slope, curvature;                  // first and second derivative of the energy by the distance
-    bool pressed;                             // whether the pair is nearer than kPressed thicknesses
-    Eigen::Matrix<double, 3, 4> way, fading;  // derivatives of distance and fade factor by the nodes' positions
-    double faded;                             // the energy before it is multiplied by the fade factor
+    bool pressed;                             // true if the pair is nearer than kPressed thicknesses
+    Eigen::Matrix<double, 3, 4> way, fading;  // derivatives of the distance and of the fade factor by node positions
+    double faded;                             // the pair's energy without its fade factor
     std::array<Cholesky::Place, 10> place;    // blocks of the lower triangle, row by row; at == -1: not in the matrix
-    std::array<int, 4> order;                 // the pair's nodes in the order of the matrix
+    std::array<int, 4> order;                 // indices of the pair's nodes (0 to 3) in the order of the matrix's rows
   };
   struct Fade {
     double value;
@@ -93,10 +94,10 @@ class ContactForm {
   };
   struct Watched {
     ContactPair pair;
-    double thickness;   // h, mm
-    Approach approach;  // at the start of the motion, for its whole step
+    double thickness;   // the pair's thickness h, mm
+    Approach approach;  // distance at the start of the searched motion, and its largest decrease in a whole step
   };
-  // Adds the candidate pairs for the motion from -> to that are not known yet.
+  // Adds to known_ the pairs that may touch during the motion from -> to and that earlier calls have not found.
   void extend_broad_phase(const NodePositions& from, const NodePositions& to);
   double thickness(const ContactPair& pair) const;
   Fade fade(const ContactPair& pair, const NodePositions& x) const;
@@ -105,14 +106,14 @@ class ContactForm {
   NodePositions rest_;
   ContactSettings settings_;
   double scale_ = 0;  // the factor c A H of the energy
-  // Pairs that are not in known_ stay farther apart than their thickness during the motion known_from_ -> known_to_,
-  // even if each node deviates from it by kAbout thicknesses.
+  // The pairs found so far, and the motion known_from_ -> known_to_ that was searched. All other pairs stay farther
+  // apart than their thickness during this motion, even if each node deviates from it by kAbout thicknesses.
   NodePositions known_from_, known_to_;
   std::vector<Watched> known_;
   NodePositions watched_from_, watched_to_;  // start and end of the motion of build_broad_phase()
   double watched_limit_ = 0;                 // the limit given to build_broad_phase()
-  std::vector<Watched> watched_;             // known pairs that may touch during that motion
-  std::vector<char> blocked_;                // per watched pair: whether mark_blocking_pairs() marked it
+  std::vector<Watched> watched_;             // pairs of known_ that may touch during build_broad_phase()'s motion
+  std::vector<char> blocked_;                // 1 for each pair of watched_ that mark_blocking_pairs() marked
   std::vector<Touch> touching_;
 };
 

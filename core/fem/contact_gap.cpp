@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr int kBin = 8;           // edge of a search bin, mm
-constexpr double kFacing = -0.3;  // largest cosine of the angle between normals that count as facing each other
+constexpr double kFacing = -0.3;  // upper limit on the cosine of the angle between two normals that face each other
 
 glm::dvec3 at(const Eigen::MatrixX3d& V, int i) { return {V(i, 0), V(i, 1), V(i, 2)}; }
 
@@ -45,7 +45,7 @@ std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::Matr
   parallel_for(V.rows(), 256, [&](std::int64_t begin, std::int64_t end) {
     std::vector<int> near;
     for (int i = int(begin); i < int(end); ++i) {
-      if (normal[i] == glm::dvec3(0)) continue;  // the node is not on the border
+      if (normal[i] == glm::dvec3(0)) continue;  // the node is inside the mesh
       const glm::dvec3 p = at(V, i), out = glm::normalize(normal[i]);
       bins.meeting({glm::ivec3(glm::floor(p)) - reach, glm::ivec3(glm::ceil(p)) + reach}, near);
       for (int f : near) {

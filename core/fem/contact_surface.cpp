@@ -12,10 +12,11 @@
 namespace limber {
 
 namespace {
-constexpr int kLeaf = 4;        // largest number of faces in a leaf of the tree
-constexpr double kKept = 0.5;   // share of a pair's distance that one step must keep
-constexpr double kSafe = 0.5;   // length of one advance, as a share of the length that cannot lead to contact
-constexpr int kAdvances = 400;  // largest number of advances; more would only creep along a grazing contact
+constexpr int kLeaf = 4;       // largest number of faces in a leaf of the tree
+constexpr double kKept = 0.5;  // least share of a pair's distance that must be left after a step
+constexpr double kSafe = 0.5;  // length of one advance along a step, as a share of the longest one that is safe
+// Upper limit on the advances along one step. Two parts that graze each other would need many tiny advances.
+constexpr int kAdvances = 400;
 
 std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
 
@@ -53,7 +54,8 @@ Eigen::Vector3d nearest_in_triangle(const Eigen::Vector3d& p, const Eigen::Vecto
   return {va / sum, vb / sum, vc / sum};
 }
 
-// Returns the positions s and t, in [0, 1], of the nearest points on the edges p0 p1 and p2 p3 [Ericson 2005, 5.1.9].
+// Returns the parameters s and t, in [0, 1] along the edges p0 p1 and p2 p3, of the edges' nearest points [Ericson
+// 2005, 5.1.9].
 std::pair<double, double> nearest_of_edges(const Corners& p) {
   const Eigen::Vector3d u = p[1] - p[0], v = p[3] - p[2], w = p[0] - p[2];
   const double a = u.squaredNorm(), e = v.squaredNorm(), f = v.dot(w), b = u.dot(v), c = u.dot(w);
@@ -81,8 +83,8 @@ double distance(ContactPair::Kind kind, const Corners& p) {
   return (w[0] * p[0] + w[1] * p[1] + w[2] * p[2] + w[3] * p[3]).norm();
 }
 
-// Subtracts the mean motion of the four nodes from `step`. Returns an upper bound of the distance by which the rest of
-// the step can move the pair's two parts towards each other.
+// Subtracts the mean motion of the pair's four nodes from `step`, since a common motion does not change the pair's
+// distance. Returns an upper bound on how far the remaining step can move the pair's two parts towards each other.
 double relative_motion(ContactPair::Kind kind, Corners& step) {
   const Eigen::Vector3d mean = 0.25 * (step[0] + step[1] + step[2] + step[3]);
   double length[4];
@@ -91,11 +93,12 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
-// Bounding boxes are stored in single precision and compared four numbers at once. Comparisons allow for the rounding.
-using Lanes = Eigen::Array4f;             // x y z 0
+// Bounding boxes are stored in single precision, and one SIMD instruction compares four numbers. Comparisons allow for
+// the rounding.
+using Lanes = Eigen::Array4f;             // x, y, z and 0
 constexpr double kRounding = 4 * 1.2e-7;  // upper bound of the rounding error, as a share of the largest coordinate
 
-// The bounding box of positions (low, high) and of their steps (slowest, fastest).
+// The bounds of a set of moving points: of their positions (low, high) and of their steps (slowest, fastest), per axis.
 struct Moving {
   Lanes low{INFINITY, INFINITY, INFINITY, 0}, high{-INFINITY, -INFINITY, -INFINITY, 0};
   Lanes slowest = low, fastest = high;
@@ -110,7 +113,7 @@ Moving around(Moving a, const Moving& b) {
   return a;
 }
 
-// Returns whether two moving boxes stay more than `reach` apart along at least one axis during the whole motion.
+// Returns true if two moving boxes stay more than `reach` apart, along the same axis, during their whole motion.
 [[gnu::always_inline]] inline bool apart(const Moving& a, const Moving& b, float reach) {
   const Lanes before = a.low - b.high + (a.slowest - b.fastest).min(0.0f);
   const Lanes behind = b.low - a.high + (b.slowest - a.fastest).min(0.0f);
@@ -130,8 +133,9 @@ NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x) {
 }
 
 namespace {
-// Returns how far, up to a = `limit`, a pair may move along p + a s while its distance stays at least `kept`. The
-// distance at a = 0 is `now`; a whole step (a = 1) moves the pair's parts towards each other by at most `motion`.
+// A pair's corners move along p + a s. Returns the largest a, up to `limit`, until which the pair's distance stays at
+// least `kept`. The distance at a = 0 is `now`; a whole step (a = 1) moves the pair's two parts towards each other by
+// at most `motion`.
 double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept,
                        double limit) {
   double length = 0;
@@ -140,7 +144,7 @@ double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, doub
     if (length + advance >= limit) return limit;
     for (int a = 0; a < 4; ++a) p[a] += advance * s[a];
     now = distance(kind, p);
-    if (length > 0 && now < kept) break;  // except for rounding, the first advance always keeps this distance
+    if (length > 0 && now < kept) break;  // except for rounding, the first advance leaves at least `kept`
     length += advance;
   }
   return length;
@@ -157,9 +161,9 @@ Approach approach(const ContactPair& pair, const NodePositions& x, const NodePos
 }
 
 namespace {
-// Returns whether the pair may come nearer than `kept` between the positions `from` and `to` on its motion. The
-// distances at both ends are given; `motion` bounds how much the distance can change in between. If that does not
-// decide, halves the range. A range too short to halve counts as coming nearer.
+// Returns true if the pair may come nearer than `kept` while its corners move along p + a s, from a = `from` to `to`.
+// The distances at both ends are given, and a whole step (a = 1) changes the distance by at most `motion`. If these
+// bounds do not decide, the range of a is halved. A range too short to halve counts as coming nearer.
 bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from,
                   double apart_from, double to, double apart_to) {
   constexpr double kShortest = 1.0 / 512;
@@ -173,7 +177,8 @@ bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, do
          comes_nearer(kind, p, s, motion, kept, middle, apart, to, apart_to);
 }
 
-// Returns whether the pair's distance stays at least `kept` along p + a s, from a = 0 to `limit`.
+// Returns true if the pair's distance stays at least `kept` while its corners move along p + a s, from a = 0 to
+// `limit`.
 bool keeps(ContactPair::Kind kind, const Corners& p, const Corners& s, const Approach& approach, double kept,
            double limit) {
   Corners end = p;
@@ -216,7 +221,7 @@ ContactSurface::ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& r
   for (int f = 0; f < int(F.rows()); ++f) order[f] = f;
   if (F.rows() > 0) grow(order, centre, 0, int(F.rows()));
 
-  // Assigns every node and every edge to the first face that has it.
+  // Each node and each edge is tested by only one of the faces that share it: the first in the order of the tree.
   std::vector<char> node_taken(rest.rows(), 0), edge_taken(edges.size(), 0);
   for (const int f : order) {
     Face face{{F(f, 0), F(f, 1), F(f, 2)}, 0, 0};
@@ -263,8 +268,8 @@ std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const Node
     for (const int v : faces_[f].node) face[f].add(node[v]);
   const float reach_of_boxes = float(nearness.reach + nearness.margin + kRounding * furthest);
 
-  // Computes the bounds of positions and steps in every branch, from last to first, since children come after their
-  // parents.
+  // Computes the bounds of positions and steps of every branch of the tree. Goes from the last branch to the first, so
+  // that the children's bounds, which come later in the list, are known before their parent's.
   std::vector<Moving> branch(tree_.size());
   std::vector<int> rigid_as(tree_.size());
   const auto face_asked = [&](const Face& face) {
@@ -319,8 +324,8 @@ std::vector<ContactPair> ContactSurface::near(const NodePositions& x, const Node
   };
   parallel_for(std::ssize(leaves), kGrain, [&](std::int64_t begin, std::int64_t end) {
     auto& mine = found[begin / kGrain];
-    // Adds a pair of a point and a triangle, or of two edges, if it may come near. Most pairs are left out before by
-    // their bounding boxes.
+    // Adds a pair (a point and a triangle, or two edges) if its two parts may come near each other. Callers have
+    // already left out most pairs by their bounding boxes.
     const auto consider = [&](ContactPair::Kind kind, const std::array<int, 4>& four) {
       if (one_rigid(four)) return;
       if (!asked.empty() && !asked[four[0]] && !asked[four[1]] && !asked[four[2]] && !asked[four[3]]) return;

@@ -36,22 +36,22 @@ struct NearestPoints {
 };
 NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x);
 
-// `apart` is the distance of a pair's two parts at x; `motion` is the furthest that a whole step can move them towards
-// each other. Both in mm.
+// The distance of a pair's two parts at x (`apart`), and an upper bound on how far a whole step can move the parts
+// towards each other (`motion`), in mm.
 struct Approach {
   double apart, motion;
 };
 Approach approach(const ContactPair& pair, const NodePositions& x, const NodePositions& step);
 double motion(const ContactPair& pair, const NodePositions& step);
 
-// Returns the largest share of `step`, up to `limit`, that keeps half of the pair's distance (half of `near` if the
-// pair is further apart than `near`). The result may be a little too small. If it is `limit`, at least a quarter of the
-// distance is guaranteed. (If only a tenth were kept, folds would close faster than the barrier could push them open,
-// and Newton's method would have no room left to move in.)
+// Returns the largest share of `step`, up to `limit`, after which at least half of the pair's distance is left (half of
+// `near` if the pair is further apart than `near`). The result may be a little too small. If it is `limit`, only a
+// quarter of the distance is sure to be left. Half is kept, not a tenth: otherwise folds would close faster than the
+// barrier could push them open, and no room would be left for Newton's method.
 double largest_step(const ContactPair& pair, const Approach& approach, const NodePositions& x,
                     const NodePositions& step, double limit, double near = INFINITY);
-// Returns whether the whole step would bring the pair nearer than largest_step() allows, or so near to that limit that
-// this is uncertain.
+// Returns true if the whole step would bring the pair nearer than largest_step() allows, or so near to that limit that
+// the test cannot exclude it.
 bool is_too_far(const ContactPair& pair, const Approach& approach, const NodePositions& x, const NodePositions& step,
                 double near);
 
@@ -64,8 +64,8 @@ class ContactSurface {
   ContactSurface(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid);
 
   bool empty() const { return faces_.empty(); }
-  // Defines which pairs are near: those whose distance is less than reach + margin, and also less than of_rest *
-  // (distance at rest) + margin.
+  // Defines which pairs count as near: those whose distance is less than reach + margin and also less than
+  // of_rest * (their distance at rest) + margin. Lengths in mm.
   struct Nearness {
     double reach, of_rest = INFINITY, margin = 0;
   };
@@ -78,7 +78,7 @@ class ContactSurface {
  private:
   struct Face {
     std::array<int, 3> node;
-    std::uint8_t own_nodes, own_edges;  // bit k: whether this face tests corner k, tests edge k to k + 1
+    std::uint8_t own_nodes, own_edges;  // bit k: 1 if this face tests its corner k, its edge from corner k to k + 1
   };
   struct Branch {
     std::int32_t begin, end;  // range of faces

@@ -11,8 +11,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kCell = 4;         // edge of a cell, voxels
-constexpr double kWhole = 0.98;  // least share of the weight on one motion with which tissue counts as moving rigidly
+constexpr int kCell = 4;  // edge of a cell (cube of voxels that deform or move rigidly together), voxels
+// A voxel counts as moving rigidly if the bones that share one motion have at least this share of its weight.
+constexpr double kWhole = 0.98;
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));
@@ -33,7 +34,8 @@ std::vector<int> first_alike_on_path(const BonePath& path, const std::vector<dou
   return first;
 }
 
-// The motion that has most of an influence's weight, and its share of that weight, [0, 1].
+// The motion that most of a voxel's weight follows (the index of the first bone that moves so), and the share of the
+// weight that follows it, [0, 1].
 struct Main {
   int motion;
   double share;
@@ -58,7 +60,7 @@ bool has_any(const std::vector<std::uint8_t>& set) {
   return std::any_of(set.begin(), set.end(), [](std::uint8_t in) { return in != 0; });
 }
 
-// The cells around all tissue, with a border one cell wide.
+// The grid of cells (cubes of 4^3 voxels) that covers all tissue, with a border one cell wide.
 class Cells {
  public:
   Cells(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
@@ -89,9 +91,9 @@ class Cells {
     return squared_distance(box_, seeds, spacing(), progress);
   }
 
-  // Tests the positions `places` on the path in order. At each, finds the cells that come near to cells of another
-  // motion which were far away at rest, and that did not do so at an earlier position. Calls visit(k, cells) for
-  // positions places[k] where there are any; `cells` marks them.
+  // Finds the cells that the pose brings near to cells which move with another bone and were far away at rest. Tests
+  // the path positions `places` in order. At each position places[k] that brings further cells near, calls
+  // visit(k, cells), where `cells` marks these cells.
   template <class Visit>
   void brought_near(const BonePath& path, const std::vector<double>& places, double near_mm, const Visit& visit) const {
     std::vector<std::uint8_t> before(box_.voxel_count(), 0), near;
@@ -109,7 +111,7 @@ class Cells {
         if (bin.motion != motion_[at]) bin.motion = kSeveral;
         bin.cells.push_back({at, rest, posed});
       });
-      // Cells that are closer than this at rest (mm) do not count: they belong to one limb.
+      // Two cells that are closer than this at rest (mm) do not count as brought near: they belong to one limb.
       const double far = 3 * std::max({near_mm, spacing().x, spacing().y, spacing().z});
       for (const auto& [own_key, bin] : bins)
         for (int i = 0; i < 27; ++i) {
@@ -130,7 +132,7 @@ class Cells {
     }
   }
 
-  // Returns value(cell) for the 8 cells of each brick.
+  // Returns value(cell) for the 8 cells of each brick (cube of 8^3 voxels).
   template <class Value>
   std::vector<std::array<float, 8>> by_brick(const Value& value) const {
     std::vector<std::array<float, 8>> values(tissue_.bricks().size());
@@ -164,7 +166,7 @@ class Cells {
   };
   struct Bin {
     glm::ivec3 place;
-    int motion;  // the motion of all cells in the bin, or kSeveral
+    int motion;  // index of the motion that all cells in the bin follow; kSeveral: they differ
     std::vector<Placed> cells;
   };
 
@@ -183,8 +185,8 @@ class Cells {
         }
   }
 
-  // Marks neighbouring cells with different motions as bending too, although each of them follows one motion with full
-  // weight.
+  // Marks neighbouring cells that follow different motions as bending, also if every voxel in them follows one motion
+  // with full weight.
   void mark_borders() {
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
       if (motion_[at] == kAir) return;
@@ -223,7 +225,8 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
   const Cells cells(volume, tissue, weights, result.moves_as);
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
   const auto squared = [](double mm) { return float(mm * mm); };
-  // Cells that are near each other at one of the tested positions may have touched at any time since the previous one.
+  // Two cells that are near each other at a tested position of the path may have touched since the position tested
+  // before. So they become free at that earlier position.
   std::vector<float> to_near(to_bending.size(), INFINITY), free_from(to_bending.size(), INFINITY);
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;

@@ -19,8 +19,8 @@
 namespace limber {
 
 namespace {
-// Least number of tets in a chunk. Larger chunks have fewer neighbours each; smaller ones give more chunks of one
-// colour, which run in parallel.
+// Least number of tets in a chunk (a run of neighbouring patches that one thread adds up). With larger chunks fewer
+// nodes are shared between chunks. With smaller ones more chunks have the same colour and run in parallel.
 constexpr std::int64_t kChunk = 48;
 constexpr std::int64_t kPatches = 256;  // patches per task, in loops that do not write to nodes
 constexpr std::int64_t kGrain = 2048;   // tets per task, in loops that do not write to nodes
@@ -55,7 +55,7 @@ void ColouredChunks::for_each(const std::function<void(const Chunk&)>& body) con
 ColouredChunks colour_chunks(const std::vector<std::int64_t>& cut, int node_count,
                              const std::function<void(std::int64_t, const std::function<void(int)>&)>& nodes_of) {
   std::vector<std::vector<ColouredChunks::Chunk>> of_colour;
-  // Each round assigns up to 64 colours. Chunks whose neighbours use all 64 of them wait for the next round.
+  // Each round assigns up to 64 new colours. Chunks whose neighbours use all 64 of them wait for the next round.
   std::vector<ColouredChunks::Chunk> waiting;
   for (std::size_t k = 0; k < cut.size(); ++k)
     if (const std::int64_t begin = k ? cut[k - 1] : 0; begin < cut[k]) waiting.push_back({begin, cut[k]});
@@ -96,7 +96,8 @@ ElasticForm::ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, c
     for (int a = 0; a < 4; ++a) tet.node[a] = T(t, a);
     for (int a = 0; a < 3; ++a) D.col(a) = (rest.row(T(t, a + 1)) - rest.row(T(t, 0))).transpose();
     const double determinant = D.determinant();
-    const Eigen::Matrix3d slopes = cofactor(D) / determinant;  // D^-T; its column a is the gradient of node a + 1
+    // The matrix D^-T: column a is the gradient of the hat function of node a + 1.
+    const Eigen::Matrix3d slopes = cofactor(D) / determinant;
     for (int a = 0; a < 3; ++a) tet.slope[a + 1] = slopes.col(a);
     tet.slope[0] = -slopes.rowwise().sum();
     tet.volume = determinant / 6;
@@ -198,7 +199,8 @@ void ElasticForm::add_gradient(const NodePositions& x, std::span<const double> p
   });
 }
 
-// Sums the Hessian's blocks of one patch at a time: first those of the patch's tets, then the patch's rank-one term.
+// Sums the Hessian's blocks of one patch at a time: first the blocks of its tets, then its own term of rank one
+// (PatchStiffness). Adds the sums to the matrix.
 class ElasticForm::PatchSum {
  public:
   PatchSum(const ElasticForm& form, const PatchStiffness& stiffness, std::span<double> matrix)
@@ -214,7 +216,7 @@ class ElasticForm::PatchSum {
     if (is_stiff_) slope_.assign(patch.node_end - patch.node_begin, Eigen::Vector3d::Zero());
   }
 
-  // Adds the Hessian blocks of tet t, whose derivatives are in lane l.
+  // Adds the Hessian blocks of tet t, which are entry l of `derivatives`.
   void add(std::int64_t t, const Eigen::Matrix3d& F, const TetDerivatives& derivatives, int l) {
     const auto& corner = form_.corner_[t];
     for (int a = 0, pair = 0; a < 4; ++a) {

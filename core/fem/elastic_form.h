@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The elastic energy of a list of tets, with its gradient and Hessian. Tets are grouped in patches (patch_form.h). The
 // blocks of a patch's tets are summed first and then added to the matrix once; otherwise reading and writing the matrix
-// would take most of the time. Adding to the gradient and the matrix runs in parallel without a lock: neighbouring
-// patches form chunks, chunks of one colour share no node, and the colours run one after the other, so that every sum
-// has one order.
+// would take most of the time. Threads add to the gradient and the matrix without a lock: neighbouring patches form
+// chunks, and chunks get colours so that chunks of one colour share no node. Chunks of one colour run in parallel, one
+// colour after the other. So numbers are always added in the same order, and results do not depend on the threads.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@
 
 namespace limber {
 
-// Which Hessian is computed. Projected leaves out each tet's negative eigenvalues. It also leaves out the term that a
-// pressure adds: inside an evenly pressed body these terms cancel, but they would not once they are projected tet by
-// tet. Solves use Projected; Exact is the reference that tests compare with.
+// The Hessian to compute. Solves use Projected, which leaves out each tet's negative eigenvalues and the term that a
+// patch's pressure adds. (Inside an evenly pressed body the tets' pressure terms cancel. Projected tet by tet, they
+// would not.) Exact leaves out nothing; tests compare with it.
 enum class HessianKind { Projected, Exact };
 
 // Ranges of elements (chunks), sorted by colour. Chunks of one colour share no node.
@@ -35,8 +35,8 @@ struct ColouredChunks {
   void for_each(const std::function<void(const Chunk&)>& body) const;
 };
 
-// The term that every patch adds to the Hessian: of_patch G G^T. G sums, over the patch's tets, of_tet times the
-// derivative of the tet's det F by the nodes' positions.
+// The stiffness of patches against changes of their volumes. A patch adds the term of_patch G G^T to the Hessian. The
+// vector G is the sum, over the patch's tets, of of_tet times the derivative of det F by the nodes' positions.
 struct PatchStiffness {
   std::span<const double> of_patch, of_tet;  // in kPa/mm3, in mm3; both empty: no such term
 };
@@ -84,9 +84,9 @@ class ElasticForm {
 
  private:
   struct Patch {
-    std::int64_t begin, end;              // range of tets
-    std::int64_t node_begin, node_end;    // range in node_
-    std::int64_t place_begin, place_end;  // range in place_: the lower triangle of node pairs, row by row
+    std::int64_t begin, end;              // range of the patch's tets in tets_
+    std::int64_t node_begin, node_end;    // range of the patch's nodes in node_
+    std::int64_t place_begin, place_end;  // range in place_ of the patch's node pairs (lower triangle, row by row)
   };
   class PatchSum;
 
@@ -96,8 +96,8 @@ class ElasticForm {
   // first.
   std::vector<int> node_;
   std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: indices of a tet's nodes among those of its patch, ascending
-  std::vector<Cholesky::Place> place_;               // positions of blocks in the matrix; at == -1: not in the matrix
-  ColouredChunks chunks_;                            // chunks of neighbouring patches
+  std::vector<Cholesky::Place> place_;  // position in the matrix of each node pair's block; at == -1: not in the matrix
+  ColouredChunks chunks_;               // chunks of neighbouring patches; the elements are patches
 };
 
 }  // namespace limber

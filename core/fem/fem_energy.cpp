@@ -13,8 +13,9 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh below which the weak barrier acts
-// Share of a node's smallest diagonal entry that is added to its diagonal. Flesh that hangs by an edge can turn without
-// force, so the matrix would be singular except for rounding, which may make it look indefinite.
+// Addition to the diagonal entries of a node in the Hessian, as a share of the smallest of the three. Without it the
+// matrix is singular where flesh hangs by an edge, since such flesh can turn without force. Rounding may then make the
+// matrix look indefinite.
 constexpr double kSteady = 1e-9;
 // Lower bound of det F after a step. For a tet whose det F is already below twice this bound, the bound is half its
 // current det F.
@@ -51,7 +52,8 @@ FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const
     flesh_tets_.row(k) = T.row(t);
     ordered_bulk[k] = bulk[t];
     filled[k] = material[t].filled;
-    // The barrier is c h b(J / h). Dividing c by h makes it weak_barrier_kpa b(J / h).
+    // The barrier's energy is c h b(J / h) with h = kWeakBelow. With c = weak_barrier_kpa / h it is
+    // weak_barrier_kpa b(J / h).
     energy[k] = {shear[t], tet_bulk(material[t]), weak_barrier_kpa / kWeakBelow, kWeakBelow};
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
@@ -104,7 +106,7 @@ void FemEnergy::prepare(const NodePositions& x) {
 }
 
 void FemEnergy::number() {
-  // Nodes without springs and without flesh are not unknowns, like carried nodes, so the matrix has no row for them.
+  // The matrix has rows only for nodes that have springs or flesh and are not carried by a bone.
   std::vector<char> used(node_count_, 0);
   for (const int node : pins_.node) used[node] = 1;
   for (const int node : flesh_tets_.reshaped()) used[node] = 1;
@@ -217,7 +219,7 @@ FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePosit
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  // Searches pairs for the whole step, since limit_step() would need these too.
+  // Searches skin pairs along the whole step, also where tets bound it to less, since limit_step() needs all of them.
   contact_.build_broad_phase(x, step, std::max(bound.length, std::min(limit, 1.0)));
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
     bound = {free.length, Obstacle::Contact, free.node};
@@ -225,13 +227,14 @@ FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePosit
 }
 
 NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed) {
-  // A tet counts as flattened if it would keep less than kBorne of its volume, or less than kBeyond times the volume
-  // that a step must keep. These limits are above those of largest_step(), so that the smoothed step is not bounded
-  // there.
+  // A tet counts as flattened if the step leaves less than the share kBorne of its volume, or less than kBeyond times
+  // the volume that largest_step() leaves. These limits are stricter than those of largest_step(), so that
+  // largest_step() does not have to shorten the smoothed step.
   constexpr double kBorne = 0.2;
   constexpr double kBeyond = 1.2;
   constexpr int kRounds = 40;
-  // Number of rounds after which pairs of skin are searched again. Pairs missed in between are found by largest_step().
+  // Number of rounds after which pairs of skin are searched again. Pairs missed in between still stop the step, since
+  // largest_step() searches anew.
   constexpr int kSeen = 20;
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;

@@ -67,20 +67,21 @@ class FemEnergy {
   void gradient(const NodePositions& x, NodePositions& gradient);
   // Computes the Newton step at x. Returns false if the Hessian is not positive definite.
   //   slope    out: decrease of the energy along the step, to first order (above 0)
-  //   towards  step for nodes on which no force acts, such as a flap that hangs by two nodes; null: they stay
+  //   towards  #nodes: the step of nodes that can move without force, such as those of a flap that hangs by two nodes.
+  //            Null: 0
   bool newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
                    const NodePositions* towards = nullptr);
   enum class Obstacle { None, Flesh, Guarded, Contact };
   struct Bound {
-    double length = 1;  // share of the step that is possible
+    double length = 1;  // largest share of the step that is allowed
     Obstacle obstacle = Obstacle::None;
     std::array<int, 4> node{-1, -1, -1, -1};  // corners of the tet, or nodes of the contact pair, that limits the step
   };
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit);
 
-  // Returns the step, smoothed where it would flatten tets or bring parts of the skin too near each other. Repeats the
-  // smoothing until the step no longer does so, or a limit of rounds is reached. Smoothing helps because nodes that
-  // move alike keep their tets' volumes and their distances.
+  // Returns the step after smoothing it around tets that it would flatten and around pairs of skin that it would bring
+  // too near each other. Smoothing moves the nodes of such a tet or pair more alike, which keeps its volume or
+  // distance. Repeats this until there are no such tets and pairs, or a limit of rounds is reached.
   //   fixed  #nodes: 1 for nodes whose step stays unchanged; empty: none
   NodePositions limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed);
 
@@ -89,7 +90,7 @@ class FemEnergy {
 
   Cholesky& matrix();  // the Hessian of the last newton_step()
   int factorizations() const { return factorizations_; }
-  int analyses() const { return analyses_; }  // how often the sparsity pattern was analysed (contact changes it)
+  int analyses() const { return analyses_; }  // number of analyses of the sparsity pattern, which contact changes
   FemSeconds& seconds() { return seconds_; }
 
  private:
@@ -100,7 +101,7 @@ class FemEnergy {
 
   int node_count_;
   NodePositions rest_;
-  std::vector<double> keep_;  // per tet of bounded_: volume that a step must keep (see step_bound.h)
+  std::vector<double> keep_;  // six times the volume that each tet of bounded_ must keep in a step (step_bound.h), mm3
   Eigen::MatrixX4i flesh_tets_, bounded_;
   std::vector<int> first_at_, tet_at_;  // indices of the tets around node v: tet_at_[first_at_[v] .. first_at_[v + 1])
   ElasticForm flesh_;

@@ -14,7 +14,7 @@ namespace limber {
 struct TetMaterial {
   double shear_modulus = 1;    // mu, kPa, above 0
   double poisson_ratio = 0.4;  // [0, 0.5)
-  double filled = 1;           // above 0: share of the tet that is tissue; its weight in its patch's mean of J
+  double filled = 1;           // share of the tet that is tissue, above 0; weighs the tet in its patch's mean of J
 };
 
 inline double lame_lambda(double shear_modulus, double poisson_ratio) {

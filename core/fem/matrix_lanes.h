@@ -20,7 +20,7 @@ struct FourLanes {
   using Numbers = double __attribute__((vector_size(32)));
 };
 
-// Returns whether to compute with four lanes: AVX2 is available and `width` permits it.
+// Returns true if code shall compute with four lanes: the processor has AVX2 and `width` permits it.
 inline bool takes_four(MatrixLanes width) {
 #if defined(__x86_64__)
   static const bool has_avx2 = __builtin_cpu_supports("avx2");

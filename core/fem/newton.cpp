@@ -8,15 +8,16 @@ namespace limber {
 
 namespace {
 constexpr double kSufficient = 1e-4;  // share of the first-order decrease that a step must achieve [Armijo 1966]
-constexpr double kFurthest = 8;       // longest step, in full Newton steps
+constexpr double kFurthest = 8;       // upper limit on the length of an extended step, in full Newton steps
 constexpr int kHalvings = 24;         // number of halvings of a step after which the search gives up
-constexpr double kShort = 0.5;        // a step of which less than this share is possible is also tried in smoothed form
-constexpr double kJam = 0.05;         // a step shorter than this share of the full step counts as a jam
+constexpr double kShort = 0.5;        // share of a step: if bounds allow less than this, a smoothed step is tried first
+constexpr double kJam = 0.05;         // share of the full Newton step: a shorter step counts as a jam
 constexpr int kJams = 3;              // number of jams in a row after which the solve gives up
-// Upper limit on the distance that the last step may leave undone (where it is shorter than the full step), as a share
-// of the tolerance.
+// Upper limit on the remainder of a full Newton step that the last line search leaves out: the longest motion of a node
+// in this remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
-// Upper limit on the motion of stragglers (NewtonSettings) at the end, in tolerances.
+// Upper limit on the motion of stragglers (the few nodes that may still move at the end, NewtonSettings), in
+// tolerances.
 constexpr double kStraggle = 3;
 
 double longest(const NodePositions& step) {
@@ -30,8 +31,8 @@ bool settled(const NodePositions& step, double longest, const NewtonSettings& se
   return double(moving) <= settings.stragglers * double(step.rows());
 }
 
-// Moves x to x + length * step with a lower energy. Returns the length; 0: no lower energy was found.
-//   bound  largest length, at most 1; a full step is extended where the energy falls further than expected
+// Line search: moves x to x + length * step, where the energy is lower. Returns the length; 0: no lower energy found.
+//   bound  the first length tried, at most 1. If a full step lowers the energy well, longer steps are tried too
 double search(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
               double bound) {
   const double rounding = 1e-13 * std::abs(value);

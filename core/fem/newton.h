@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Minimises the energy by projected Newton steps with a line search. No iterate ever has an inverted tet or skin that
 // crosses itself: every step is bounded (step_bound.h, contact_surface.h), and a line search that finds no lower energy
-// does not move. All steps use the projected Hessian: until the last iterations of a deep bend, the exact one is
-// indefinite, or so nearly that its steps lead nowhere. The solve ends when both the step and the remainder of it that
-// the line search left out are too small to matter. It gives up when three searches in a row hardly moved. A full step
-// that lowers the energy is also tried at 2, 4 and 8 times its length. A step that is bounded to less than half is
-// first smoothed around the tets or pairs that bound it, so that all other nodes can take it.
+// does not move. All steps use the projected Hessian. The exact Hessian is indefinite until the last iterations of a
+// deep bend, or so nearly indefinite that its steps are useless. The solve ends when the full Newton step is shorter
+// than the tolerance and the line search has taken almost all of it. The solve gives up when three searches in a row
+// hardly moved. A full step that lowers the energy well is also tried at 2, 4 and 8 times its length. A step that is
+// bounded to less than half is first smoothed around the tets or pairs that bound it, so that other nodes can take it.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ namespace limber {
 
 struct NewtonSettings {
   double tolerance_mm = 0.3;  // the solve ends when no node would move further than this in a step
-  // The share of the nodes that may still move up to 3 times as far at the end, since a few of many thousands converge
-  // very slowly.
+  // Largest share of the nodes that may move further than the tolerance (up to 3 times as far) in the last step, since
+  // a few of many thousands of nodes converge very slowly.
   double stragglers = 0;
   int iterations = 40;
   std::vector<char> fixed;  // #nodes: 1 for nodes whose step is never smoothed (FemEnergy::limit_step); empty: none
@@ -29,7 +29,7 @@ struct NewtonResult {
   bool converged = false;
   int iterations = 0;
   double residual = 0;         // longest motion of a node in the last full Newton step, mm
-  double shortest_search = 1;  // shortest of all steps taken, as a share of the full step
+  double shortest_search = 1;  // shortest line search of all iterations, as a share of the full Newton step
   FemEnergy::Bound bound;      // what limited the last step
 };
 

@@ -57,8 +57,8 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
       for (const int t : patch)
         for (const int n : neighbour[t]) {
           if (n < 0 || patch_of[n] >= 0 || !alike(seed, n)) continue;
-          // Prefers the tet that shares most nodes with the patch; among equals, the one with the fewest neighbours
-          // that are in no patch yet.
+          // Prefers the tet that shares most nodes with the patch. If several share equally many, prefers the tet with
+          // the fewest neighbours that are in no patch yet.
           int score = 0;
           for (const int node : T.row(n)) score += 8 * int(std::count(nodes.begin(), nodes.end(), node));
           for (const int m : neighbour[n]) score += m < 0 || patch_of[m] >= 0;

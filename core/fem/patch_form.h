@@ -3,9 +3,9 @@
 // mean of J over a patch of about eight tets that share faces, not on each tet [after de Souza Neto, Pires & Owen 2005,
 // F-bar patches]:
 //   K/2 V (Jbar - 1)^2,   Jbar = sum of V_t J_t / V
-// with V_t the volume of tissue in tet t, and V their sum: around its tissue a mesh has some room, which need not keep
-// its volume. On each tet this energy acts as a pressure K (Jbar - 1) times the share of the tet that is tissue. The
-// patch's own Hessian has rank one.
+// with V_t the volume of tissue in tet t, and V the sum of V_t. Only tissue counts, because tets at the skin also
+// contain some air, which need not keep its volume. On each tet this energy acts as a pressure K (Jbar - 1) times the
+// share of the tet that is tissue. The patch adds a matrix of rank one to the Hessian.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
 class PatchForm {
  public:
   PatchForm() = default;
-  //   first         as in PatchOrder, for the tets of `tets`
+  //   first         #patches + 1: index of the first tet of each patch in `tets`
   //   bulk, filled  per tet of `tets` (patch_bulk() and TetMaterial::filled). The bulk of a patch is the mean over its
   //                 tets, weighted by their volumes of tissue
   PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk,

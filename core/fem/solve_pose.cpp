@@ -16,17 +16,17 @@
 namespace limber {
 
 namespace {
-// The stiffness of springs at bones' nodes at size 1, kPa per mm2, times the volume around the node. With it a bone
+// Stiffness of the springs at bones' nodes per volume around the node, for an adult's size (1), kPa/mm2. With it a bone
 // gives way by 0.01 mm where flesh pulls with 50 kPa.
 constexpr double kPinStiffness = 1000;
-// The same at nodes of tets between two bones, kPa per mm2. With stiffer springs bones' ends often could not pass.
+// Spring stiffness in kPa/mm2 at nodes of tets between two bones. With stiffer springs bones' ends often cannot pass.
 constexpr double kJointPinStiffness = 0.1;
-constexpr TetMaterial kBoneTet{100, 0.3};  // for tets that one bone holds but that share a node with flesh
+constexpr TetMaterial kBoneTet{100, 0.3};  // material of tets that one bone holds but that share nodes with flesh
 constexpr int kSettling = 3;               // factor on step_iterations for the last solve, at the pose
-constexpr double kStragglers = 1e-3;       // share of the nodes that may still move at the end of the last solve
-constexpr double kTight = 0.25;            // factor on step_tolerance_mm for solving again after the next part failed
-constexpr double kWorth = 0.125;           // smallest group of nodes freed separately, as a share of the solved nodes
-constexpr double kRough = 0.5;             // a first guess of which less than this share is possible is smoothed
+constexpr double kStragglers = 1e-3;       // NewtonSettings::stragglers of the last solve, a share of the nodes
+constexpr double kTight = 0.25;   // factor on step_tolerance_mm for the solve that precedes a second try of a part
+constexpr double kWorth = 0.125;  // least number of nodes to free at a time, as a share of the free nodes
+constexpr double kRough = 0.5;    // if bounds allow less than this share of a first guess, the guess is smoothed
 // Strength, kPa, of the barrier that keeps tets from getting nearly flat. It halves the iterations of a deep bend.
 constexpr double kWeakBarrier = 100;
 
@@ -59,8 +59,8 @@ bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet)
   return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
 }
 
-// Returns the model's nodes that become free at a position on the path. Frees small groups of them together with
-// earlier ones, since each group that becomes free costs a new analysis of the matrix.
+// Returns the nodes that wait until a position on the path before they become free. Small groups of nodes become free
+// earlier, together with the group before, since each group that becomes free costs a new analysis of the matrix.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
@@ -80,14 +80,14 @@ std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   return waiting;
 }
 
-// Splits the mesh into tets that deform and rigid tets; lists the nodes that bones hold by springs and those that they
-// carry along. A tet that one bone holds at every node is rigid, unless it shares a node with flesh: that node may give
-// way.
+// The mesh's tets that deform and its rigid tets; the nodes that bones hold by springs, and the nodes that move exactly
+// with a bone (carried). A tet that one bone holds at every node is rigid, unless it shares a node with flesh: that
+// node may give way.
 struct Parts {
   Eigen::MatrixX4i elastic, rigid;
   std::vector<TetMaterial> material;  // per elastic tet
-  std::vector<char> is_flesh;         // per elastic tet: whether no single bone holds all of its nodes
-  std::vector<int> pinned, carried;   // nodes that bones hold: those in elastic tets, and all others
+  std::vector<char> is_flesh;         // 1 for each elastic tet whose nodes are not all held by one bone
+  std::vector<int> pinned, carried;   // nodes that bones hold: those of elastic tets, those of rigid tets only
   std::vector<double> pin_stiffness;
   std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
 
@@ -203,11 +203,11 @@ class PoseSolve {
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
   const std::vector<FemModel::Waiting> waiting_;
-  double freed_ = 0;          // position on the path; nodes that wait until an earlier one are free
+  double freed_ = 0;          // path position; nodes that wait until an earlier position are free
   std::vector<int> held_by_;  // #V: the bone that holds each node at present, -1: free
   Parts parts_;
   const NodePositions rest_;
-  std::vector<char> held_;  // #V: 1 for nodes that a bone holds by stiff springs, or carries along
+  std::vector<char> held_;  // #V: 1 for nodes that a bone carries, or holds by stiff springs
   NodePositions x_;
   double shortest_ = 0;  // length of the shortest step, as a share of the path
   std::optional<FemEnergy> energy_;
@@ -215,7 +215,7 @@ class PoseSolve {
   SolvedPose result_;
 };
 
-// Frees the nodes that wait until a position before `place` on the path, so that they are solved for like other flesh.
+// Frees the nodes that wait until a position before `place` on the path: they become unknowns, as other nodes of flesh.
 // Nodes that still wait move with their bone.
 void PoseSolve::free_for(double place) {
   freed_ = std::max(freed_, place);
@@ -242,7 +242,7 @@ void PoseSolve::count_spent() {
   seconds_ += energy_->seconds();
 }
 
-// Returns whether nothing has to move; the start then is the result, bit for bit.
+// Returns true if no node has to move. The solve's result is then equal to its start, bit for bit.
 bool PoseSolve::at_rest() const {
   const auto pose = path_(1);
   for (int v = 0; v < int(rest_.rows()); ++v)
@@ -267,8 +267,8 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePosit
   energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
 }
 
-// Returns a vector for each node: way(bone, position) for the bone that holds the node, or the weighted sum of way()
-// over the node's influences.
+// Returns one vector per node, computed by way(bone, position): for a held node with the bone that holds it, for others
+// the sum over the bones of the node's influences, with their weights.
 template <class Way>
 NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   NodePositions sum = NodePositions::Zero(x.rows(), 3);
@@ -287,7 +287,7 @@ NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   return sum;
 }
 
-// Returns the bone of each node that moves rigidly with a bone, -1 for the others.
+// Returns, for each node, the bone with which it moves rigidly; -1: none.
 std::vector<int> PoseSolve::rigid_nodes() const {
   std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
@@ -295,10 +295,10 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// Moves x, a solution at position `from` on the path, to a first guess of the shape at `to`: a Newton step, with the
-// tissue's Hessian, for the velocities with which the bones start (the tangent of the path), plus what the turns of the
-// bones add to these. If tissue does not allow the whole step, tries half of it, a quarter, and so on. Returns the
-// position on the path that x has reached and at which the bones are held; `from` if no step is possible.
+// Moves x, the solution at position `from` on the path, to a first guess of the shape at position `to`. The guess is a
+// Newton step for the bones' velocities at `from` (the path's tangent), plus the difference between the bones' turning
+// motion and these velocities. If bounds do not allow it, tries half of the way, a quarter, and so on. Returns the
+// position that x has reached, at which the bones are then held; `from` if no step is possible.
 double PoseSolve::follow(double from, double to, NodePositions& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
@@ -345,7 +345,7 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
   return drift;
 }
 
-// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm", with the two bones of most weight there.
+// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm": the two bones with most weight at the nodes.
 std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
@@ -381,7 +381,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const NodePositi
   on_step_({at, iteration, residual, V});
 }
 
-// Minimises the energy with the bones where hold_at() put them. x must be on the motion of the last broad phase.
+// Minimises the energy from x on, with bones held as hold_at() set. The last broad phase must be valid at x.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
@@ -392,8 +392,8 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
   return solved;
 }
 
-// Solves at the pose to the final tolerance, since a step ends at a coarser one. A shape that does not converge is
-// kept: it is as good as the result of a step.
+// Solves again at the pose, to the final tolerance; steps end at a coarser tolerance. A shape that does not converge is
+// kept, because it is as good as the result of a step.
 void PoseSolve::settle() {
   result_.blocked_by.clear();
   if (result_.residual < settings_.tolerance_mm) return;
@@ -411,7 +411,7 @@ void PoseSolve::settle() {
   result_.blocked_by = moves + obstacle(solved.bound, x_);
 }
 
-// Returns whether no node of a bone has moved too far from its bone. Otherwise sets blocked_by and returns false.
+// Returns true if all bones' nodes are close to their bones. Otherwise sets blocked_by and returns false.
 bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePositions& x) {
   const Drift drift = bone_drift(pose, x);
   if (drift.mm > settings_.bone_drift_mm) {
@@ -429,8 +429,8 @@ void PoseSolve::record() {
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// Moves x, a solution at `from`, to the shape at `to` or, if that is too far, at an earlier position, to which it sets
-// `to`. Returns false if no solution was found.
+// Solves one part of a step: moves x from the solution at path position `from` to the solution at `to`. If that is too
+// far, lowers `to` to a nearer position. Returns false if no solution was found.
 bool PoseSolve::part(double from, double& to, NodePositions& x) {
   const double at = follow(from, to, x);
   if (at == from) {
@@ -446,8 +446,8 @@ bool PoseSolve::part(double from, double& to, NodePositions& x) {
   return good(path_(at), x);
 }
 
-// Solves from the reached position towards `to`, as far as possible and in as few parts as possible. Returns false if
-// not even the shortest part can be solved.
+// Solves from the reached path position towards `to`, as far as possible. If the whole way fails, solves it in shorter
+// parts. Returns false if not even the shortest part can be solved.
 bool PoseSolve::step(double to) {
   free_for(to);
   const double begin = result_.reached;
@@ -463,13 +463,13 @@ bool PoseSolve::step(double to) {
       from = next;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
-      // Solves the current shape more precisely: a shape that lags behind its bones is a poor start for the next part.
+      // Solves the current shape more precisely, since tissue that lags behind its bones is a poor start for a part.
       hold_at(path_(from));
       energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       if (held_by_ == model_.held_by) break;
-      free_for(INFINITY);  // the nodes that still wait may block the step
+      free_for(INFINITY);  // the step may fail because nodes that still wait cannot give way
       way = to - from;
     }
   }

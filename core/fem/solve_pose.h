@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the shape that tissue takes when its bones move, by nonlinear finite elements on a tet mesh, in steps from
 // rest to the pose. Stiff springs hold the bones' nodes where the rig's bones are; all other nodes move to the shape of
-// least energy. Flesh keeps its volume (nearly incompressible, without the locking of plain tets, patch_form.h) and is
-// not inverted at any iterate. With contact no part of the skin passes through another at any iterate (contact_form.h)
-// [Li et al. 2020]. Every step begins with one iteration along the tangent of the path, which takes the tissue's
-// Hessian into account, and is then solved by projected Newton (newton.h). Lengths are in mm, stiffness in kPa. The
-// result does not depend on the number of threads.
+// least energy. Flesh nearly keeps its volume, without the locking of plain tets (patch_form.h). At every iterate, no
+// tet of flesh is inverted and, with contact, no part of the skin passes through another (contact_form.h) [Li et al.
+// 2020]. Every step begins with one Newton step for the bones' velocities, along the tangent of their path, and is then
+// solved by projected Newton (newton.h). Lengths are in mm, stiffness in kPa. The result does not depend on the number
+// of threads.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct FemModel {
     int node, bone;
     double until;  // position on the path, [0, 1]
   };
-  // Nodes that move rigidly with a bone until a given fraction of the way from rest to the pose, because nothing can
-  // press on them earlier. From there on they are free.
+  // Nodes that move rigidly with a bone until the path position `until`, because nothing can press on them earlier.
+  // After it they are free.
   std::vector<Waiting> waiting;
   // #V lists of bone weights that sum to 1. They give the first guess of a step; the result does not depend on them.
   std::vector<std::vector<BoneWeight>> influences;
@@ -46,12 +46,12 @@ struct SolveSettings {
   bool contact = false;
   double step_degrees = 22.5;  // largest rotation of any joint in one step
   double contact_mm = 1.4;  // parts of the skin nearer than this are pushed apart, if they were further apart at rest
-  double step_tolerance_mm = 4;        // a step ends when no node would move further than this (half a tet)
-  double tolerance_mm = 0.3;           // the same tolerance at the pose
-  int step_iterations = 40;            // a step that needs more iterations is done in parts: half of it, a quarter, ...
-  double shortest_step_degrees = 0.9;  // if even a part this short fails, the pose is out of reach
-  double bone_drift_mm = 2;            // a step fails if it moves a bone's nodes further than this from the bone
-  double size = 1;  // size of the body relative to an adult (1); the springs that hold bones are scaled by it
+  double step_tolerance_mm = 4;        // a step ends when Newton moves no node further than this (half a tet's edge)
+  double tolerance_mm = 0.3;           // the last solve, at the pose, ends when Newton moves no node further than this
+  int step_iterations = 40;            // a step that needs more iterations is split into shorter parts
+  double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops before the pose
+  double bone_drift_mm = 2;            // largest distance of a bone's nodes from their bone; a step beyond it fails
+  double size = 1;                     // size of the body relative to an adult (1); divides the springs by its square
 };
 
 // The state of a solve after an iteration. V is valid only during the callback.
@@ -64,15 +64,15 @@ struct SolveStep {
 
 struct SolvedPose {
   Eigen::MatrixX3d V;      // #V node positions in the pose, mm
-  bool converged = false;  // false: V is the last good step (at `reached`), or an unconverged shape at the pose
+  bool converged = false;  // false: V is the last solved step (at `reached`), or not exact enough at the pose
   double reached = 0;      // position on the path that V has reached, [0, 1]
   std::string blocked_by;  // tells the user what stopped the solve; empty if it converged
   int steps = 0, iterations = 0, factorizations = 0, analyses = 0;
   double residual = 0;           // longest motion of a node in the last full Newton step, mm
-  double min_det_f = 1;          // smallest det F of tets of flesh, at the end
+  double min_det_f = 1;          // smallest det F of the tets of flesh in V
   double min_det_f_of_path = 1;  // smallest det F of tets of flesh at the ends of all steps
-  double bone_drift_mm = 0;      // largest distance of a bone's node from where its bone would put it, at the end
-  std::int64_t inverted = 0;     // tets with det F <= 0 at the ends of all steps, flesh and bone
+  double bone_drift_mm = 0;      // largest distance in V of a bone's node from where its bone moves it
+  std::int64_t inverted = 0;     // tets of flesh and bone with det F <= 0, summed over the ends of all steps
   FemSeconds seconds;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes how far nodes may move along a step before a tet would lose nine tenths of its volume. The volume of a tet
-// whose nodes move along straight lines is a cubic, whose first root is found, so the result is exact. A flat tet is
-// hard to unfold. So each tet may also be given a volume to keep; if it has less than twice that volume, a step must
-// keep half of what it has.
+// whose nodes move along straight lines is a cubic function of the step's length. The first root of this function is
+// computed, so the result is exact. A flat tet is hard to unfold. So each tet may also be given a volume to keep. If
+// its volume is less than twice that, a step must leave at least half of the current volume.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct StepBound {
   std::int64_t tet;  // index of the tet that limits the step, -1: none
 };
 
-// Returns the largest share of `step`, up to `limit`, that all tets allow.
+// Returns the largest share of `step`, up to `limit`, after which every tet has enough of its volume left.
 //   T     #T tets, all with positive volume at x
 //   keep  #T: six times the volume that each tet must keep, mm3; empty: none
 StepBound largest_step(const Eigen::MatrixX4i& T, const NodePositions& x, const NodePositions& step, double limit,

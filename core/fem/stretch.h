@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Measures how much a pose stretches and compresses each tissue, by the singular values of F in the tets that contain
-// its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it,
-// which the model cannot do: the measured stretch includes what takes the place of sliding.
+// its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it.
+// The model cannot slide, so it stretches the skin more than real skin, and the measure includes this.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct Stretch {
   std::array<double, 3> least{1, 1, 1}, most{1, 1, 1};  // smallest and largest principal stretch
 };
 
-// Returns the stretch of each label over the soft tets that may deform. Leaves out tets that one bone holds at every
-// node, and tets between two bones.
+// Returns the stretch of each label over the tets of soft tissue. Leaves out tets that move rigidly (one bone holds all
+// their nodes) and tets between two bones.
 //   V  #V posed nodes
 std::map<Label, Stretch> stretches(const TissueModel& model, const Eigen::MatrixX3d& V);
 

@@ -27,7 +27,8 @@ LIMBER_INLINE void multiply(const N columns[3][3], const N* v, N* product) {
   for (int k = 0; k < 3; ++k) product[k] = columns[0][k] * v[0] + columns[1][k] * v[1] + columns[2][k] * v[2];
 }
 
-// Computes the derivatives of the tets from index `first` on, one per lane. Lanes beyond the last tet repeat that tet.
+// Computes the derivatives of consecutive tets, from index `first` on, one tet per SIMD lane. Lanes beyond the last tet
+// compute the last tet again.
 template <class Lanes>
 LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivatives& result) {
   using N = typename Lanes::Numbers;

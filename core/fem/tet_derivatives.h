@@ -4,8 +4,9 @@
 // gradient of node a's hat function, C the cofactors of F, c_a = C s_a, and g and h the first and second derivative of
 // the volume term (tet_energy.h). Then the Hessian's block between nodes a and b is the tet's volume times
 //   mu (s_a . s_b) I + h c_a c_b^T - g [F (s_a x s_b)]_x,
-// plus, for each direction Q of negative curvature that is left out,
+// To leave out negative curvature, the tet's volume times
 //   value (Q s_a) (Q s_b)^T
+// is added for each direction Q in which the energy's second derivative is -value < 0 (NegativeCurvature).
 #pragma once
 
 #include <array>

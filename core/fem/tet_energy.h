@@ -35,7 +35,7 @@ double energy_density(const TetEnergy& energy, const Eigen::Matrix3d& F, double 
 struct NegativeCurvature {
   struct Direction {
     double value;          // above 0
-    Eigen::Matrix3d mode;  // in the principal axes of F
+    Eigen::Matrix3d mode;  // unit matrix, in the principal axes of F
   };
   int count = 0;
   Direction direction[9];

@@ -17,8 +17,8 @@ constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
 
 struct Quad {
   std::array<int, 4> corner;  // vertices around the quad's two voxels, counter-clockwise seen from `above`
-  // Number of the extra vertex in the middle of the edge from corner i to the next corner; -1: none. An edge has such a
-  // vertex if the surface of one tissue would pass it twice.
+  // Index of the extra vertex in the middle of the edge from corner i to the next corner; -1: none. An edge has such a
+  // vertex if four faces of one tissue's surface would share it (a non-manifold edge).
   std::array<int, 4> middle;
   Label below, above;  // labels of the quad's two voxels
   std::int64_t voxel;  // index of the voxel below, in the grid with a border of air

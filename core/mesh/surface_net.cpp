@@ -346,7 +346,9 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
   if (along[rim_axis] > 0) from[rim_axis] += size;
   const int w = 3 - axis - rim_axis;  // the axis along that side of the rim
   const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
-  const int length = size > 1 ? lattice_.edge_length(from, w) : 1;  // length of that side, or of half of it
+  const int length = size > 1
+                         ? lattice_.edge_length(from, w)
+                         : 1;  // length of the rim's side, or of its first half where the neighbouring cell is smaller
   if (length < size && at >= from[w] + length) from[w] += length;
   const int node = edge_node_[w][lattice_.index(from)];
   if (node < 0 || at < nodes_[node].place[w]) return lattice_.at(from);

@@ -157,10 +157,10 @@ std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part) {
 
 namespace {
 
-// Measures how far a skeleton is from standing: the mean angle by which its limbs exceed a tolerance, radians. A
-// standing body has its legs below it, its feet forward, its arms spread or hanging, straight limbs, and both sides
-// alike. Angles are measured in the body's own axes. Returns nothing for a skeleton that has no trunk or no pair of
-// thighs.
+// Measures how far a skeleton is from a standing pose: how many radians its limbs deviate from that pose beyond a
+// tolerance, on average. In the standing pose the legs point down, the feet forward, and the arms to the sides or down;
+// limbs are straight, and left and right are mirror images. Angles are measured in the body's own axes. Returns nothing
+// for a skeleton that has no trunk or no pair of thighs.
 std::optional<double> unlike_standing(const Skeleton& skeleton) {
   const auto axes = body_axes(skeleton, BodyPart::Thigh);
   if (!axes) return std::nullopt;
@@ -199,8 +199,8 @@ std::optional<double> unlike_standing(const Skeleton& skeleton) {
 int standing_frame(const Motion& motion, Skeleton skeleton) {
   place_joints(skeleton, motion, -1);
   const auto rest = unlike_standing(skeleton);
-  // Without legs, no frame can show whether the body stands, so the rest pose is used. The rest pose also counts as
-  // standing when its limbs exceed their tolerances by less than 0.2 radians (11 degrees) on average.
+  // Returns -1 (the rest pose) for a skeleton without legs, since no frame can then show whether the body stands. Also
+  // returns -1 if the rest pose is within 0.2 radians (11 degrees) of standing.
   if (!rest && (body_axes(skeleton, BodyPart::UpperArm) || !trunk_line(skeleton))) return -1;
   if (rest && *rest < 0.2) return -1;
   double best = rest.value_or(1e9);

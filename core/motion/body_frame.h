@@ -16,7 +16,7 @@
 
 namespace limber {
 
-inline const glm::dvec3 kUp(0, 0, 1);  // LPS: towards the head
+inline const glm::dvec3 kUp(0, 0, 1);  // direction towards the head in LPS axes
 
 inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -31,8 +31,8 @@ std::optional<glm::dmat3> axes_of(const glm::dvec3& main, const glm::dvec3& side
 
 struct Skeleton {
   std::vector<int> parents;
-  // For each joint, its position and its tip. The tip is the end of the joint's bone. It gives the bone's direction
-  // where no other joint does.
+  // Position of each joint, and position of the far end (tip) of its bone. The tip gives the bone's direction where no
+  // joint follows.
   std::vector<glm::dvec3> place, tip;
   std::map<JointRole, int> joint;
   std::vector<std::optional<JointRole>> role;
@@ -46,8 +46,8 @@ struct Skeleton {
 Skeleton skeleton_of(const Armature& armature);
 Skeleton skeleton_of(const Motion& motion);  // the skeleton in the motion's rest pose
 
-// Sets the positions and tips of the joints at a frame. A joint's tip is the mean position of its children, or its End
-// Site. (A child at the joint's own position is replaced by the child's own tip.)
+// Sets the positions of the joints and of their bones' tips at a frame. The tip is the mean position of the joint's
+// children, or the joint's End Site. A child that lies at the joint's own position counts with its own tip instead.
 //   frame  -1: the rest pose
 void place_joints(Skeleton& skeleton, const Motion& motion, int frame);
 
@@ -61,8 +61,8 @@ std::optional<glm::dvec3> trunk_line(const Skeleton& skeleton);
 // Returns the body's axes (left, back, up), found from the left and right joint of `part` and from the trunk line.
 std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part);
 
-// Returns the frame at which the body is nearest to standing; -1: its rest pose. Retargeting measures its rest offsets
-// at this frame.
+// Returns the frame of the motion at which the body is nearest to standing, or -1 if the rest pose is. Retargeting
+// measures the constant rotations between joints and bones in this pose.
 int standing_frame(const Motion& motion, Skeleton skeleton);
 
 }  // namespace limber

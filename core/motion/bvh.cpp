@@ -16,8 +16,8 @@ namespace limber {
 namespace {
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 constexpr int kMostJoints = 4096;
-// Upper limit of a number's magnitude, in the file's units or degrees. It is beyond any real position or angle, and its
-// square still fits single precision.
+// Upper limit of a number's magnitude in a file (file units or degrees). No real position or angle is larger, and the
+// limit's square still fits single precision.
 constexpr double kLargest = 1e15;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
@@ -173,7 +173,7 @@ void read_end_site(Reader& in, BvhJoint& joint) {
   }
 }
 
-// Makes joint names unique, and adds one warning that counts the renamed joints.
+// Makes joint names unique. Adds one warning to the motion, which counts the renamed joints.
 void make_names_unique(Motion& motion) {
   std::unordered_map<std::string, int> used;
   for (const BvhJoint& joint : motion.joints) used.emplace(joint.name, 1);

@@ -61,7 +61,8 @@ std::string bvh_text(const Motion& motion);
 // Returns the global position and rotation of every joint at a frame [0, frame_count), in file axes and units. Frame -1
 // is the rest pose: all rotations are zero and every joint is at its OFFSET.
 std::vector<RigidTransform> forward_kinematics(const Motion& motion, int frame);
-// Computes the global transform of one joint; world[parent] must hold that of its parent already.
+// Computes the global transform of one joint and stores it in world[joint]. The transform of the joint's parent must
+// already be in `world`.
 void place_joint(std::vector<RigidTransform>& world, const Motion& motion, int frame, int joint);
 
 // Convert between LPS axes (mm) and BVH axes: BVH's Y up is z up in LPS, BVH's +Z is anterior.

@@ -10,7 +10,8 @@ namespace limber {
 
 namespace {
 
-// The keys before and after a frame, and the frame's relative position between them: 0 at the first, 1 at the second.
+// The keys before and after a frame, and the share of the interval between the two keys that has passed at the frame,
+// [0, 1].
 template <class Value>
 struct Between {
   const std::pair<const int, Value>*before, *after;
@@ -85,7 +86,8 @@ Pose ClipOnRig::at(int frame) const {
   const Keys& keys = clip_->keys;
   if (keys.empty()) return pose;
 
-  // The motion's pose at each frame that has a key. These are few, since most bones have keys at the same frames.
+  // Cache of the motion's pose at each frame that has a key. The poses are few, since most bones have keys at the same
+  // frames.
   std::map<int, Pose> bases;
   const auto base = [&](int at) -> const Pose& {
     const auto found = bases.find(at);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A clip is a motion that moves the rig, and the keyframes set on top of it.
 //
-// Time is counted in frames of the clip, with `rate` frames in a second. The motion's frame `first` plays at the clip's
-// frame `start`; before and after the used part of the motion the body holds still. If the clip has no motion, keys
-// start from the rest pose.
+// Time is counted in frames of the clip, with `rate` frames in a second. The clip uses the motion's frames `first` to
+// `last`; frame `first` plays at the clip's frame `start`. Before and after these frames the body holds still. If the
+// clip has no motion, bones without keys stay in the rest pose.
 //
 // Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]. At a key's frame the bone has the key's rotation.
-// Between two keys the motion continues, rotated by the difference between key and motion. This difference is
-// interpolated by slerp from one key to the next. It stays constant before the first key and after the last. Without a
-// motion the result is the slerp of the keys themselves.
+// Between two keys the bone follows the motion, rotated by a correction. At each key the correction is the rotation
+// from the motion to the key; from one key to the next it is interpolated by slerp. It stays constant before the first
+// key and after the last. Without a motion the result is the slerp of the keys themselves.
 #pragma once
 
 #include <memory>
@@ -33,7 +33,7 @@ struct Clip {
   double rate = 30;                      // frames per second
   int start = 0;
   int first = 0, last = 0;  // range of the motion's frames that is used, both included
-  RetargetMap map;          // when it lists no sources, bones and joints are matched by name
+  RetargetMap map;          // which joint moves which bone; without entries, bones and joints are matched by name
   RetargetSettings retarget;
   int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
@@ -47,7 +47,7 @@ struct Clip {
 // [0.01, 10000] becomes 30.
 Clip clip_of(std::shared_ptr<const Motion> motion, std::string name, int start = 0);
 
-// Returns `wanted`. Appends a number to it when a clip has that name already.
+// Returns the name `wanted`, with a number appended if a clip has this name already.
 std::string unique_clip_name(const std::vector<std::shared_ptr<const Clip>>& clips, const std::string& wanted);
 
 // A clip applied to a rig: prepared once, then evaluated at many frames.
@@ -66,7 +66,7 @@ class ClipOnRig {
   const std::string& problem() const { return problem_; }
 
  private:
-  Pose base_at(int frame) const;  // the motion's pose, without the keys
+  Pose base_at(int frame) const;  // returns the pose of the motion alone, without the keys
 
   std::shared_ptr<const Clip> clip_;
   std::shared_ptr<const Armature> armature_;

@@ -10,39 +10,41 @@
 namespace limber {
 
 namespace {
-// Speeds of a foot, mm/s. A foot slower than kStanding counts as standing. Below about kStill, a lower speed no longer
-// raises the foot's weight.
+// Speeds of a foot, mm/s. A foot slower than kStanding counts as standing; one faster than twice kStanding does not
+// count at all. The slower a standing foot, the more its sliding costs; below about kStill the cost no longer grows.
 constexpr double kStanding = 200, kStill = 20;
-// Height of a foot above its lowest position, mm. A foot that is higher counts less. A foot at twice this height is
-// ignored.
+// Height of a foot above its lowest position, mm, up to which the foot counts fully as standing. The weight falls to 0
+// at twice this height.
 constexpr double kLifted = 60;
-constexpr double kInTheAir = 0.02;  // weight of a lifted foot when the body's height is computed; a standing foot has 1
-constexpr double kOfToes = 0.2;     // weight of the toes' sliding; an ankle's has 1
-// Costs of a correction. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per second.
-constexpr double kGiven = 1e-6;   // cost of a correction's size, per mm^2 and second
-constexpr double kGiving = 1e-7;  // cost of a correction's rate of change, per (mm/s)^2 and second
+constexpr double kInTheAir = 0.02;  // weight of a lifted foot in the body's height; a standing foot has weight 1.02
+constexpr double kOfToes = 0.2;     // weight of sliding toes, relative to a sliding ankle
+// Costs of correcting a foot's position. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per
+// second.
+constexpr double kGiven = 1e-6;   // cost of the size of a correction, per mm^2 and second
+constexpr double kGiving = 1e-7;  // cost of the rate of change of a correction, per (mm/s)^2 and second
 constexpr int kMostRounds = 40;
-// A stance is a span of frames in which an ankle or the toes of the source stand. Where the body's point slides further
-// than its source during a stance, its weight (its "urge") grows from round to round.
+// A stance is a span of frames in which an ankle or the toes of the source stand on the ground. If the body's ankle or
+// toes slide further than allowed in a stance, the weight of this stance (its "urge") grows from round to round.
 constexpr double kShortestStance = 0.1;       // seconds; a shorter stance is ignored
-constexpr double kMaySlide = 1.01;            // allowed slide, as a multiple of the source's
-constexpr double kMayExceed[] = {0.25, 0.6};  // mm of slide allowed beyond kMaySlide: ankle, toes
-constexpr double kMayExceedMoving = 3;        // factor on kMayExceed for stances of a foot that moves or lifts a little
+constexpr double kMaySlide = 1.01;            // allowed slide of the body's foot, as a multiple of the source's slide
+constexpr double kMayExceed[] = {0.25, 0.6};  // further allowed slide, mm: of the ankle, of the toes
+constexpr double kMayExceedMoving = 3;        // factor on kMayExceed for stances in which the foot need not be still
 constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;  // limits of the factor by which one round changes an urge
-// Regularization of the rotations of thigh and shank, horizontally (kMayMiss) and vertically (kMayRise), as a share of
-// the leg's squared length. The larger the share, the more the ankle may miss its target.
+// Regularization of the rotations of thigh and shank that move the ankle (turns_of_leg), as a share of the summed
+// squared lengths of thigh and shank. kMayMiss is for horizontal movement, kMayRise for vertical. The larger the share,
+// the further the ankle may end from its target.
 constexpr double kMayMiss = 1e-4, kMayRise = 0.04;
 
-// The number of unknowns per frame along one horizontal axis: the body's travel, then for each of two legs the
-// displacement of the ankle and of the toes. Each is in mm.
+// The number of unknowns per frame along one horizontal axis: the correction of the body's travel, then for each of two
+// legs the displacement of the ankle and of the toes, all in mm.
 constexpr int kUnknowns = 5;
 using Block = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-using Sides = Eigen::Matrix<double, kUnknowns, 2>;  // columns: x, y
+using Sides = Eigen::Matrix<double, kUnknowns, 2>;  // the unknowns along x in column 0, along y in column 1
 int swing_of(std::size_t leg) { return 1 + 2 * static_cast<int>(leg); }
 int turn_of(std::size_t leg) { return 2 + 2 * static_cast<int>(leg); }
 
-// A quadratic energy in which each frame's term depends only on this frame and the one before. It is the sum over
-// frames f of
+// A quadratic energy over the frames of a motion, whose terms couple only neighbouring frames. With the unknowns u[f]
+// of frame f it is the sum over f of
 //   (u[f] - u[f-1])' link[f] (u[f] - u[f-1]) + 2 (u[f] - u[f-1])' pull[f] + u[f]' hold[f] u[f]
 // least() minimizes it by block elimination: a pass forward through the frames, and a pass back.
 struct Chain {
@@ -74,8 +76,8 @@ struct Chain {
   }
 };
 
-// Return the rotation that a leg needs to move its ankle by `aside`, or a foot to move its toes by `aside`, as a share
-// of the largest allowed rotation. A share above 1 is not allowed.
+// Compute the rotation by which a leg moves its ankle by `aside`, mm, or a foot its toes. Return this rotation divided
+// by the largest allowed rotation, so that a result above 1 is not allowed.
 double share_of_leg(const FootTrack& leg, std::size_t frame, const glm::dvec2& aside) {
   return turns_of_leg(leg.knee[frame] - leg.hip[frame], leg.body[FootTrack::Ankle][frame] - leg.knee[frame], aside)
              .most() /
@@ -97,12 +99,13 @@ std::vector<double> lowest_places(const FootTrack& leg) {
   return lowest;
 }
 
-// A span of frames [begin, end) during which a point (ankle or toes) of the source stands.
+// A stance: the frames [begin, end) during which a point (ankle or toes) of the source stands on the ground.
 struct Stance {
   std::size_t leg;
   int point;
   std::size_t begin, end;
-  // How far the source's point slides, and how far the body's point may slide beyond kMaySlide times that, mm.
+  // The distance that the source's point slides during the stance, and the excess that the body's point is allowed
+  // above kMaySlide times this distance, mm.
   double slides, may_exceed;
 };
 
@@ -115,8 +118,8 @@ double slide_in(std::size_t begin, std::size_t end, PlaceAt place_at) {
   return farthest;
 }
 
-// Returns all stances. Those in which the foot stays below half the speed and half the height are listed a second time,
-// with a smaller allowed slide.
+// Returns all stances (spans of frames in which a foot is below the limits of speed and height). Spans that also stay
+// below half of both limits are listed a second time, with a smaller allowed slide.
 std::vector<Stance> stances_of(const std::vector<FootTrack>& legs, const std::vector<std::vector<double>>& ground,
                                double frame_time) {
   std::vector<Stance> stances;
@@ -140,9 +143,10 @@ std::vector<Stance> stances_of(const std::vector<FootTrack>& legs, const std::ve
   return stances;
 }
 
-using Urges = std::vector<std::array<std::vector<double>, 2>>;  // weight factors by leg, point and frame
+using Urges = std::vector<std::array<std::vector<double>, 2>>;  // weight of each leg's ankle and toes at each frame
 
-// Sets the terms of the energy for the sliding of ankles and toes, and for the rate of change of the corrections.
+// Sets the energy terms that couple neighbouring frames: the cost of sliding ankles and toes, and the cost of the rate
+// of change of the corrections.
 void link_slides(const std::vector<FootTrack>& legs, const std::vector<std::vector<double>>& ground, const Urges& urges,
                  double frame_time, Chain& chain) {
   for (std::size_t f = 1; f < chain.link.size(); ++f) {
@@ -169,8 +173,8 @@ void link_slides(const std::vector<FootTrack>& legs, const std::vector<std::vect
   }
 }
 
-// Minimizes the energy. A correction beyond its limit is cut to the limit, and its cost is raised for the next round.
-// Returns false if any correction was cut.
+// Minimizes the energy and stores the corrections of the feet in `mending`. A correction beyond its limit is cut to the
+// limit, and its cost is raised for the next round. Returns false if any correction was cut.
 bool solve_within_limits(const std::vector<FootTrack>& legs, double frame_time, Chain& chain, FootMending& mending) {
   const std::vector<Sides> given = chain.least();
   bool all_may = true;
@@ -194,8 +198,8 @@ bool solve_within_limits(const std::vector<FootTrack>& legs, double frame_time, 
   return all_may;
 }
 
-// Returns the largest excess slide of all stances, as a multiple of the allowed excess, and adapts each stance's
-// weights to its own excess.
+// Returns by how many times its allowed excess the worst stance slides; above 1, a foot slides too far. Raises the
+// weights of stances that slide too far, and lowers the others.
 double urge_stances(const std::vector<FootTrack>& legs, const std::vector<Stance>& stances, const FootMending& mending,
                     Urges& urges) {
   double worst = 0;

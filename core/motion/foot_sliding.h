@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keeps the feet of a retargeted body from sliding further than the feet of its source.
 //
-// Legs of other proportions take steps of other lengths and bend to other heights. A body that travels exactly as the
-// hips of its source would therefore slide and float. Three things are corrected: the body's travel, the thighs and
-// shanks, which turn a little, and the feet, which turn a little too. The corrections minimize, over the whole motion,
+// The source is the recorded skeleton. Since the legs of the body have other proportions, feet slide and float if the
+// body travels exactly as the source's hips. The corrections shift the body's travel and slightly rotate thighs, shanks
+// and feet. They minimize, over the whole motion,
 //   sum over frames, legs, points p (ankle, toes):  stands_p |slide_p|^2 / (speed_p^2 + still^2)^(3/2)
-// where slide_p is the difference between the motion of the point and that of the source's point; a small cost is added
-// for each correction and for its rate of change. As a result, a rolling foot keeps its slower point in place. Where
-// two standing feet disagree, the legs make up for it, before, during and after. Where a bone would turn beyond its
-// limit, its cost is raised and the whole problem is solved again. Vertically, a low foot is as high above its rest
-// height as the source's foot is above its lowest position.
+// where stands_p is 1 for a point on the ground and 0 for one in the air, speed_p is the speed of the source's point,
+// and slide_p is the difference between the movements of the body's point and the source's point. A small cost is added
+// for the size of each correction and for its rate of change. As a result, the slower point of a rolling foot stays in
+// place. If two standing feet need different shifts, rotations of the legs make up the difference. If a bone would
+// rotate beyond its limit, its cost is raised and the whole problem is solved again. Vertically, the body is shifted so
+// that a low foot is as high above its rest height as the source's foot is above its lowest position.
 #pragma once
 
 #include <algorithm>
@@ -28,19 +29,19 @@ struct FootTrack {
   std::array<std::vector<glm::dvec3>, 2> source, body;
   double rest_height = 0;             // height of the body's ankle in the rest pose, mm
   std::vector<glm::dvec3> hip, knee;  // positions of the body's joints, mm; a leg without a shank has its ankle as knee
-  double most_turn = 0;               // largest rotation of thigh, shank and foot, radians
+  double most_turn = 0;               // largest allowed rotation of thigh, shank and foot, radians
   bool has_toes() const { return !source[Toes].empty(); }
 };
 
 struct FootMending {
   std::vector<glm::dvec3> travel;  // shift of the body's position at each frame, mm
-  // Displacements along the ground for each leg and frame, mm. The leg moves the ankle; the foot then moves the toes
-  // further.
+  // Corrections of ankle and toes along the ground, for each leg and frame, mm. Rotations of thigh and shank move the
+  // ankle, and the toes with it; a rotation of the foot then moves the toes further.
   std::vector<std::vector<glm::dvec2>> ankle_aside, toes_aside;
 };
 
-// The smallest rotations of thigh and shank that move the ankle along the ground and, where the knee is bent, keep the
-// ankle's height. They are rotation vectors in world axes, radians.
+// The smallest rotations of thigh and shank that move the ankle along the ground. If the knee is bent, they also keep
+// the ankle's height. Rotation vectors in world axes, radians.
 struct TurnsOfLeg {
   glm::dvec3 thigh, shank;
   double most() const { return std::max(glm::length(thigh), glm::length(shank)); }
@@ -48,8 +49,8 @@ struct TurnsOfLeg {
 //   thigh, shank  vectors from hip to knee and from knee to ankle, mm
 TurnsOfLeg turns_of_leg(const glm::dvec3& thigh, const glm::dvec3& shank, const glm::dvec2& ankle_aside);
 
-// Computes the corrections for one or two legs. Without `along_ground` only the body's height is corrected. At frame 0
-// nothing is corrected along the ground.
+// Computes the corrections that keep the feet of one or two legs from sliding. If `along_ground` is false, only the
+// body's height is corrected. At frame 0 nothing is corrected along the ground.
 FootMending mend_sliding(const std::vector<FootTrack>& legs, double frame_time, bool along_ground);
 
 }  // namespace limber

@@ -15,7 +15,7 @@ namespace limber {
 struct Keys {
   // For each bone name, the rotation at each keyed frame. Each listed bone has at least one key.
   std::map<std::string, std::map<int, glm::dquat>> bones;
-  std::map<int, glm::dvec3> root;  // root_translation of the body by frame, mm
+  std::map<int, glm::dvec3> root;  // for each keyed frame, the body's shift from its rest position, mm
 
   bool operator==(const Keys&) const = default;
   bool empty() const { return bones.empty() && root.empty(); }
@@ -23,14 +23,15 @@ struct Keys {
 
 std::set<int> frames_of(const Keys& keys);
 
-// Stores the pose's rotations of `bones` at that frame, and the body's position if a root bone is among them.
+// Sets keys of `bones` at a frame, with the rotations that the bones have in the pose. If a root bone is among them,
+// the body's position is keyed too.
 void insert_key(Keys& keys, const Armature& armature, const Pose& pose, const std::vector<int>& bones, int frame);
-// Deletes the keys of these bones at that frame; returns false when there were none.
+// Deletes the keys of the bones at a frame. Returns false if there were no such keys.
 bool delete_key(Keys& keys, const Armature& armature, const std::vector<int>& bones, int frame);
 
 // Delete, move or copy all keys at the given frames. A key moved onto a frame that has a key replaces it.
 void delete_keys(Keys& keys, const std::set<int>& frames);
-//   frame_of  maps the old frame of a key to its new frame; keys at frames that are not listed stay
+//   frame_of  for each frame whose keys are moved or copied, the new frame; keys at other frames stay
 void move_keys(Keys& keys, const std::map<int, int>& frame_of);
 void copy_keys(Keys& keys, const std::map<int, int>& frame_of);
 

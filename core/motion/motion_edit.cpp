@@ -85,7 +85,8 @@ glm::dvec3 euler_angles(const glm::dquat& rotation, const std::array<int, 3>& or
   const double sign = (j - i + 3) % 3 == 1 ? 1 : -1;
   const double cosine = std::hypot(R(i, i), R(i, j));
   const double b = std::atan2(sign * R(i, k), cosine);
-  // Gimbal lock: a and c turn about the same axis, and R_i(a) R_j(b) = rotation R_k(-c).
+  // Gimbal lock: b is a right angle, so a and c rotate about the same axis. Takes c from `near`; a follows from R_i(a)
+  // R_j(b) = rotation * R_k(-c).
   if (cosine < 1e-9) {
     const glm::dmat3 rest = glm::mat3_cast(rotation * about(k, -near[2]));
     return nearest_turns({std::atan2(sign * rest[j][k], rest[j][j]), b, near[2]}, near);
@@ -160,9 +161,9 @@ Motion motion_of_poses(const Armature& armature, int frames, double rate, const 
     for (std::size_t j = 0; j < motion.joints.size(); ++j) {
       const BvhJoint& joint = motion.joints[j];
       const glm::dquat& turn = posed[bone_of[j]].rotation;
-      wanted[j] = {turn.w, turn.x, turn.z, -turn.y};  // the same rotation in BVH axes
-      // The rotation is computed relative to the parent's rotation as rounded for the file, so that rounding errors do
-      // not add up from joint to joint.
+      wanted[j] = {turn.w, turn.x, turn.z, -turn.y};  // the bone's rotation, in BVH axes
+      // A joint's rotation is computed relative to the rounded rotation that the file holds for its parent, so that
+      // rounding errors do not add up from joint to joint.
       const glm::dquat above = joint.parent < 0 ? glm::dquat(1, 0, 0, 0) : written[joint.parent];
       const auto order = *euler_order(joint);
       near[j] = euler_angles(glm::normalize(glm::conjugate(above) * wanted[j]), order, near[j]);

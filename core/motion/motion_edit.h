@@ -11,8 +11,8 @@
 
 namespace limber {
 
-// Returns the three axes (0 to 2) of a joint's rotation channels, in their order; nothing unless the joint rotates
-// about each axis exactly once.
+// Returns the axes (0: x, 1: y, 2: z) of a joint's three rotation channels, in the channels' order. Returns nothing
+// unless the joint rotates about each axis exactly once.
 std::optional<std::array<int, 3>> euler_order(const BvhJoint& joint);
 
 // Returns angles a, b, c in radians with rotation = R_i(a) R_j(b) R_k(c) for the axes i, j, k of `order` [Shoemake,
@@ -25,9 +25,9 @@ glm::dvec3 euler_angles(const glm::dquat& rotation, const std::array<int, 3>& or
 Motion y_up_from_z_up(const Motion& motion);
 
 // Resamples a motion to another frame rate: rotations by slerp between the frames on either side, positions linearly.
-// The first frame stays, and the duration is kept to within a frame. Joints without three different rotation channels
-// are interpolated channel by channel.
-//   rate  frames per second, [0.1, 1000]; throws Error outside, or when it would give more than 10 million frames
+// The first frame stays, and the duration changes by less than a frame. A joint that does not rotate about three
+// different axes is interpolated channel by channel.
+//   rate  frames per second; throws Error outside of [0.1, 1000], or if it would give more than 10 million frames
 Motion resampled(const Motion& motion, double rate);
 
 // Records a motion of the rig: one joint for each bone, one frame for each pose.

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// A limb within this angle of the named stance is left as it is: 30 degrees. The arms of a T-pose, of an A-pose and
-// hanging arms differ by 45 degrees.
+// Angle between a limb and its direction in the named rest pose up to which the limb is left as it is: 30 degrees. This
+// tells the poses apart, since their arms differ by 45 degrees or more.
 constexpr double kNear = std::numbers::pi / 6;
 // Slope of the line from the ankle down to the toes of a foot that stands flat, radians.
 constexpr double kSole = 0.4;
@@ -81,7 +81,7 @@ Straightened straightened(const Motion& motion, RestStance stance, int frame) {
   place_joints(skeleton, motion, frame);
   const glm::dmat3 body = axes_of_body(skeleton);
   const auto world = forward_kinematics(motion, frame);
-  // Rotation of each joint, in the file's axes.
+  // The rotation that turns each joint's limb into the stance, in the file's axes.
   std::vector<glm::dquat> turn(motion.joints.size(), glm::dquat(1, 0, 0, 0));
   for (int j = 0; j < std::ssize(turn); ++j) {
     BvhJoint& joint = result.motion.joints[j];
@@ -97,8 +97,8 @@ Straightened straightened(const Motion& motion, RestStance stance, int frame) {
     const auto named = skeleton.role[j] ? direction_in(stance, *skeleton.role[j]) : std::nullopt;
     if (named && glm::length(here) > 1e-9) {
       const glm::dvec3 there = body * *named;
-      // Feet have twice the tolerance, since the height of the ankle above the sole, and so a foot's slope, differs
-      // between skeletons.
+      // Feet have twice the tolerance: the slope of a foot depends on the height of the ankle above the sole, which
+      // differs between skeletons.
       const bool near = angle_between(here, there) < (skeleton.role[j]->part == BodyPart::Foot ? 2 * kNear : kNear);
       turn[j] = near ? glm::dquat(1, 0, 0, 0) : shortest_turn(bvh_from_lps(here), bvh_from_lps(there));
       if (!near) result.turned.push_back(j);

@@ -16,7 +16,8 @@ namespace limber {
 
 namespace {
 constexpr BodySide kSides[] = {BodySide::Left, BodySide::Right};
-// Largest rotation, radians, of a thigh, shank or foot away from its source, in order to keep the foot from sliding.
+// Largest correction, radians, of the rotation of a thigh, shank or foot that keeps the foot from sliding (1.95
+// degrees).
 constexpr double kMostTurn = 0.034;
 
 bool hangs_from(const Armature& armature, int bone, int ancestor) {
@@ -29,7 +30,7 @@ glm::dquat turn_by(const glm::dvec3& rotation) {
   return angle > 1e-12 ? glm::angleAxis(angle, rotation / angle) : glm::dquat(1, 0, 0, 0);
 }
 
-// Returns the rotation, of at most kMostTurn, that moves the end of the vector `way` horizontally by `aside`.
+// Returns the rotation that moves the end of the vector `way` horizontally by `aside`. Its angle is at most kMostTurn.
 glm::dquat turn_aside(const glm::dvec3& way, const glm::dvec2& aside) {
   const glm::dvec2 flat = glm::dvec2(way) + aside;
   const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
@@ -46,11 +47,11 @@ bool is_trunk(BodyPart part) {
 
 class Alignment {
  public:
-  // Computes for each rig bone the rotation from its rest pose to the pose of the source. Only the rotations of matched
-  // bones are used.
-  //   stances   the stances that the user named for rig and source
-  //   rebuilt   joints of the source that were turned into the named stance, so that their fingers no longer show where
-  //             the palm faces
+  // Computes for each bone of the rig the rotation from the rig's rest pose to the pose of the source skeleton. Callers
+  // use only the rotations of bones that are matched to a joint.
+  //   stances   the kinds of rest pose that the user named for rig and source
+  //   rebuilt   joints of the source that were turned into the named rest pose. The fingers below them no longer show
+  //             where the palm faces.
   Alignment(const Skeleton& rig, const Skeleton& source, const std::vector<int>& joint_of_bone, bool source_at_rest,
             const RestStances& stances, const std::vector<int>& rebuilt)
       : rig_(rig),
@@ -71,9 +72,9 @@ class Alignment {
   const std::vector<glm::dquat>& turns() const { return turn_; }
 
  private:
-  // Returns the rotation of the whole body from the rig to the source. If the source is in an upright rest pose, this
-  // is only a rotation about the vertical: how far its trunk leans depends on where the skeleton has its joints, not on
-  // how the body stands.
+  // Returns the rotation of the whole body from the rig to the source. For a source in an upright rest pose, this is
+  // only a rotation about the vertical: a small lean of its trunk line comes from where the skeleton has its joints,
+  // not from how the body stands.
   std::optional<glm::dquat> body_turn(BodyPart part, bool source_at_rest) const {
     const auto from = body_axes(rig_, part), to = body_axes(source_, part);
     if (!from || !to) return std::nullopt;
@@ -102,8 +103,8 @@ class Alignment {
     if (glm::length(here) < 1e-9 || glm::length(there) < 1e-9) return above(bone);
     if (role && role->part == BodyPart::Foot) {
       auto pitch = [](const glm::dvec3& d) { return std::atan2(d.z, std::hypot(d.x, d.y)); };
-      // Two feet flat on the ground differ only in their heading, however high their ankles are. A lifted foot is
-      // turned to the full direction of the source's foot.
+      // If both feet are flat on the ground, the bone takes only the heading of the source's foot: the pitches differ
+      // because the ankles' heights above the soles do. Otherwise the bone takes the full direction of that foot.
       if (std::abs(pitch(here) - pitch(there)) < 0.6 && std::abs(pitch(there)) < 1 && std::abs(pitch(here)) < 1)
         return heading_turn(here, there);
     }
@@ -141,7 +142,7 @@ class Alignment {
                                           2 * std::numbers::pi);
       turn_[forearm] = glm::normalize(glm::angleAxis(twist / 2, along) * turn_[forearm]);
     }
-    // The hand's descendants first follow the hand, then get their own directions again.
+    // Computes the rotations of the hand's descendants again, since they depend on the hand's rotation.
     for (size_t below = bone + 1; below < joint_.size(); ++below) {
       if (!hangs_from(static_cast<int>(below), bone)) continue;
       turn_[below] = joint_[below] >= 0 ? turn_of(static_cast<int>(below)) : above(static_cast<int>(below));
@@ -153,9 +154,9 @@ class Alignment {
     return bone == ancestor;
   }
 
-  // Returns the line across the palm, from the thumb's side to the little finger, of the rig and of the source. If both
-  // skeletons have knuckles, or both have a thumb, these give the lines of both. Otherwise each line comes from the
-  // skeleton's own fingers, or else from the stance that the user named.
+  // Returns the directions across the palm of the rig and of the source, from the thumb's side to the little finger. If
+  // both skeletons have knuckles, both directions come from the knuckles; else, if both have a thumb, from the thumb.
+  // Otherwise each direction comes from the skeleton's own fingers, or else from the stance that the user named.
   std::pair<std::optional<glm::dvec3>, std::optional<glm::dvec3>> palm_lines(BodySide side, int hand,
                                                                              int source_hand) const {
     const auto& role = source_.role[source_hand];
@@ -201,9 +202,9 @@ class Alignment {
 
 // ---- matching
 
-// Returns whether a rig of a single hand is a left or a right hand, judged by its fingers. Three directions form a
-// right-handed system in a right hand: along the hand, from index to little finger, and of the fingers' curl. Returns
-// Right when the fingers do not tell.
+// Returns whether a rig of a single hand is a left or a right hand. In a right hand, three directions form a
+// right-handed system: along the hand, from the index to the little finger, and to where the fingers curl. Returns
+// Right if the rig lacks the fingers that show these directions.
 BodySide side_of_single(const Skeleton& rig) {
   auto of = [&](BodyPart finger, int segment) { return rig.place_of(finger, BodySide::Middle, segment); };
   const auto index = of(BodyPart::Index, 1), little = of(BodyPart::Little, 1), knuckle = of(BodyPart::Middle, 1),
@@ -257,8 +258,8 @@ double leg_length(const Skeleton& skeleton, BodyPart upper, BodyPart lower, Body
   return count ? sum / count : 0;
 }
 
-// Returns the scale from source to rig, mm per unit of the source. It is the ratio of the leg lengths, else of the arm
-// lengths, else of the trunk lengths.
+// Returns the scale from source to rig, mm per unit of the source. It is the ratio of their leg lengths. Skeletons
+// without legs are compared by their arms, those without arms by their trunks.
 double scale_between(const Skeleton& rig, const Skeleton& source) {
   auto length = [](const Skeleton& skeleton, int way) {
     if (way == 0) return leg_length(skeleton, BodyPart::Thigh, BodyPart::Shank, BodyPart::Foot);
@@ -273,7 +274,7 @@ double scale_between(const Skeleton& rig, const Skeleton& source) {
   return 1;
 }
 
-// Returns the rest offset of each matched bone: its rotation relative to the rotation of its joint. The offset is
+// Returns the rest offset of each matched bone: the constant rotation between the bone and its source joint. It is
 // measured at frame `standing`, at which the source's pose corresponds to the rest pose of the rig.
 std::vector<glm::dquat> offsets_between(const Motion& motion, const Skeleton& rig, Skeleton source,
                                         const std::vector<int>& joint_of_bone, int standing, const RestStances& stances,
@@ -321,7 +322,7 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
     JointRole wanted = role;
     if (one_limb && sided_source && role.part >= BodyPart::Clavicle) wanted.side = only_side;
     auto found = source.joint.find(wanted);
-    // A metacarpal bone without a matching joint follows the hand's joint if the rig has no hand bone as its parent.
+    // A metacarpal bone without a matching joint follows the source's hand joint if the rig has no hand bone.
     if (found == source.joint.end() && role.index == 0 && role.part > BodyPart::Thumb &&
         !rig.joint.contains({BodyPart::Hand, role.side}))
       found = source.joint.find({BodyPart::Hand, wanted.side});
@@ -363,7 +364,8 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
     joint_of_bone_[require_bone(armature, bone)] = joint->second;
   }
 
-  // The rest offsets are measured at the frame at which the source stands.
+  // The constant rotations between joints and bones (rest offsets) are measured at the frame at which the source
+  // stands.
   Skeleton rig = skeleton_of(armature), source = skeleton_of(motion);
   // A bone whose name means no known body part takes the body part of its joint.
   for (size_t b = 0; b < joint_of_bone_.size(); ++b) {
@@ -399,8 +401,8 @@ Retarget::Retarget(const Motion& motion, const Armature& armature, const Retarge
   if (first != joint_of_bone_.end())
     lead_ = *first, start_ = forward_kinematics(*motion_, from_rest ? -1 : 0)[lead_].translation;
 
-  // This finds the matched bones around the unmatched bones of the trunk. From each matched bone it goes from parent to
-  // parent until the next matched bone; the unmatched bones on the way lie between these two.
+  // For each unmatched bone of the trunk, finds the nearest matched bones below and above. From each matched trunk bone
+  // `top`, the loop goes from parent to parent down to the next matched bone; the bones on the way are unmatched.
   for (size_t top = 0; top < joint_of_bone_.size(); ++top) {
     if (joint_of_bone_[top] < 0 || !rig.role[top] || !is_trunk(rig.role[top]->part)) continue;
     std::vector<int> gap;
@@ -451,7 +453,8 @@ Pose Retarget::at(int frame) const {
 // Returns the leg's foot bone for the ankle, and its toes bone for the toes (-1: the leg has no toes).
 int Retarget::bone_of(const Leg& leg, int point) { return point == FootTrack::Toes ? leg.toes : leg.foot; }
 
-// Evaluates only the joints and bones that the feet depend on, which are few even in motions of many joints.
+// Computes the positions of the leg joints at every frame. To save time, only the joints and bones that the feet depend
+// on are evaluated; they are few even in motions of many joints.
 std::vector<FootTrack> Retarget::foot_tracks() const {
   std::vector<bool> bone_matters(armature_->bones.size(), false), joint_matters(motion_->joints.size(), false);
   const auto matters = [&](int bone) {
@@ -513,8 +516,8 @@ std::vector<FootTrack> Retarget::foot_tracks() const {
   return feet;
 }
 
-// Turns thigh and shank so that the ankle moves along the ground by `ankle_aside`. The foot keeps its direction, except
-// that it turns to move its toes by a further `toes_aside`.
+// Rotates thigh and shank so that the ankle moves along the ground by `ankle_aside`, mm. The foot keeps its direction,
+// except for a rotation that moves the toes by a further `toes_aside`, mm.
 void Retarget::move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_aside,
                          const glm::dvec2& toes_aside) const {
   const auto posed = posed_from_rest(*armature_, pose);
@@ -530,7 +533,8 @@ void Retarget::move_foot(Pose& pose, const Leg& leg, const glm::dvec2& ankle_asi
                    shank = leg.shank == leg.foot ? thigh : turn_by(may * turns.shank);
   const glm::dquat foot =
       leg.toes < 0 ? glm::dquat(1, 0, 0, 0) : turn_aside(place(leg.toes) - place(leg.foot), toes_aside);
-  // A bone turns together with its parent, so the shank and the foot first undo the rotation of the bone above.
+  // A rotation of a bone also rotates its children. The shank and the foot therefore undo the rotation of the bone
+  // above them before they apply their own.
   turned_before(leg.thigh, thigh);
   if (leg.shank != leg.foot) turned_before(leg.shank, glm::conjugate(thigh) * shank);
   turned_before(leg.foot, glm::conjugate(shank) * foot);

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Retargets the motion of one skeleton to another.
 //
-// Each matched bone has the same rotation in the world as its source joint, up to a constant offset:
+// The source is the motion's skeleton, the rig is the skeleton that the motion is to move. A bone of the rig is matched
+// if a joint of the source moves it. It has the same rotation in the world as its joint, up to a constant offset:
 //   posed_from_rest(bone, frame) = source(joint, frame) * rest_offset(bone)
 // with `source` the joint's global rotation in LPS axes. The offset is computed once, at a reference frame at which the
-// source's pose corresponds to the rig's rest pose: the source's rest pose if it stands there, else the frame at which
-// it is nearest to standing. At this frame
-//   - arms, thighs, shanks and fingers get the source's *directions*, so arms hang when the actor's hang, whatever pose
-//     either skeleton rests in. Each bone takes the shortest turn from its direction under its turned parent. Palms
-//     face as the source's palms;
+// source's pose corresponds to the rig's rest pose. This is the source's rest pose if the source stands in it, else the
+// frame at which the source is nearest to standing. At this frame
+//   - arms, thighs, shanks and fingers get the *directions* of the source's limbs, so arms hang when the actor's arms
+//     hang, whatever the rest poses of the skeletons are. Each bone first follows its parent, then takes the shortest
+//     rotation to the direction of its joint. Palms face as the source's palms do;
 //   - feet keep their pitch to the ground and get the source's heading; pelvis, spine, neck, head and collars, whose
 //     bones run differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
-// Where the source's joints do not show its stance, the user can name it (rest_pose_kind.h). Limbs that differ from the
-// stance are then turned into it first, and it decides where palms without fingers face. The body faces where the actor
-// faces. Unmatched trunk bones between matched ones share the bend; all other unmatched bones follow their parent. The
-// rig keeps its bone lengths, and travel is scaled by the lengths of the legs. If the motion was made for this rig
-// itself, each bone takes its joint's rotation directly.
+// If the source's joints do not show in which pose it rests, the user can name this pose (rest_pose_kind.h). Limbs that
+// differ from the named pose are then turned into it first, and it decides where palms without fingers face. Unmatched
+// trunk bones between matched ones share the bend; all other unmatched bones follow their parent. The rig keeps its
+// bone lengths, and travel is scaled by the lengths of the legs. If the motion was made for this rig itself, each bone
+// takes the rotation of the joint of its name.
 #pragma once
 
 #include <map>
@@ -31,7 +32,7 @@
 
 namespace limber {
 
-// The stances (kinds of rest pose) of source and rig, as the user named them. The source's stance is its pose at the
+// The kinds of rest pose (stances) that the user named for source and rig. For the source, this is its pose at the
 // reference frame.
 struct RestStances {
   RestStance source = RestStance::AsItLies, rig = RestStance::AsItLies;
@@ -42,13 +43,13 @@ struct RestStances {
 struct RetargetMap {
   struct Source {
     std::string joint;
-    // The bone's rotation relative to its joint (see the top of this file). Empty: it is computed from the two
-    // skeletons.
+    // The constant rotation between the bone and its joint (see the top of this file). Empty: the rotation is computed
+    // from the two skeletons.
     std::optional<glm::dquat> rest_offset;
 
     bool operator==(const Source&) const = default;
   };
-  std::map<std::string, Source> sources;  // by name of the rig bone; bones that are not listed follow their parents
+  std::map<std::string, Source> sources;  // by name of the bone; other bones follow their parents
   RestStances stances;
 
   bool operator==(const RetargetMap&) const = default;
@@ -74,27 +75,28 @@ void write_retarget_map(const RetargetMap& map, const Path& path);
 
 // How the body moves with the source's hips.
 enum class Travel {
-  Locked,   // the body stays where it rests
+  Locked,   // the body stays at its rest position
   InPlace,  // the body moves only up and down, so that feet on the ground are as high as at rest
-  // The body also moves along the ground, as far as the source has since frame 0. Thighs, shanks and feet turn by up to
-  // 1.95 degrees, so that feet slide no further than the source's (foot_sliding.h).
+  // The body moves up and down and along the ground, by the source's movement since frame 0. Thighs, shanks and feet
+  // are rotated by up to 1.95 degrees so that the feet slide no further than the source's feet (foot_sliding.h).
   Free,
 };
 
-// How to choose the reference frame, at which the pose of the source corresponds to the rest pose of the rig.
+// The reference frame, at which the pose of the source corresponds to the rest pose of the rig. Found: the frame at
+// which the source is nearest to standing, or its rest pose.
 enum class Reference { Found, RestPose, FirstFrame };
 
 struct RetargetSettings {
   Travel travel = Travel::Locked;
-  bool mirror = false;  // swaps left and right
+  bool mirror = false;  // true: left and right of the body are swapped
   double scale = 0;     // mm of travel per unit of the file; 0: computed from the lengths of the legs
   Reference reference = Reference::Found;
 
   bool operator==(const RetargetSettings&) const = default;
 };
 
-// A motion retargeted to a rig: prepared once, then evaluated at many frames. Invariant: `motion` and `armature`
-// outlive it.
+// A motion retargeted to a rig. It is prepared once and then evaluated at many frames. The caller must keep `motion`
+// and `armature` alive as long as this object.
 class Retarget {
  public:
   // Throws Error when the motion has no frames.
@@ -102,23 +104,23 @@ class Retarget {
            const RetargetSettings& settings = {});
 
   Pose at(int frame) const;                                      // throws Error for a frame the motion lacks
-  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // -1: the bone has no joint
+  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // index of the bone's joint; -1: none
   double scale() const { return scale_; }                        // mm per unit of the file
-  RetargetMap map() const;                                       // the map in use, with all its rest offsets
-  // Returns the source's joints that were turned into the named stance.
+  RetargetMap map() const;                                       // the map with all rest offsets filled in
+  // Returns the indices of the source's joints that were turned into the rest pose that the user named.
   const std::vector<int>& turned_joints() const { return turned_joints_; }
 
  private:
-  // Returns the pose for the source's joints at a frame, without the correction of the feet.
+  // Returns the pose of the rig for one frame of the source, before the feet are corrected.
   //   source  global transforms of the source's joints, in the file's axes and units
   Pose carried_over(const std::vector<RigidTransform>& source) const;
-  // Returns the rotation of the bone from its rest pose, in world axes.
+  // Returns the rotation of a bone from its rest pose, in world axes, for one frame of the source.
   //   carried  the parent bone's rotation from its rest pose, in world axes
   glm::dquat turned(int bone, const std::vector<RigidTransform>& source, const glm::dquat& carried) const;
   glm::dvec3 travelled(const std::vector<RigidTransform>& source) const;
   struct Leg {
     int thigh, shank, foot;  // bone indices; a leg without a shank has its foot as shank
-    int toes;                // bone index; -1: no toes are matched
+    int toes;                // index of the toes bone; -1: no toes bone is matched to a joint
   };
   static int bone_of(const Leg& leg, int point);
   std::vector<FootTrack> foot_tracks() const;
@@ -128,21 +130,22 @@ class Retarget {
   const Armature* armature_;
   RetargetSettings settings_;
   RestStances stances_;
-  // The motion in which limbs were turned into the named stance; motion_ then points to it. Null: no limb was turned.
+  // A copy of the motion whose limbs were turned into the rest pose that the user named; motion_ then points to this
+  // copy. Null: no limb was turned.
   std::shared_ptr<const Motion> straight_;
   std::vector<int> turned_joints_;
   std::vector<int> joint_of_bone_;
-  std::vector<glm::dquat> rest_offset_;  // for each bone
+  std::vector<glm::dquat> rest_offset_;  // constant rotation between each bone and its joint
   struct Between {
-    int below = -1, above = -1;  // indices of the nearest matched trunk bones on either side
-    double share = 0;            // [0, 1]: 0 takes the rotation of `below`, 1 that of `above`
+    int below = -1, above = -1;  // indices of the nearest matched trunk bones towards the pelvis and towards the head
+    double share = 0;            // interpolates the rotation: 0 is that of bone `below`, 1 that of bone `above`
   };
-  std::vector<Between> between_;  // for each bone; below = -1: the bone is matched, or follows its parent
+  std::vector<Between> between_;  // one entry per bone; below = -1: the bone is matched, or follows its parent
   double scale_ = 1;
-  int lead_ = -1;          // the joint whose movement is the body's travel; -1: none
-  glm::dvec3 start_{0};    // that joint's position in the start pose, in the file's axes
-  std::vector<Leg> legs_;  // legs whose feet are matched
-  FootMending feet_;       // corrections of the feet; empty when there are none
+  int lead_ = -1;          // index of the source joint whose movement the whole body follows; -1: none
+  glm::dvec3 start_{0};    // position of joint lead_ from which the travel is measured, in the file's axes
+  std::vector<Leg> legs_;  // legs whose foot bones are matched to joints
+  FootMending feet_;       // corrections that keep the feet from sliding; empty: no corrections
 };
 
 }  // namespace limber

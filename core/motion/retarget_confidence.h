@@ -8,9 +8,9 @@ namespace limber {
 
 enum class MatchKind {
   None,      // the bone has no joint
-  ByHand,    // the names do not match; a user chose the joint
-  Chain,     // both are in the spine, or both in the neck, and they were matched by their order
-  SamePart,  // different names for the same body part
+  ByHand,    // the names of bone and joint do not match; the user selected the joint
+  Chain,     // bone and joint both belong to the spine, or both to the neck, and were matched by their order
+  SamePart,  // bone and joint have different names for the same body part
   SameName,
 };
 

@@ -11,10 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kAlike = 1e-3;    // largest distance between joint and bone, as a share of the rig's size
-constexpr double kInPlace = 0.01;  // mm: smaller differences of size and position count as none
+constexpr double kAlike = 1e-3;    // largest distance between a joint and its bone's head, as a share of the rig's size
+constexpr double kInPlace = 0.01;  // mm; smaller differences of size and position between motion and rig are ignored
 
-// Returns the joints' rest positions in the order of the bones; nothing where names or parents differ.
+// Returns the rest position of each bone's joint, in LPS axes, in the order of the bones. Returns nothing if a bone has
+// no joint of the same name, or if their parents have different names.
 std::optional<std::vector<glm::dvec3>> places_by_bone(const Motion& motion, const Armature& armature) {
   std::map<std::string, int> joints;
   for (std::size_t j = 0; j < motion.joints.size(); ++j) joints.emplace(motion.joints[j].name, static_cast<int>(j));
@@ -39,8 +40,8 @@ std::size_t farthest(const std::vector<glm::dvec3>& places, const auto& distance
   return best;
 }
 
-// Returns axes whose third one points from position a to b, and whose first one is as near as possible to the direction
-// from a to c.
+// Returns orthonormal axes from three of the positions. The third axis points from position a to position b; the first
+// is as near as possible to the direction from a to c.
 std::optional<glm::dmat3> axes_by(const std::vector<glm::dvec3>& places, std::size_t a, std::size_t b, std::size_t c) {
   return axes_of(places[b] - places[a], places[c] - places[a]);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Recognizes a motion of the rig itself: the motion was written for this rig, or the rig was made from the motion's
-// hierarchy. Then each joint drives the bone of its name, without matching and without rest offsets.
+// Recognizes a motion whose skeleton is the rig's own: the motion was written for this rig, or the rig was made from
+// the motion's hierarchy. Each joint then moves the bone of the same name, and no limb needs a correction of its own.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ namespace limber {
 struct SameSkeleton {
   glm::dquat rig_from_source{1, 0, 0, 0};
   double scale = 1;       // mm per unit of the file
-  bool in_place = false;  // the transform is the identity
+  bool in_place = false;  // true: the transform is the identity, within 0.01 mm
 };
 
-// Returns the similarity if every bone has a joint of the same name under its parent's joint, and all positions agree
-// to a thousandth of the rig's size; else nothing.
+// Returns the similarity transform if the skeletons are the same: every bone has a joint of the same name, whose parent
+// has the name of the bone's parent, and all positions agree to a thousandth of the rig's size. Else returns nothing.
 std::optional<SameSkeleton> same_skeleton(const Motion& motion, const Armature& armature);
 
 }  // namespace limber

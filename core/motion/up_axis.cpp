@@ -10,12 +10,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kClear = 0.8;    // cosine of 37 degrees: a body within this angle of an axis stands along it
-constexpr int kMostFrames = 200;  // a long motion is sampled at 200 to 400 frames
-// Shares of the examined frames. The z axis is up if the body stands along z in at least kMany of them and along y in
-// fewer than kFew.
+constexpr double kClear = 0.8;    // cosine of 37 degrees, the largest angle between a standing body and the up axis
+constexpr int kMostFrames = 200;  // a motion with more frames is examined at 200 to 400 of them, to save time
+// Shares of the examined frames. The z axis is up if the body stands along z in at least the share kMany of the frames
+// and along y in less than the share kFew.
 constexpr double kMany = 0.5, kFew = 0.1;
-// Largest vertical motion of the root of a travelling body, as a share of the distance along the ground.
+// Largest movement of a travelling body's root along the up axis, as a share of its movement along the ground.
 constexpr double kFlat = 0.2;
 
 std::optional<glm::dvec3> mean_of(const Skeleton& skeleton, BodyPart part) {
@@ -32,7 +32,8 @@ std::optional<glm::dvec3> first_of(const Skeleton& skeleton, std::initializer_li
   return std::nullopt;
 }
 
-// Returns the unit direction from the lowest recognized body part to the highest, in the file's axes.
+// Returns the unit direction from the lowest body part that the joint names tell (feet at best) to the highest (head at
+// best), in the file's axes.
 std::optional<glm::dvec3> body_line(const Skeleton& skeleton) {
   const auto top = first_of(skeleton, {BodyPart::Head, BodyPart::Neck, BodyPart::UpperArm, BodyPart::Clavicle});
   const auto end = first_of(skeleton, {BodyPart::Foot, BodyPart::Shank, BodyPart::Thigh, BodyPart::Pelvis});
@@ -61,7 +62,7 @@ std::optional<UpAxis> axis_over_frames(const Motion& motion, Skeleton& skeleton)
   return along_y > 0 && along_y >= kFew * looked_at ? std::optional(UpAxis::Y) : std::nullopt;
 }
 
-// Returns the axis along which the root moves little while it travels far along the others.
+// Returns the axis (y or z) along which the root moves little while it travels far along the other of the two.
 std::optional<UpAxis> axis_by_travel(const Motion& motion) {
   glm::dvec3 low(1e300), high(-1e300);
   const int step = std::max(1, motion.frame_count / kMostFrames);

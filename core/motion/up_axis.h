@@ -20,7 +20,7 @@ struct UpGuess {
   bool operator==(const UpGuess&) const = default;
 };
 
-// Guesses the up axis; returns Y when nothing decides.
+// Guesses the up axis of a motion. Returns Y if neither poses nor travel show the axis.
 UpGuess up_axis_of(const Motion& motion);
 
 // Returns the reason for the guess as half a sentence ("over its frames the head is above the feet along z"), empty if

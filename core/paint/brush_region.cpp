@@ -11,12 +11,12 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-// Largest distance between the centre of a geodesic dab and the nearest tissue voxel, in voxels along each axis.
+// Upper limit on the distance from the centre of a geodesic dab to the nearest tissue voxel, in voxels along each axis.
 constexpr int kMostBeside = 2;
 
-// Returns the number of set bits without the processor's instruction for it, because the program must run on the few
-// machines that lack the instruction. (The last sums use shifts: compilers recognize the usual multiplication and would
-// call a function.)
+// Returns the number of set bits. It does not use the processor's instruction, because the program must run on the few
+// machines that lack it. (The last sums use shifts: compilers recognize the usual multiplication and would call a
+// function.)
 int bit_count(std::uint64_t word) {
   word -= word >> 1 & 0x5555555555555555u;
   word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
@@ -36,14 +36,14 @@ std::uint64_t reversed(std::uint64_t word) {
   return word >> 32 | word << 32;
 }
 
-// Returns 64 bits of a row of bits, from bit `from` on. `from` may be negative; bits outside the row are 0.
+// Returns 64 bits of a row of bits, beginning with bit `from`. `from` may be negative; bits outside the row are 0.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int from) {
   const int word = from >> 6, shift = from & 63;
   const auto at = [&](int w) { return w >= 0 && w < words ? row[w] : 0; };
   return shift == 0 ? at(word) : at(word) >> shift | at(word + 1) << (64 - shift);
 }
 
-// Returns the position of the first set bit at or after `from`; words * 64 when there is none.
+// Returns the position of the first set bit at or after `from`, or words * 64 when there is none.
 int next_set(const std::uint64_t* row, int words, int from) {
   for (int w = from >> 6; w < words; ++w) {
     const std::uint64_t left = w == from >> 6 ? row[w] & ~std::uint64_t{0} << (from & 63) : row[w];
@@ -66,15 +66,15 @@ void set_range(std::uint64_t* row, int begin, int end) {
   if (begin < end) row[begin >> 6] |= (std::uint64_t{1} << (end - begin)) - 1;
 }
 
-// Returns a mask for word number `word` of a row of bits. It has the bits set whose position in the row is at most
-// `end`.
+// Returns a mask for word number `word` of a row of bits. In the mask, the bits at the row's positions up to `end` are
+// set.
 std::uint64_t up_to(int end, int word) {
   const int left = end - word * 64;
   return left < 0 ? 0 : left >= 63 ? ~std::uint64_t{0} : (std::uint64_t{2} << left) - 1;
 }
 
-// Fills rows of bits with the air of slice low.z: 1 where there is no tissue or no volume. The first bit is that of
-// voxel `low`, whose x is a multiple of eight.
+// Fills rows of bits for slice low.z: a bit is 1 where there is no tissue or no volume. The first bit is the bit of
+// voxel `low`, whose x must be a multiple of eight.
 void air_of_slice(const TissueVoxels& tissue, const glm::ivec3& low, int words, int rows, std::uint64_t* air) {
   std::fill_n(air, std::size_t(words) * rows, ~std::uint64_t{0});
   if (low.z < 0 || low.z >= tissue.grid_size().z) return;
@@ -104,8 +104,8 @@ BrushReach::BrushReach(const LabelVolume& volume, const TissueVoxels& tissue, Br
 // ---- The window: the box of voxels around a dab
 
 // Finds the tissue voxel nearest to the dab's centre. Searches the surfaces of larger and larger cubes around the
-// centre, and one more after the first hit, because that may lie at a corner of its cube. Returns false when there is
-// none.
+// centre. After the first hit it searches one more cube, because the hit may lie at a corner of its cube. Returns false
+// when there is no tissue voxel within kMostBeside.
 bool BrushReach::find_start() {
   const glm::dvec3 nearest = glm::round(centre_), size(tissue_.grid_size());
   if (glm::any(glm::lessThan(nearest, glm::dvec3(-kMostBeside))) ||
@@ -145,7 +145,7 @@ bool BrushReach::place_window(double radius, bool grown) {
   size_ = glm::ivec3(high) - low_ + 1;
   for (int axis = 0; axis < 3; ++axis) {
     squared_[axis].resize(size_[axis] + 2 * kBrick);
-    // The lists extend a brick beyond the window on both sides, because bricks may extend out of it.
+    // The lists extend one brick beyond the window on both sides, since bricks at its rim do so too.
     for (int i = -kBrick; i < size_[axis] + kBrick; ++i) {
       const double way = (low_[axis] + i - centre_[axis]) * volume_.grid.spacing[axis];
       squared_[axis][i + kBrick] = static_cast<float>(way * way);
@@ -172,7 +172,7 @@ void BrushReach::place_ball(double radius, std::vector<Span>& ball) const {
         *row = {1, 0};
         continue;
       }
-      // Limits the row's span to the window. Rounds by truncation, because std::ceil is a function call.
+      // Limits the row's span to the window. Rounds by truncation, because std::ceil would be a slow function call.
       const double half = std::sqrt(left) / spacing.x, first = std::max(centre_.x - half - low_.x, 0.0);
       const double last = std::min(centre_.x + half - low_.x, size_.x - 1.0);
       const int cut = static_cast<int>(std::min(first, 1.0 * size_.x));
@@ -188,7 +188,7 @@ std::uint64_t BrushReach::ball_word(const std::vector<Span>& ball, const glm::iv
   std::uint64_t word = 0;
   for (int y = std::max(0, low_.y - corner.y), end = std::min(kBrick, low_.y + size_.y - corner.y); y < end; ++y) {
     const Span& row = rows[corner.y + y - low_.y];
-    // The bits of the row inside the brick. When the span lies entirely beside the brick, the shifts leave no bit.
+    // The bits of those voxels of the span that lie in the brick. No bit is left when the span lies beside the brick.
     const int first = std::clamp(row.first - corner.x, 0, kBrick),
               behind = std::clamp(corner.x + kBrick - 1 - row.last, 0, kBrick);
     word |= std::uint64_t{(0xffu << first) & (0xffu >> behind)} << (8 * y);
@@ -273,9 +273,9 @@ BrushReach::Mask BrushReach::surface_of(int index) const {
   return surface;
 }
 
-// Removes voxels that lie deeper than depth_mm below the air from `allowed_`. For this, the air is dilated by a ball of
-// that radius, as rows of bits in a box around the bricks. Each slice of air is dilated along x by every half width
-// that the ball has. Each result is then added to the rows around in which the ball has that half width.
+// Removes voxels from `allowed_` that lie deeper than depth_mm below the air: dilates the air by a ball of that radius.
+// The air is stored as rows of bits in a box around the bricks. Each slice of air is dilated along x by every half
+// width of the ball. Each result is then added to those rows around it in which the ball has that half width.
 void BrushReach::keep_shallow(std::span<const int> bricks) {
   const glm::dvec3 spacing = volume_.grid.spacing;
   const glm::ivec3 margin(glm::min(glm::floor(filter_.depth_mm / spacing + 1e-9), glm::dvec3(volume_.grid.size)));
@@ -286,8 +286,8 @@ void BrushReach::keep_shallow(std::span<const int> bricks) {
   }
   const int from_x = (low.x - margin.x) & ~(kBrick - 1), words = (high.x + margin.x - from_x) / 64 + 1;
   const int rows = high.y - low.y + 1, air_rows = rows + 2 * margin.y;
-  // Half width of the ball along x, in voxels, in the row y and z voxels from the ball's centre; -1: the ball has no
-  // voxels in that row.
+  // The ball's half width along x, in voxels, in the row that lies y and z voxels from its centre; -1 for a row that
+  // the ball does not reach.
   const float most = static_cast<float>(filter_.depth_mm * filter_.depth_mm * (1 + 1e-6));
   const auto squared = [&](int axis, int steps) {
     return static_cast<float>(steps * spacing[axis] * steps * spacing[axis]);
@@ -337,7 +337,7 @@ void BrushReach::keep_shallow(std::span<const int> bricks) {
   }
 }
 
-// ---- The voxels in sight: a straight line through tissue connects them to the start voxel
+// ---- The voxels in sight: a straight line through tissue connects each of them to the start voxel.
 
 void BrushReach::gather_tissue() {
   x0_ = low_.x & ~(kBrick - 1);
@@ -364,15 +364,15 @@ const Seams* BrushReach::seams_near() const {
   return seams && std::any_of(bricks_.begin(), bricks_.end(), is_near) ? seams : nullptr;
 }
 
-// Marks only the start voxel as seen. This serves dabs near a seam, where the front of shortest paths finds all others.
+// Marks only the start voxel as seen. Near a seam, the front of shortest paths finds all other voxels from there.
 void BrushReach::see_start() {
   const glm::ivec3 cell = start_ - low_;
   const int bit = start_.x - x0_;
   seen_rows_[(std::size_t(cell.z) * size_.y + cell.y) * words_ + (bit >> 6)] |= std::uint64_t{1} << (bit & 63);
 }
 
-// Finds the voxels in sight in one half of the window: those with x at or above that of the start voxel (side 1), or at
-// or below (side -1).
+// Finds the voxels in sight in one half of the window: at or above the x of the start voxel (side 1), or at or below it
+// (side -1).
 void BrushReach::see(int side) {
   const glm::ivec3 start = start_ - low_;
   const int from = start_.x - x0_, rows = size_.y * size_.z;
@@ -408,7 +408,7 @@ void BrushReach::see(int side) {
 
 // Finds the voxels in sight in the row at offset (y, z) from the start voxel. The line of sight to a voxel passes
 // between four voxels that are one step nearer to the start along the line's longest axis. The voxel is in sight when
-// all four are, and not when none is; else the line is walked.
+// all four are in sight, and not when none is. In all other cases, the line is walked voxel by voxel.
 void BrushReach::see_row(int side, int y, int z) {
   const glm::ivec3 start = start_ - low_;
   const auto row_of = [&](int dy, int dz) {
@@ -421,8 +421,8 @@ void BrushReach::see_row(int side, int y, int z) {
     return;
   }
   const int near_y = y == 0 ? 0 : y > 0 ? y - 1 : y + 1, near_z = z == 0 ? 0 : z > 0 ? z - 1 : z + 1;
-  // The rows of seen voxels one step nearer to the start in y, in z, and in both. In the start's own plane y = 0 or z =
-  // 0 one of them does not exist, and another one is used instead.
+  // The rows of seen voxels one step nearer to the start in y, in z, and in both. In the planes y = 0 and z = 0 through
+  // the start, one of these rows does not exist; another one then takes its place.
   const std::uint64_t* in_y = &half_seen_[y == 0 ? row_of(y, near_z) : row_of(near_y, z)];
   const std::uint64_t* in_z = &half_seen_[z == 0 ? row_of(near_y, z) : row_of(y, near_z)];
   const std::uint64_t* in_both = &half_seen_[row_of(near_y, near_z)];
@@ -430,7 +430,7 @@ void BrushReach::see_row(int side, int y, int z) {
   const bool along_z = std::abs(z) >= std::abs(y);
   const int longest = std::max(std::abs(y), std::abs(z));
 
-  // First the part of the row to which the line of sight has y or z as its longest axis.
+  // First handles the part of the row where the line of sight has y or z as its longest axis.
   const std::uint64_t *ahead = along_z ? in_z : in_y, *aside = in_both;
   std::uint64_t any = 0;
   for (int w = 0; w < half_words_; ++w) {
@@ -444,7 +444,7 @@ void BrushReach::see_row(int side, int y, int z) {
       const int bit = std::countr_zero(doubtful);
       if (is_in_sight(w * 64 + bit)) seen[w] |= std::uint64_t{1} << bit;
     }
-    // Then the rest of the row, to which the line of sight has x as its longest axis.
+    // Then handles the remaining part of the row, where the line of sight has x as its longest axis.
     const std::uint64_t e = in_y[w], f = in_z[w], before_e = w > 0 ? in_y[w - 1] : 0,
                         before_f = w > 0 ? in_z[w - 1] : 0, before_b = w > 0 ? aside[w - 1] : 0,
                         beyond = tissue[w] & ~up_to(longest, w);
@@ -475,8 +475,8 @@ void BrushReach::see_row(int side, int y, int z) {
   }
 }
 
-// Walks the straight line between the centres of two voxels, through the faces of voxels, and returns whether the line
-// stays in tissue. Where it passes exactly through a voxel edge, tissue on one side of the edge suffices.
+// Returns true if the straight line between the centres of two voxels stays in tissue. Walks the line through the faces
+// of voxels. Where it passes exactly through a voxel edge, tissue on one side of the edge suffices.
 bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) const {
   if (seams_) return line_crosses_no_seam(from, to);
   const int x = std::abs(to.x - from.x), y = std::abs(to.y - from.y), z = std::abs(to.z - from.z),
@@ -485,8 +485,8 @@ bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) con
                        step_z = std::ptrdiff_t{to.z > from.z ? size_.y : -size_.y} * words_;
   const std::uint64_t* row = &tissue_rows_[(std::size_t(from.z) * size_.y + from.y) * words_];
   const auto is_tissue = [](const std::uint64_t* r, int at) { return (r[at >> 6] >> (at & 63) & 1) != 0; };
-  // The line crosses its k-th face along x at the fraction (k + 1/2) / x of its length, and the same holds for y and z.
-  // The fractions are multiplied by 2 x y z, so that they are whole numbers.
+  // Along an axis with n voxel steps, the line crosses its k-th face at the fraction (k + 1/2) / n of its length. The
+  // fractions are multiplied by 2 x y z, so that they are whole numbers.
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
   const std::int64_t of_x = std::int64_t{std::max(y, 1)} * std::max(z, 1),
                      of_y = std::int64_t{std::max(x, 1)} * std::max(z, 1),
@@ -511,7 +511,7 @@ bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) con
   return true;
 }
 
-// Walks the line as line_is_clear() does, and also returns false when the line crosses a seam.
+// Like line_is_clear(), but for a window near a seam: also returns false when the line crosses a seam.
 bool BrushReach::line_crosses_no_seam(const glm::ivec3& from, const glm::ivec3& to) const {
   const glm::ivec3 way = glm::abs(to - from), sign = glm::sign(to - from);
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -532,15 +532,15 @@ bool BrushReach::line_crosses_no_seam(const glm::ivec3& from, const glm::ivec3& 
   return true;
 }
 
-// Returns whether the neighbour of a window voxel along an axis (step 1 or -1) is tissue in the window and no seam
-// separates the two.
+// Returns true if the neighbour of a window voxel along an axis (step 1 or -1) is tissue in the window and no seam lies
+// between the two voxels.
 bool BrushReach::is_joined(const glm::ivec3& cell, int axis, int step) const {
   glm::ivec3 next = cell;
   next[axis] += step;
   return is_set(tissue_rows_, next) && !(seams_ && seams_->is_cut_towards(low_ + cell, 2 * axis + (step > 0)));
 }
 
-// ---- The voxels out of sight, to which shortest paths lead around corners
+// ---- The voxels out of sight: shortest paths lead to them around corners.
 
 bool BrushReach::is_set(const std::vector<std::uint64_t>& rows, const glm::ivec3& cell) const {
   if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= size_.x || cell.y >= size_.y || cell.z >= size_.z)
@@ -564,8 +564,8 @@ float BrushReach::between(const glm::ivec3& a, const glm::ivec3& b) const {
   return std::sqrt(glm::dot(way, way));
 }
 
-// Starts a path to a voxel out of sight that touches voxels in sight. The path bends at the one of these (also by edge
-// or corner) over which it is shortest.
+// Starts a path to a voxel out of sight that touches voxels in sight, by face, edge or corner. The path bends at one of
+// these seen voxels: the one over which the path is shortest.
 void BrushReach::start_behind(const glm::ivec3& cell) {
   for (int n = 0; n < 27; ++n) {
     const glm::ivec3 step(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), corner = cell + step;
@@ -575,7 +575,7 @@ void BrushReach::start_behind(const glm::ivec3& cell) {
   }
 }
 
-// Returns whether steps through voxel faces, inside tissue, lead from a voxel to its neighbour at `step` (one of 26).
+// Returns true if paths through voxel faces, inside tissue, lead from `cell` to its neighbour at `step` (one of 26).
 bool BrushReach::is_open(const glm::ivec3& cell, const glm::ivec3& step) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (step[axis] == 0) continue;
@@ -589,8 +589,8 @@ bool BrushReach::is_open(const glm::ivec3& cell, const glm::ivec3& step) const {
   return false;
 }
 
-// Finds the tissue in the ball that is out of sight, and starts paths where it touches voxels in sight. Returns whether
-// any path was started.
+// Finds the tissue in the ball that is out of sight, and starts paths where this tissue touches voxels in sight.
+// Returns true if any path was started.
 bool BrushReach::find_far() {
   const std::size_t words = tissue_rows_.size();
   far_rows_.resize(words);
@@ -643,12 +643,12 @@ bool BrushReach::find_far() {
 void BrushReach::offer(const glm::ivec3& cell, float distance, float before, const glm::ivec3& corner) {
   if (distance > radius_) return;
   const std::int32_t rank = rank_of(cell);
-  // Ignores a path that is shorter than the known one only because of rounding.
+  // Ignores a path that is shorter than the known path only because of rounding.
   if (distance + 1e-5f * distance >= far_distance_[rank]) return;
   far_distance_[rank] = distance;
   far_corner_[rank] = {before, glm::i16vec3(corner)};
-  // A path's length may fall below that of the previous voxel, when its corner is nearer to the next voxel. It is then
-  // put into the bucket that is being processed.
+  // A path can be shorter than the path of the previous voxel, when its corner is nearer to the next voxel. It is then
+  // put into the bucket that is being processed, since earlier buckets are not processed again.
   bucket_[std::max(static_cast<std::size_t>(distance * per_bucket_), this_bucket_)].push_back(
       {distance, rank, glm::i16vec3(cell)});
 }
@@ -658,7 +658,7 @@ void BrushReach::spread_behind_corners() {
     auto& front = bucket_[this_bucket_];
     for (std::size_t i = 0; i < front.size(); ++i) {
       const auto [here, rank, at] = front[i];
-      if (far_distance_[rank] < here) continue;  // a shorter path was found after this entry
+      if (far_distance_[rank] < here) continue;  // a shorter path to this voxel was found after this entry
       const glm::ivec3 cell(at);
       const auto [to_corner, from] = far_corner_[rank];
       for (int direction = 0; direction < 6; ++direction) {
@@ -682,7 +682,7 @@ void BrushReach::spread_behind_corners() {
 
 // ---- The list of voxels that the dab touches
 
-// Appends a brick's touched voxels to the result, with squared distances; dab() takes the square roots later.
+// Appends a brick's touched voxels to the result, with squared distances. dab() takes the square roots later.
 void BrushReach::emit(int index, const Mask& touched, const Mask* far) {
   const TissueVoxels::Brick& brick = tissue_.bricks()[index];
   const glm::ivec3 from = brick.corner - low_ + kBrick;
@@ -794,9 +794,9 @@ const Reached& BrushReach::dab(const glm::dvec3& centre, double radius, BrushDis
   if (filtered_) need_allowed();
 
   place_ball(radius, ball_);
-  std::int64_t most = kBrick;  // spare entries, because emit() writes whole rows of eight
+  std::int64_t most = kBrick;  // spare entries, because emit() always writes a whole row of eight voxels
   for (const Span& row : ball_) most += std::max(row.last - row.first + 1, 0);
-  resize(most);  // does not clear: the values of the last dab are overwritten
+  resize(most);  // not cleared, because all values are overwritten
   if (geodesic) {
     const glm::dvec3 spacing = volume_.grid.spacing;
     place_ball(

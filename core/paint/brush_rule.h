@@ -3,9 +3,10 @@
 // strip use the table. A new brush needs one source file in core/paint/brushes and a line of kBrushes in
 // brush_rule.cpp.
 //
-// A plain brush computes a voxel's new weight only from its old weight of the painted bones. A brush that looks around
-// computes a target from other voxels and moves the voxel's weights towards it. A brush may also change a voxel in its
-// own way. The cover of a voxel is the dab's strength at that voxel, [0, 1].
+// There are three kinds of brushes. A plain brush computes a voxel's new weight only from its old weight of the painted
+// bones. A brush that looks around computes a target from other voxels and moves the voxel's weights towards the
+// target. Any other brush changes a voxel by a function of its own. The cover of a voxel is the dab's strength at that
+// voxel, [0, 1].
 #pragma once
 
 #include <functional>
@@ -24,56 +25,57 @@
 
 namespace limber {
 
-// Indices of brushes in the table, for brushes that other code refers to. `w` is the weight of the painted bones, and
-// `cover` the dab's strength at the voxel, [0, 1].
+// Indices of those brushes in the table that other code refers to. In the formulas, `w` is the weight of the painted
+// bones, and `cover` is the dab's strength at the voxel, [0, 1].
 enum class BrushKind {
   Add,           // w + cover
   Subtract,      // w - cover
   Set,           // w + (value - w) * cover
   Multiply,      // w + (w * value - w) * cover
-  Smooth,        // blends to the mean around the voxel, weighted by a Gaussian 0.45 radii wide
-  Sharpen,       // moves weights away from the mean that Smooth blends to
-  Average,       // blends to the mean over all voxels of the dab
-  Smear,         // drags weights along the stroke; its dabs always accumulate
-  JointCapsule,  // divides the weight of two bones smoothly between them, over `blend_mm` at their joint
+  Smooth,        // moves weights towards the mean around the voxel, weighted by a Gaussian 0.45 radii wide
+  Sharpen,       // moves weights away from the mean that Smooth uses
+  Average,       // moves weights towards the mean over all voxels of the dab
+  Smear,         // drags weights along the stroke; dabs of one stroke always accumulate
+  JointCapsule,  // divides the weight of a bone and its parent smoothly at their joint, over `blend_mm`
 };
 
 struct Brush {
   BrushKind kind = BrushKind::Add;
   double radius = 10;   // mm
-  double strength = 1;  // [0, 1]: cover at the dab's centre
-  double value = 1;     // Set: new weight, [0, 1]; Multiply: factor, 0 or more
+  double strength = 1;  // cover at the dab's centre, [0, 1]
+  double value = 1;     // Set: new weight, [0, 1]; Multiply: factor, at least 0
   Falloff falloff;
   double spacing = 0.25;    // distance between successive dabs, as a share of the radius
-  bool accumulate = false;  // false: a stroke changes a voxel by its largest cover of all dabs, once
+  bool accumulate = false;  // false: a stroke changes each voxel once, by its largest cover of all dabs
   BrushDistance distance = BrushDistance::Geodesic;
-  bool all_bones = true;  // brushes that look around change all bones of a voxel; false: only the painted bones
-  // For JointCapsule: length, centred on the joint, over which the child bone's share rises from 0 to 1 (smoothstep).
+  bool all_bones = true;  // for brushes that read other voxels: true: all bones change; false: only the painted bones
+  // For JointCapsule: length over which the child bone's share rises from 0 to 1 (smoothstep), mm. The joint is at its
+  // middle.
   double blend_mm = 20;
-  glm::dvec3 reference{0};  // world at rest, mm; the user sets this position, from which some brushes copy
+  glm::dvec3 reference{0};  // world at rest, mm; position set by the user, from which the Clone brush copies
 };
 
-// The data that a brush works on. References are valid until the stroke ends.
+// The data that a brush reads during a stroke. References are valid until the stroke ends.
 struct BrushView {
   const WeightedBody& body;
   const Brush& brush;
-  SmoothWeights& smooth;              // shared by both sides of the body; holds the smooth weights of one dab
-  std::optional<MirrorPlane> mirror;  // set for the side that mirrors the stroke; none for the stroke's own side
-  std::function<InfluenceView(int brick)> weights;  // returns the weights of a brick before the dab
+  SmoothWeights& smooth;              // used by both sides of the body in turn; holds the smooth weights of one dab
+  std::optional<MirrorPlane> mirror;  // set for the mirrored side of the body; empty for the stroke's own side
+  std::function<InfluenceView(int brick)> weights;  // returns a brick's weights as they are before the dab
 };
 
-// The parameters of one dab.
+// One dab, as the brush sees it.
 struct DabView {
   const Reached& reached;
   glm::dvec3 centre;  // world, mm
-  glm::dvec3 way;     // movement from the last dab's centre, mm; 0 for the first dab
-  float strength;     // cover at the centre, [0, 1]
+  glm::dvec3 way;     // shift from the last dab's centre, mm; 0 for the first dab
+  float strength;     // cover at the dab's centre, [0, 1]
 };
 
 // A voxel that a dab touches.
 struct VoxelView {
   glm::ivec3 voxel;
-  int brick, cell;       // as in Reached::Brick::brick and Reached::cell
+  int brick, cell;       // defined as in Reached::Brick::brick and Reached::cell
   const Influence& own;  // the voxel's influence before the dab
 };
 
@@ -82,11 +84,11 @@ class BrushSide {
  public:
   virtual ~BrushSide() = default;
   virtual void begin_dab(const DabView&) {}
-  // Computes the target: the weights towards which the voxel's weights move. Only their ratios matter. Returns false
-  // when the voxel stays unchanged. Called from several threads.
+  // Computes the target towards which the voxel's weights move. Only the proportions of its weights matter. Returns
+  // false when the voxel stays unchanged. It is called from several threads.
   virtual bool target_at(const VoxelView&, WeightSum& /*target*/) const { return false; }
-  // Changes a voxel in the brush's own way. Returns nothing when the brush has none: then the voxel is moved towards
-  // the target.
+  // Changes a voxel by the brush's own function. Returns nothing when the brush has no such function; the voxel is then
+  // moved towards the target.
   virtual std::optional<WeightChange> change(const WeightRules&, Influence&, const glm::ivec3& /*voxel*/,
                                              double /*cover*/) const {
     return std::nullopt;
@@ -97,18 +99,18 @@ struct BrushRule {
   BrushKind kind = {};      // the brush's index in the table
   std::string id;           // as in "add"; the brush's operator is then "skin.brush_add"
   std::string name;         // as in "Add"
-  std::string description;  // hint for the user
+  std::string description;  // explanation for the user
   bool takes_value = false;
   bool looks_around = false;
-  bool accumulates = false;  // dabs always accumulate, whatever Brush::accumulate says
-  bool one_bone = false;     // paints only the active bone
+  bool accumulates = false;  // true: dabs always accumulate, whatever Brush::accumulate says
+  bool one_bone = false;     // true: paints only the active bone, even if several bones are selected
 
-  // For plain brushes, else null: both functions return a voxel's new weight under a cover. Weights are in 1/65535, and
-  // `full` is the weight that counts as 1. `paint` takes the cover in [0, 1], `paint_whole` in 1/65535.
+  // For plain brushes, else null. Both functions return a voxel's new weight for a given cover. Weights are in 1/65535,
+  // and the weight `full` counts as 1. `paint` takes the cover in [0, 1], `paint_whole` takes it in 1/65535.
   double (*paint)(double before, double cover, double full, const Brush& brush) = nullptr;
   int (*paint_whole)(int before, int covered, const Brush& brush) = nullptr;
-  // For other brushes, else null: creates the brush's data for one side of the body. Throws Error when the brush has
-  // nothing to paint there.
+  // For brushes that are not plain, else null. Creates the brush's data for one side of the body. Throws Error when the
+  // brush has nothing to paint on that side.
   std::unique_ptr<BrushSide> (*side)(const BrushView& view, std::span<const int> bones) = nullptr;
 };
 

@@ -18,13 +18,13 @@ namespace limber {
 namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
-// Number of bricks that a thread paints at a time. For fewer bricks, another thread takes longer to wake than it saves.
+// Number of bricks that a thread paints at a time. For fewer bricks, waking another thread costs more than it saves.
 constexpr std::int64_t kBricksAtOnce = 16;
 
 using Target = WeightSum;
 using Words = std::array<std::uint64_t, 2>;  // the 16 bytes of an Influence
 
-// Compares two influences as pairs of 64-bit numbers, because comparing arrays would be a function call.
+// Compares two influences as pairs of 64-bit numbers, because a comparison of arrays would be a slow function call.
 bool equal(const Influence& a, const Influence& b) {
   const Words first = std::bit_cast<Words>(a), second = std::bit_cast<Words>(b);
   return first[0] == second[0] && first[1] == second[1];
@@ -64,20 +64,20 @@ class Stroke::Work {
   int dab_count = 0;
 
  private:
-  // A brick that the stroke has touched.
+  // A brick that some dab of the stroke has touched.
   struct Brick {
     int brick = 0;
-    SkinWeights::Influences now;  // weights that were painted since the last weights(); empty: none
-    // Largest cover of each voxel by any dab so far, in 1/65535. The two lists are for the stroke's side and the
-    // mirrored side of the body. Empty when dabs accumulate.
+    SkinWeights::Influences now;  // weights painted since the last call of weights(); empty: none
+    // Largest cover of each voxel by any dab so far, in 1/65535. One list is for the stroke's own side of the body, one
+    // for the mirrored side. Empty when dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;
     bool dirty = false;
-    bool shown = false;  // shown_ contains changed weights of this brick
+    bool shown = false;  // true: shown_ contains changed weights of this brick
     bool waits = false;
-    std::array<std::uint64_t, 8> waiting{};  // a bit per voxel, set when its cover has risen since it was last painted
-    std::vector<std::uint64_t> blocked;  // a bit per voxel, set when a locked bone kept it from changing; empty: none
+    std::array<std::uint64_t, 8> waiting{};  // one bit for each voxel, set if its cover has risen since it was painted
+    std::vector<std::uint64_t> blocked;      // one bit for each voxel: a locked bone kept it from changing; empty: none
   };
-  // The painted bones and the brush's data for one side of the body.
+  // One side of the body (the stroke's own or the mirrored side): the painted bones there and the brush's data.
   struct Side {
     std::vector<int> bones;
     std::unique_ptr<BrushSide> brush;  // null for plain brushes
@@ -89,9 +89,9 @@ class Stroke::Work {
   };
   struct Blocked {
     std::vector<std::pair<int, std::int64_t>> by;
-    Brick* brick = nullptr;  // brick of the voxel that is being painted; its index there is `at`
+    Brick* brick = nullptr;  // brick of the voxel that is being painted; `at` is the voxel's index in it
     int at = 0;
-    void add(int bone);  // counts the voxel for this locked bone, once per stroke
+    void add(int bone);  // counts this voxel for the locked bone, at most once in a stroke
   };
 
   BrushFilter filter_of(const WeightedBody& body, const StrokeSettings& settings) const;
@@ -107,7 +107,7 @@ class Stroke::Work {
   void cover_plainly(const Reached& reached, const Reached::Brick& part, float strength);
   void paint_waiting();
   void paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked);
-  // Returns a weight, in 1/65535, after a plain brush has painted it with a cover.
+  // Returns a weight after a plain brush has painted it. All values are in 1/65535; `covered` is the voxel's cover.
   std::uint16_t painted(int before, int covered) const {
     return static_cast<std::uint16_t>(rule_.paint_whole(before, covered, brush_));
   }
@@ -126,8 +126,8 @@ class Stroke::Work {
     return side.brush->target_at(voxel, target);
   }
 
-  // Returns the weights of a brick from which a dab starts: the current ones when dabs accumulate, else the original
-  // ones.
+  // Returns the weights of a brick from which a dab starts. These are the current weights when dabs accumulate, else
+  // the weights before the stroke.
   InfluenceView source(int brick) const { return accumulate_ ? view(brick) : weights_->chunk(brick); }
   const WeightedBody body_;
   std::shared_ptr<const SkinWeights> weights_;
@@ -139,16 +139,16 @@ class Stroke::Work {
   SmoothWeights smooth_;
   std::array<Side, 2> sides_;
   std::optional<MirrorPlane> mirror_;
-  bool same_bones_ = false;  // both sides paint the same bones, so they share one list of covers
+  bool same_bones_ = false;  // true: both sides of the body paint the same bones and share one list of covers
   BoneSet locked_;
   Normalize normalize_;
   bool ready_ = false;
-  std::vector<std::int64_t> blocked_;  // #bones: voxels that a lock of this bone kept from changing
+  std::vector<std::int64_t> blocked_;  // number of voxels that each locked bone kept from changing
 
-  std::vector<std::int32_t> slot_of_;  // #bricks: index in bricks_; -1: not touched by the stroke
+  std::vector<std::int32_t> slot_of_;  // index of each brick in bricks_; -1: not touched by the stroke
   std::vector<Brick> bricks_;
-  SkinWeights shown_;            // the weights that the last weights() returned
-  std::vector<Influence> next_;  // results of one dab, for a brush that looks around and accumulates
+  SkinWeights shown_;            // the weights that the last call of weights() returned
+  std::vector<Influence> next_;  // results of one dab, for accumulating brushes that read other voxels
   std::optional<glm::dvec3> last_point_, last_dab_;
   double last_pressure_ = 1, since_dab_ = 0;
 };
@@ -222,8 +222,8 @@ Stroke::Work::Side Stroke::Work::side_of(std::vector<int> bones, const std::opti
   return side;
 }
 
-// Selects the bone that receives the weight taken from the painted bone when all bones related to the painted one are
-// locked. It is the unlocked bone with the most weight where the stroke begins.
+// Selects the fallback bone, which gets weight taken from the painted bone, for when all bones connected in the bone
+// tree are locked. It is the unlocked bone with the most weight where the stroke begins.
 void Stroke::Work::find_nearby(const Reached& reached) {
   ready_ = true;
   const std::vector<int>& bones = sides_[0].bones;
@@ -298,8 +298,8 @@ void Stroke::Work::dab_side(int side, const glm::dvec3& centre, const glm::dvec3
   const int plane = same_bones_ ? 0 : side;
   touch(reached, plane);
   if (sides_[side].brush) sides_[side].brush->begin_dab({reached, centre, way, static_cast<float>(strength)});
-  // A brush that looks around must not read weights that the same dab has changed. So its results are kept in next_ and
-  // stored after the dab.
+  // A brush that reads other voxels must not read weights that the current dab has changed. So its results are
+  // collected in next_ and stored after the dab.
   const bool keep = rule_.looks_around && accumulate_;
   const bool plain = rule_.paint_whole && sides_[side].bones.size() == 1 && (!mirror_ || same_bones_ || accumulate_) &&
                      !relative_to_locks_;
@@ -342,16 +342,16 @@ SkinWeights::Influences& Stroke::Work::unpacked(Brick& brick) const {
 
 void Stroke::Work::put(Brick& brick, int at, const Influence& made) const {
   Influence& now = unpacked(brick)[at];
-  // Writes the two halves separately, as they were computed. A copy of all 16 bytes would have to wait until both
-  // halves are in memory.
+  // Writes the bones and the weights separately, as they were computed. A copy of all 16 bytes would have to wait until
+  // both halves are in memory.
   now.bone = made.bone;
   now.weight = made.weight;
   brick.dirty = true;
 }
 
-// Records the cover of one dab, for plain brushes that paint one bone, by far the most frequent ones. Their result
-// depends only on a voxel's largest cover by any dab. So a voxel is painted later, once for all dabs, when its weights
-// are read.
+// Records the cover of one dab of a plain brush that paints one bone, by far the most frequent case. The result depends
+// only on a voxel's largest cover by any dab. So a voxel is painted later, once for all dabs, when its weights are
+// read.
 void Stroke::Work::cover_plainly(const Reached& reached, const Reached::Brick& part, float strength) {
   Brick& brick = bricks_[slot_of_[part.brick]];
   const int count = part.end - part.begin;
@@ -396,7 +396,7 @@ void Stroke::Work::paint_waiting() {
   count_blocked(blocked_in);
 }
 
-// Paints the voxels of a brick whose cover has risen: those without locked bones together, the others one by one.
+// Paints the voxels of a brick whose cover has risen. Those without locked bones are painted together.
 void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked) {
   auto& [made, at, weight] = canvas;
   const int bone = sides_[0].bones[0], fallback_bone = rules_.fallback_bone(bone);
@@ -441,7 +441,7 @@ void Stroke::Work::paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked)
   brick.dirty = brick.dirty || changed;
 }
 
-// Paints the voxels of a brick for one dab of a plain brush whose dabs accumulate.
+// Paints the voxels of a brick for one dab of a plain brush, when dabs accumulate.
 void Stroke::Work::paint_plainly(const Reached& reached, const Reached::Brick& part, int side, float strength,
                                  Blocked& blocked_here) {
   Brick& brick = bricks_[slot_of_[part.brick]];
@@ -512,7 +512,7 @@ void Stroke::Work::paint_brick(const Reached& reached, const Reached::Brick& par
         here();
       } else {
         // Both sides of the body paint this voxel. The side with the larger cover is applied first, so that the weights
-        // of the two sides stay mirror images.
+        // of the two sides are mirror images.
         const bool other_has = !around || target_at(sides_[other], {voxel, part.brick, cell, own}, other_target);
         if (beside <= covered) here();
         if (other_has)
@@ -551,7 +551,7 @@ void Stroke::Work::apply(const Side& side, Influence& influence, const Target* t
       }
       to = before + (group / all * kFullWeight - before) * cover;
     }
-    // Rounds by adding 0.5 and truncating, because std::lround is a function call.
+    // Rounds by adding 0.5 and truncating, because std::lround would be a slow function call.
     const int whole = static_cast<int>(std::clamp(to, 0.0, double(kFullWeight)) + 0.5);
     change =
         side.bones.size() == 1 ? rules_.set(influence, side.bones[0], whole) : rules_.set(influence, side.bones, whole);
@@ -572,7 +572,7 @@ std::vector<int> Stroke::Work::take_dirty() {
   return dirty;
 }
 
-// Returns whether the weights of a brick differ from the original ones.
+// Returns true if the weights of a brick differ from the weights before the stroke.
 bool Stroke::Work::differs(const Brick& brick) const {
   return brick.now.empty() ? brick.shown : weights_->chunk(brick.brick) != brick.now;
 }
@@ -590,7 +590,7 @@ const SkinWeights& Stroke::Work::weights() {
     brick.shown = differs(brick);
     if (brick.shown) shown_.set_chunk(brick.brick, brick.now);
     else shown_.share_chunk(brick.brick, *weights_);
-    brick.now = SkinWeights::Influences();  // an assignment, because it also frees the memory
+    brick.now = SkinWeights::Influences();  // by assignment, since this also frees the memory
   }
   return shown_;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One stroke of a brush over the weights of a body, from the press of the mouse button to its release. The original
-// weights are never changed, and only bricks that the stroke changes are copied; to cancel a stroke, it is deleted.
-// When dabs do not accumulate, plain brushes only record the cover of each dab. The voxels are painted when the result
-// is read, once for all dabs since the last time. Results do not depend on the number of threads.
+// One stroke of a brush over the weights of a body, from the press of the mouse button to its release. The weights
+// given to the stroke are never changed, and only bricks that the stroke changes are copied. To cancel a stroke, delete
+// it. When dabs do not accumulate, plain brushes only record the cover of each dab. The voxels are then painted when
+// the result is read, once for all dabs since the last read. Results do not depend on the number of threads.
 //
 //   Stroke stroke(body, weights, settings);
 //   stroke.to(cursor);  ...                        at each cursor movement; dabs are one spacing apart
@@ -23,53 +23,54 @@ namespace limber {
 
 struct StrokeSettings {
   Brush brush;
-  // The painted bones. Several bones are painted as one, by the sum of their weights. For JointCapsule: the child bone
-  // of the joint, which lies between that bone's head and its parent's tail.
+  // The painted bones. Several bones are painted as one bone with the sum of their weights. For JointCapsule, this is
+  // the child bone of the joint between this bone's head and its parent's tail.
   std::vector<int> bones;
   BoneSet locked;
   Normalize normalize = Normalize::Unlocked;
-  // true: for Add, Subtract, Set and Multiply, the weight 1 means all that the locked bones leave in a voxel.
+  // If true, weight 1 in Add, Subtract, Set and Multiply means all the weight that a voxel's locked bones leave free.
   bool relative_to_locks = false;
   BrushFilter filter;
   bool rigid_bone_tissue = true;  // true: bone tissue is not painted
-  // When it is set, each dab is repeated mirrored, with the bones of the other side (mirror_pairs).
+  // If set, each dab is repeated at its mirror image, with the bones of the other side (mirror_pairs).
   std::optional<MirrorPlane> mirror;
 };
 
 class Stroke {
  public:
-  // Throws std::logic_error for weights of another body, for a list of no bones and for a bone that does not exist.
-  // Throws Error when a JointCapsule's bone has no parent.
+  // Throws std::logic_error for weights of another body, for an empty list of bones and for a bone that does not exist.
+  // Throws Error when the bone of a JointCapsule has no parent.
   Stroke(const WeightedBody& body, std::shared_ptr<const SkinWeights> weights, StrokeSettings settings);
   ~Stroke();
   Stroke(Stroke&&) noexcept;
   Stroke& operator=(Stroke&&) noexcept;
 
-  // Moves the brush to `point`. Makes one dab at the first call, then dabs along the straight line from the last point.
+  // Moves the brush to `point`. The first call makes one dab. Each later call makes dabs along the straight line from
+  // the previous point.
   //   point     world at rest, mm
   //   pressure  [0, 1], multiplies the strength; interpolated between calls
   void to(const glm::dvec3& point, double pressure = 1);
 
-  // Ends the line of dabs when the brush leaves the body. The next to() starts a new line.
+  // Ends the line of dabs; call this when the brush leaves the body. The next to() starts a new line.
   void lift();
-  // Makes a single dab, without regard to the spacing.
+  // Makes a single dab; the spacing of dabs does not apply to it.
   void dab(const glm::dvec3& centre, double pressure = 1);
 
   // Returns the weights of a brick after all dabs so far.
   SkinWeights::Influences chunk(std::int64_t brick) const;
   const SkinWeights& original() const;
-  // Returns the indices of the bricks that changed since the last call, sorted.
+  // Returns the indices of the bricks that have changed since the last call, sorted.
   std::vector<int> take_dirty();
-  // Returns whether all weights equal the original ones.
+  // Returns true if no weight differs from the weights before the stroke.
   bool empty() const;
   // blocked_count() returns the number of voxels that a locked bone kept from changing in some dab. blocked_by()
-  // returns the locked bone that did so for most of them (-1: none).
+  // returns the locked bone that kept the most voxels from changing (-1: none).
   std::int64_t blocked_count() const;
   int blocked_by() const;
   int dab_count() const;
 
-  // Both functions return the weights after all dabs; bricks that have not changed are shared with the original
-  // weights. finish() also moves the changed bricks out of the stroke, which ends it.
+  // Both functions return the weights after all dabs. Bricks that have not changed are shared with the weights before
+  // the stroke. finish() also ends the stroke: it moves the changed bricks out of it.
   SkinWeights weights() const;
   SkinWeights finish();
 

@@ -5,12 +5,12 @@
 
 namespace limber {
 
-// Reads the weights of single voxels, and interpolated weights between them, for a brush.
+// Reads weights for a brush: the weights of single voxels, and interpolated weights between voxels.
 class WeightsNearby {
  public:
   explicit WeightsNearby(const BrushView& view) : view_(view) {}
 
-  // Returns the influence of a voxel; nothing when the voxel is air.
+  // Returns the influence of a voxel, or nothing when the voxel is air.
   std::optional<Influence> at(const glm::ivec3& voxel) const {
     if (!view_.body.volume.grid.contains(voxel)) return std::nullopt;
     const std::int64_t place = view_.body.tissue.index_of(voxel);
@@ -19,8 +19,8 @@ class WeightsNearby {
     return view_.weights(brick)[place - view_.body.tissue.bricks()[brick].first];
   }
 
-  // Adds the weights at a position to `sum`. They are interpolated between the eight voxels around it; voxels of air
-  // are left out.
+  // Adds the weights at a position to `sum`. They are interpolated between those of the eight surrounding voxels that
+  // are tissue.
   void add_between(const glm::dvec3& place, WeightSum& sum) const {
     const glm::dvec3 low = glm::floor(place), share = place - low;
     for (int corner = 0; corner < 8; ++corner) {

@@ -11,19 +11,19 @@
 namespace limber::phantom {
 
 namespace {
-constexpr double kSkinThickness = 1.8;  // skin with epidermis of an adult's limb, mm
-constexpr double kJointGap = 5;         // sum of the distances to two bones below which cartilage fills the gap, mm
-constexpr double kMuscleReach = 7;      // upper limit on the distance of a muscle's tissue from the muscle's shape, mm
-constexpr double kMostFat = 40;         // upper bound of Flesh::fat, mm
-constexpr int kBlock = 8;               // edge of a block, voxels
+constexpr double kSkinThickness = 1.8;  // thickness of the skin (dermis and epidermis) of an adult's limb, mm
+constexpr double kJointGap = 5;         // cartilage: points whose distances to two bones add up to less than this, mm
+constexpr double kMuscleReach = 7;      // largest distance of a point that becomes muscle from the muscle's shape, mm
+constexpr double kMostFat = 40;         // upper bound of the fat's thickness (Flesh::fat), mm
+constexpr int kBlock = 8;               // edge of the blocks in which the volume is filled, voxels
 constexpr int kMargin = 3;              // width of the air around the body, voxels
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;
 constexpr double kFar = 1e30;
-// Factor on a block's radius. Shapes further from the block's centre are left out; the factor allows for the distances
-// of lofts and ellipsoids, which are not exact.
+// Safety factor on a block's radius when shapes too far from the block's centre are left out. It is needed because the
+// distances of lofts and ellipsoids are not exact.
 constexpr double kSlack = 1.5;
 
-// The shapes that may hold points of one block of voxels.
+// Indices of the shapes of each kind that may contain voxels of one block.
 struct Nearby {
   bool deep = false;  // true: the whole block lies below skin and fat
   std::vector<int> flesh, bones, inner, muscles, nails;
@@ -34,8 +34,8 @@ struct Depth {
   double fat;      // thickness of the fat, mm
 };
 
-// Computes how deep a point lies below the skin's surface. Each part of the flesh is blended smoothly with its parent
-// part only.
+// Computes the depth of a point below the skin's surface. Each part of the flesh (such as a finger) is blended smoothly
+// with its parent part (the palm) only.
 Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm::dvec3& p, std::vector<double>& at) {
   for (int i : nearby) at[i] = anatomy.flesh[i].solid.distance(p);
   Depth depth{kFar, 0};
@@ -54,7 +54,8 @@ Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm
 Nearby shapes_near(const Anatomy& anatomy, const glm::dvec3& centre, double radius, std::vector<double>& at) {
   const Box block = Box{centre, centre}.grown(radius);
   Nearby nearby;
-  // A smooth union needs both of its shapes. Its surface lies outside them by at most a quarter of the blend width.
+  // A smooth union must be computed from both of its shapes, so shapes within the blend width of the block are kept.
+  // The union's surface is at most a quarter of the blend width outside the two shapes.
   double widest = 0;
   for (const Flesh& flesh : anatomy.flesh) widest = std::max(widest, flesh.blend);
   for (int i = 0; i < std::ssize(anatomy.flesh); ++i)
@@ -89,8 +90,8 @@ Label bone_layer(const BonePart& bone, double distance, const glm::dvec3& p) {
   return t > 0 && t < 1 ? kMarrow : kCancellousBone;
 }
 
-// Returns the label of a point by the rule at the head of anatomy.h. In bone, sets `part` to 1 + index of the bone
-// part.
+// Returns the label of a point, by the rule at the top of anatomy.h. For a point in bone, also sets `part` to 1 + the
+// index of the bone part.
 Label label_at(const Anatomy& anatomy, const Nearby& nearby, const glm::dvec3& p, std::vector<double>& at,
                std::uint8_t& part) {
   Depth depth{-kFar, 0};
@@ -131,7 +132,7 @@ Grid grid_around(const Anatomy& anatomy, double spacing) {
     throw Error("a phantom cannot be made at this spacing", std::to_string(spacing) + " mm", "choose 0.5 to 10 mm");
   Box box;
   for (const Flesh& flesh : anatomy.flesh) box.add(flesh.solid.box);
-  // Voxel centres lie at multiples of the spacing, whatever the extent of the body.
+  // Voxel centres are at multiples of the spacing, so that their positions do not depend on the body's extent.
   const glm::ivec3 low = glm::ivec3(glm::floor(box.low / spacing)) - kMargin;
   const glm::ivec3 high = glm::ivec3(glm::ceil(box.high / spacing)) + kMargin;
   Grid grid{high - low + 1, glm::dvec3(spacing), glm::dvec3(low) * spacing, glm::dmat3(1)};
@@ -179,7 +180,7 @@ void close_layers(LabelVolume& volume, const std::vector<std::uint8_t>& part) {
   };
   const auto is = [&](Label label) { return [&voxels, label](std::int64_t i) { return voxels[i] == label; }; };
 
-  // Nail voxels that do not touch air become skin. Then all other tissue that touches air or a nail becomes skin.
+  // First, nail voxels that do not touch air become skin. Then other tissue that touches air or a nail becomes skin.
   relabel(volume, [&](std::int64_t i) -> Label {
     return voxels[i] == kNail && !touches(i, faces, is(kAir)) ? kSkin : kLabelCount;
   });
@@ -188,7 +189,7 @@ void close_layers(LabelVolume& volume, const std::vector<std::uint8_t>& part) {
     return touches(i, around, is(kAir)) || touches(i, around, is(kNail)) ? kSkin : kLabelCount;
   });
 
-  // Where two bones touch, voxels of the bone with the higher number become cartilage.
+  // Of two bones that touch, the voxels at the contact become cartilage in the bone that was added later.
   const auto is_bone = [&](std::int64_t i) {
     return voxels[i] == kCorticalBone || voxels[i] == kCancellousBone || voxels[i] == kMarrow;
   };
@@ -249,7 +250,7 @@ LabelVolume voxelize(const Anatomy& anatomy, double spacing, Progress& progress)
 
   const glm::ivec3 blocks = (grid.size + kBlock - 1) / kBlock;
   const double radius = 0.5 * kBlock * spacing * std::numbers::sqrt3;
-  // Works in layers of blocks, so that progress is reported and cancelling takes effect.
+  // Fills one layer of blocks after another. Between layers, progress is reported and the work can be cancelled.
   for (int layer = 0; layer < blocks.z; ++layer) {
     progress.update("phantom", static_cast<double>(layer) / blocks.z);
     parallel_for(std::int64_t{blocks.x} * blocks.y, 4, [&](std::int64_t begin, std::int64_t end) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Describes a body by shapes: its flesh, bones, muscles and organs, and the one rule that decides which tissue a point
-// belongs to. voxelize() samples it at any spacing. Layers thinner than a voxel never drop out: after sampling, tissue
+// Describes a body by shapes (flesh, bones, muscles and organs) and by a rule that decides which tissue a point belongs
+// to. voxelize() samples the body at any spacing. Layers thinner than a voxel are never lost: after sampling, tissue
 // that touches air becomes skin, marrow or cancellous bone that touches other tissue becomes cortex, and where two
-// bones touch, voxels of the later one in the list become cartilage.
+// bones touch, voxels of the bone later in the list become cartilage.
 //
 // A point gets the first tissue of this list that applies:
 //   air       outside the flesh, which is a union of parts that blend with their parent only (so fingers do not fuse)
 //   skin      less than the skin's thickness below the surface; nail inside the solids of the nails
 //   bone      inside a bone part: cortex in its outer millimetres, below it cancellous bone or marrow
 //   cartilage between two bones that come close to each other
-//   inner     inside a tendon, vessel, nerve, organ or cavity; the first one of an ordered list
-//   muscle    below the fat, the nearest muscle within its reach; fat where no muscle reaches
+//   inner     inside a tendon, vessel, nerve, organ or cavity; if inside several, the first one in Anatomy::inner
+//   muscle    below the fat: the nearest muscle, or fat if every muscle is more than 7 mm away
 #pragma once
 
 #include <optional>
@@ -89,13 +89,13 @@ struct Flesh {
   Solid solid;
   int parent;    // index in Anatomy::flesh, -1 for the root
   double blend;  // width of the smooth union with the parent, mm
-  double fat;    // thickness of the fat below the skin, mm
+  double fat;    // thickness of the fat layer below the skin, mm
 };
 
 struct BonePart {
   Solid solid;
   double cortex;           // thickness of the cortical bone, mm
-  bool long_bone = false;  // true: marrow between a and b, cancellous bone beyond; false: cancellous bone everywhere
+  bool long_bone = false;  // true: inside is marrow between points a and b; elsewhere inside is cancellous bone
   glm::dvec3 a{0}, b{0};
 };
 
@@ -106,15 +106,15 @@ struct Region {
 
 struct Anatomy {
   std::vector<Flesh> flesh;
-  std::vector<BonePart> bones;  // at most 254
-  std::vector<Region> inner;    // tendons, vessels, organs ...; a point belongs to the first one that holds it
+  std::vector<BonePart> bones;  // at most 254 of them
+  std::vector<Region> inner;    // tendons, vessels, organs ...; a point belongs to the first one that contains it
   std::vector<Region> muscles;  // a point belongs to the nearest muscle
   std::vector<Solid> nails;
   Armature armature;
 
   int add_flesh(Solid solid, int parent, double blend, double fat);
   BonePart& add_bone(Solid solid, double cortex);
-  // Adds a bone with a marrow core from a to b.
+  // Adds a long bone, whose marrow reaches from a to b; its ends are cancellous bone.
   BonePart& add_long_bone(Solid solid, double cortex, const glm::dvec3& a, const glm::dvec3& b);
   int add_rig_bone(const std::string& name, int parent, const glm::dvec3& head, const glm::dvec3& tail,
                    const JointLimits& limits = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds the arm. Joint surfaces are round about the rig's joint centres and axes, and sockets are cut with a gap, so
-// that bones turn past each other without touching over the whole range of each joint. Lengths in mm.
+// Builds the arm. The joint surfaces of bones are spheres and cylinders around the rig's joint centres and axes, and
+// their sockets leave a gap. Bones therefore do not touch over the whole range of each joint. Lengths in mm.
 #include "core/phantom/limbs.h"
 
 namespace limber::phantom {
@@ -9,10 +9,10 @@ namespace {
 using V = glm::dvec3;
 using T = glm::dvec4;  // a point and a radius
 
-// z of the elbow in the humerus's frame, and of the wrist in the forearm's frame.
+// z coordinate, mm, of the elbow in the frame of the humerus, and of the wrist in the frame of the forearm.
 constexpr double kElbowZ = -300, kWristZ = -252;
 constexpr V kWristCentre(0, 0, -17);  // centre of the wrist, in the head of the capitate; hand frame
-constexpr double kPronation = 80;     // rotation of the forearm from supine, degrees: the palm faces the thigh
+constexpr double kPronation = 80;     // rotation of the forearm, degrees; 0: palm forward; here it faces the thigh
 constexpr double kGap = 1.6;          // thickness of the cartilage in small joints, mm
 
 Cone cone(const Frame& f, const V& a, double radius_a, const V& b, double radius_b) {
@@ -36,8 +36,8 @@ constexpr Finger kFingers[] = {
     {"Ring", {-6, 2, -37}, {-14, 4, -90}, -7, {42, 27, 20}, 6.4, 9.3},
     {"Little", {-13, -1, -36}, {-29, -1, -82}, -16, {34, 20, 18}, 5.8, 8.3},
 };
-// Angles of a finger's knuckle, middle and end joint, degrees: the bend at rest, and the largest bend and overextension
-// from straight [AAOS 1965].
+// Angles of a finger's knuckle, middle joint and end joint, degrees from straight: bend at rest, largest bend, and
+// largest overextension [AAOS 1965].
 constexpr double kRestBend[] = {14, 20, 10}, kMostBend[] = {90, 100, 80}, kMostBack[] = {30, 0, 0};
 
 class Arm {
@@ -167,7 +167,7 @@ class Arm {
   }
 
   void add_forearm_bones() {
-    const V radius_end(12, 0, 2), ulna_end(-13, 3, 5);  // hand frame
+    const V radius_end(12, 0, 2), ulna_end(-13, 3, 5);  // ends of radius and ulna at the wrist, hand frame
     Solid ulna;
     ulna.add(cone(fore_, {-8, 15, 9}, 8, {-8, 14, -20}, 10))
         .add(cone(fore_, {-8, 6, -22}, 9, {-8, -12, -13}, 5), 6)  // coronoid process
@@ -194,7 +194,8 @@ class Arm {
   }
 
   void add_hand_bones() {
-    // The eight carpals are one bone part, since they move together; their first row is round about the wrist's centre.
+    // The eight carpals are one bone part, since they move together. The row next to the forearm is round about the
+    // wrist's centre.
     Solid carpus;
     carpus
         .add(ellipsoid(hand_, {11, 0, -9}, {8, 8, 9}))          // scaphoid
@@ -208,7 +209,8 @@ class Arm {
     anatomy_.add_bone(carpus, 1.4);
   }
 
-  // Adds a phalanx along -z of `frame`. The origin of the frame is the centre of the bone head that it turns about.
+  // Adds a phalanx (finger bone) along -z of `frame`. The frame's origin is the centre of the joint about which the
+  // phalanx rotates.
   void add_phalanx(const Frame& frame, double length, double head_before, double head, bool last) {
     const double base = 0.98 * head_before, shaft = 0.62 * (last ? head : 0.5 * (head + head_before));
     Solid bone(cone(frame, {0, 0, -(0.6 * head_before + kGap)}, base, {0, 0, -0.30 * length}, shaft * 1.05));
@@ -220,7 +222,8 @@ class Arm {
                            frame.point({0, 0, -0.82 * length}));
   }
 
-  // Adds the flesh, the nail and both tendons of a digit whose phalanges start at `joints`.
+  // Adds the flesh, the nail and the two tendons (flexor and extensor) of a finger or thumb.
+  //   joints  the frame of each of its bones, with the joint as origin
   void add_digit_flesh(const std::vector<Frame>& joints, const std::vector<double>& lengths, double flesh,
                        double blend) {
     Solid digit;
@@ -264,7 +267,7 @@ class Arm {
         name + "Metacarpal", hand_bone_, hand_.point(finger.base + V(0, 0, 6)), hand_.point(finger.head),
         mobile ? hinge(hand_.turn_axis(flex), -5, 15) : hinge(hand_.turn_axis(flex), 0, 5));
 
-    // A muscle fills the space between two metacarpals.
+    // Adds the muscle that fills the space between this metacarpal and the next one.
     muscle(kHandMuscles, cone(hand_, finger.base + V(7, -3, -8), 5, finger.head + V(8, -4, 12), 4));
 
     constexpr const char* kPhalanges[] = {"Proximal", "Middle", "Distal"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds the leg. As in the arm, joint surfaces are round about the rig's joint centres, and sockets are cut around
-// them. Lengths in mm.
+// Builds the leg. The joint surfaces of bones are round about the rig's joint centres, and sockets are cut around them
+// with a gap, so that bones rotate without touching. Lengths in mm.
 #include "core/phantom/limbs.h"
 
 namespace limber::phantom {
@@ -9,7 +9,8 @@ namespace {
 using V = glm::dvec3;
 using T = glm::dvec4;  // a point and a radius
 
-// z of the knee in the thigh's frame, of the ankle in the shank's, and of the sole in the foot's.
+// z coordinates, mm: of the knee in the thigh's frame, of the ankle in the shank's frame, and of the sole in the foot's
+// frame.
 constexpr double kKneeZ = -435, kAnkleZ = -395, kSole = -83;
 constexpr double kToeOut = 8;  // outward rotation of the foot, degrees
 constexpr double kGap = 1.6;   // thickness of the cartilage in small joints, mm
@@ -180,7 +181,8 @@ class Leg {
           .add(cone(foot_, glm::mix(toe.base, toe.head, 0.75), 0.6 * toe.bone, toe.head, 0.92 * toe.bone), 4);
       anatomy_.add_long_bone(metatarsal, 1.8, foot_.point(glm::mix(toe.base, toe.head, 0.15)),
                              foot_.point(glm::mix(toe.base, toe.head, 0.85)));
-      // Each toe has two phalanges, since the last two phalanges of small toes are rarely separate.
+      // Each toe gets two phalanges (toe bones) instead of three, since the outer two have often grown together in
+      // small toes.
       const V along = toe.tip - toe.head;
       const double length = glm::length(along), head = 0.92 * toe.bone, middle = 0.62 * toe.bone;
       const V unit = along / length, joint = toe.head + 0.54 * along;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds the body parts of the phantoms. Each function adds flesh, bones, muscles, tendons, vessels and rig bones of
-// one part to an Anatomy, in a local frame that may be mirrored and turned. Sizes are those of an adult of 1.75 m, in
-// mm.
+// Builds the body parts of the phantoms (procedural sample bodies). Each function adds the flesh, bones, muscles,
+// tendons, vessels and rig bones of one part to an Anatomy, in a local frame that may be mirrored and turned. Sizes are
+// those of an adult of 1.75 m, in mm.
 #pragma once
 
 #include <string>
@@ -12,23 +12,23 @@
 namespace limber::phantom {
 
 struct LimbPlan {
-  Frame root;            // at the shoulder or hip centre; x away from the trunk, y to the back, z up along the limb
+  Frame root;            // origin: shoulder or hip centre; x away from the trunk, y to the back, z up along the limb
   std::string prefix{};  // prefix of the rig bones' names: "Left", "Right" or ""
   int flesh_parent = -1;
   int rig_parent = -1;
   double bend_degrees = 0;       // bend of the elbow or knee at rest
-  double thinnest_radius = 0.5;  // least radius of vessels, nerves and tendons, chosen by the voxel size, mm
+  double thinnest_radius = 0.5;  // lower limit of the radii of vessels, nerves and tendons, mm
 };
 
 // Adds an arm from the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.
 void add_arm(Anatomy& anatomy, const LimbPlan& plan);
-// Adds a leg from the femur to the toes. The foot stands flat in the axes of `upright`, even where the leg leans.
+// Adds a leg from the femur to the toes. The foot stands flat on the ground plane of `upright`, even if the leg leans.
 void add_leg(Anatomy& anatomy, const LimbPlan& plan, const Frame& upright);
-// Where the limbs are attached to the trunk. add_trunk() adds pelvis, spine, rib cage, organs, shoulder girdle, neck
-// and head.
+// The joints at which the limbs are attached to the trunk. add_trunk() adds pelvis, spine, rib cage, organs, shoulder
+// girdle, neck and head, and returns these joints.
 struct TrunkJoints {
   int flesh, hips_bone;                // indices in the Anatomy's flesh and rig
-  glm::dvec3 left_hip, left_shoulder;  // joint centres, mm; those of the right side are mirrored at x = 0
+  glm::dvec3 left_hip, left_shoulder;  // joint centres, mm; the right joints are their mirror images at x = 0
 };
 TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
 
@@ -36,11 +36,11 @@ TrunkJoints add_trunk(Anatomy& anatomy, double thinnest_radius);
 Anatomy arm_anatomy(double thinnest_radius = 0.5);
 Anatomy body_anatomy(double thinnest_radius = 0.5);
 
-// The rotation of one bone in one frame of a motion. make_motion() returns a motion with the rig's hierarchy, in BVH
-// axes (Y up) and mm.
+// The rotation of one bone in one frame of a motion. make_motion() makes a motion from lists of such rotations, with
+// the rig's hierarchy, in BVH axes (Y up) and mm.
 struct Turn {
   std::string bone;
-  glm::dvec3 axis;  // rotation axis at rest, in world axes (LPS)
+  glm::dvec3 axis;  // rotation axis in the rest pose, in world axes (LPS)
   double degrees;
 };
 struct MotionFrame {

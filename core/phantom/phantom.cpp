@@ -13,13 +13,13 @@ using namespace phantom;
 
 constexpr int kFrames = 60;
 constexpr double kFrameTime = 1.0 / 30;
-constexpr double kArmBend = 25;  // bend of the elbow at rest, degrees, so that the bones alone define its flex axis
-// Angles of a relaxed A-pose, degrees: no limb touches another one or the trunk.
+constexpr double kArmBend = 25;  // elbow's bend at rest, degrees; it lets the bones' directions show the elbow's axis
+// Angles of a relaxed A-pose, degrees. They keep the limbs from touching each other and the trunk.
 constexpr double kArmSpread = 38, kBodyElbowBend = 14, kLegSpread = 6, kKneeBend = 4;
 
 double thinnest(double spacing) { return 0.6 * spacing; }
 
-// Returns a smooth rise from 0 at the first frame to 1 in the middle, and back to 0 at the last frame.
+// Returns a value that rises smoothly from 0 at the first frame to 1 in the middle and falls to 0 at the last frame.
 double there_and_back(int frame) { return 0.5 - 0.5 * std::cos(2 * std::numbers::pi * frame / (kFrames - 1)); }
 
 Motion arm_curl(const Armature& armature) {
@@ -35,10 +35,11 @@ Motion arm_curl(const Armature& armature) {
   return make_motion(armature, frames, kFrameTime);
 }
 
-// Returns a motion of one stride. The legs are half a cycle apart, and each arm swings against the leg of its side.
+// Returns a motion of one stride (two steps). The right leg is half a cycle behind the left one, and each arm swings
+// opposite to the leg of its side.
 Motion walk(const Armature& armature) {
   constexpr double kStride = 1300;                  // length of a stride, mm
-  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // rotation axes; about -x, a hanging limb swings to the front
+  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // rotation axes: swing a hanging limb forward; turn left
   const auto bump = [](double phase, double centre, double width) {
     const double d = std::remainder(phase - centre, 1.0) / width;
     return std::exp(-d * d);
@@ -54,7 +55,7 @@ Motion walk(const Armature& armature) {
     for (const double side : {1.0, -1.0}) {
       const std::string name = side > 0 ? "Left" : "Right";
       const double phase = cycle + (side > 0 ? 0 : 0.5),
-                   swing = std::cos(2 * std::numbers::pi * phase);  // at phase 0 the heel strikes
+                   swing = std::cos(2 * std::numbers::pi * phase);  // 1 at phase 0, when the heel meets the ground
       // The angles of hip, knee and ankle are close to those of gait analysis [Winter 1991].
       turns.push_back({name + "Thigh", forward, 6 + 23 * swing});
       turns.push_back(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes procedural sample bodies at any spacing: an arm with separate fingers, and a whole body. Each comes with a
-// matching rig (with joint limits), a tissue table and a short motion.
+// Makes phantoms, which are procedural sample bodies at any voxel spacing: an arm with separate fingers, and a whole
+// body. Each phantom has a matching rig with joint limits, a tissue table and a short motion.
 #pragma once
 
 #include "core/base/progress.h"

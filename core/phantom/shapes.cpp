@@ -10,7 +10,8 @@
 namespace limber::phantom {
 
 namespace {
-// Number of cross sections in a loft's lookup table. With this many, the straight pieces between them are not visible.
+// Number of cross sections in a loft's lookup table. The surface is straight from one section to the next, which is not
+// visible with this number.
 constexpr int kLoftSamples = 96;
 constexpr double kFar = 1e30;
 
@@ -20,7 +21,7 @@ double cone_distance(const Cone& cone, const glm::dvec3& p) {
   const glm::dvec3 along = cone.b - cone.a, from_a = p - cone.a;
   const double l2 = squared(along), narrowing = cone.radius_a - cone.radius_b;
   const double a2 = l2 - narrowing * narrowing;
-  // One end sphere contains the other one, so the cone is just the larger sphere.
+  // One of the two spheres at the ends contains the other sphere, so the cone is the larger sphere.
   if (a2 <= 0) return narrowing > 0 ? glm::length(from_a) - cone.radius_a : glm::length(p - cone.b) - cone.radius_b;
 
   const double y = glm::dot(from_a, along), z = y - l2;
@@ -53,8 +54,8 @@ double plate_distance(const Plate& plate, const glm::dvec3& p) {
   return std::sqrt(d2) - plate.radius;
 }
 
-// Interpolates a value between stations by a cubic. Its slopes are harmonic means of the neighbouring secants, so that
-// it does not overshoot the values of the stations.
+// Interpolates a value between the cross sections i and i + 1 by a cubic. Its slope at a cross section is the harmonic
+// mean of the slopes to both neighbours, so that the curve does not overshoot the given values.
 double interpolate(const std::vector<Station>& stations, std::size_t i, double z, auto value) {
   const auto secant = [&](std::size_t k) {
     return (value(stations[k + 1]) - value(stations[k])) / (stations[k + 1].z - stations[k].z);
@@ -107,7 +108,8 @@ double Loft::distance(const glm::dvec3& world) const {
   const glm::dvec2 centre = glm::mix(below.centre, above.centre, t), radii = glm::mix(below.radii, above.radii, t);
   const double n = below.exponent + (above.exponent - below.exponent) * t;
 
-  // Within the plane of a cross section, the distance is (k - 1) / |grad k|, where k is the superellipse norm.
+  // Distance to the outline within the plane of the cross section: (k - 1) / |grad k|, where k is the norm whose unit
+  // curve is the superellipse.
   const glm::dvec2 q = (glm::dvec2(p) - centre) / radii, size = glm::abs(q);
   double k, in_plane;
   glm::dvec2 gradient;
@@ -120,7 +122,7 @@ double Loft::distance(const glm::dvec3& world) const {
   }
   const double steepness = glm::length(gradient);
   in_plane = steepness > 0 ? (k - 1) / steepness : -std::min(radii.x, radii.y);
-  // Where the wall leans, its surface is nearer than the distance within the plane says.
+  // If the loft's wall is oblique to its axis, the true distance is less than the distance within the cross section.
   if (steepness > 0 && p.z > low_ && p.z < high_) {
     const glm::dvec2 growth = (above.radii - below.radii) / step, drift = (above.centre - below.centre) / step;
     const double lean = glm::dot(gradient / steepness, drift + growth * q / std::max(k, 1e-9));

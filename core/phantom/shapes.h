@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shapes of which the procedural anatomy is modelled. Each gives a signed distance in mm, negative inside, that is
-// so close to the true distance that layers (skin, cortex) cut from it have an even thickness.
+// The shapes of which the procedural anatomy is modelled. Each shape computes the signed distance of a point in mm,
+// negative inside. Approximate distances are accurate enough for layers (skin, cortex) of even thickness.
 //   Cone       a sphere swept from a to b while its radius changes (exact) [Quilez, "Round Cone"]
 //   Ellipsoid  first-order distance, scaled by the gradient
 //   Plate      a triangle thickened by a radius (exact)
 //   Loft       elliptic cross sections at stations along a straight axis, interpolated smoothly; for limbs and trunk
-// A Solid combines shapes in order: each is added by a smooth union, or cut away by a smooth difference.
+// A Solid combines shapes one after another: each is added by a smooth union, or cut away by a smooth difference.
 #pragma once
 
 #include <span>
@@ -24,11 +24,11 @@ struct Frame {
 
   glm::dvec3 point(const glm::dvec3& local) const { return origin + axes * local; }
   glm::dvec3 vector(const glm::dvec3& local) const { return axes * local; }
-  // Returns the world axis of a rotation about a local axis; a mirror reverses the sense of rotation.
+  // Returns the world axis of a rotation about a local axis. A frame that mirrors also reverses the sense of rotation.
   glm::dvec3 turn_axis(const glm::dvec3& local) const { return axes * local * glm::determinant(axes); }
   Frame at(const glm::dvec3& local_origin) const { return {point(local_origin), axes}; }
   Frame turned(const glm::dvec3& local_axis, double degrees) const;  // rotates about the frame's origin
-  Frame mirrored_x() const;                                          // mirrors at the world plane x = 0
+  Frame mirrored_x() const;                                          // mirrors the frame at the world plane x = 0
 };
 
 struct Box {
@@ -57,8 +57,8 @@ struct Plate {
   double radius;
 };
 
-// One cross section of a loft at height z of its frame: an ellipse, or with a higher exponent a more square
-// superellipse.
+// One cross section of a loft, at coordinate z of the loft's frame. It is an ellipse for exponent 2, and a superellipse
+// that approaches a rectangle for higher exponents.
 struct Station {
   double z;
   glm::dvec2 centre, radii;
@@ -80,7 +80,7 @@ class Loft {
   };
   Frame frame_;
   double low_, high_, rounding_;
-  std::vector<Sample> samples_;  // at equal steps of z
+  std::vector<Sample> samples_;  // interpolated cross sections at equal steps of z
 };
 
 using Shape = std::variant<Cone, Ellipsoid, Plate, Loft>;
@@ -88,8 +88,8 @@ using Shape = std::variant<Cone, Ellipsoid, Plate, Loft>;
 double distance(const Shape& shape, const glm::dvec3& p);
 Box bounds(const Shape& shape);
 
-// Returns a smooth minimum of a and b. It is the smaller one where they differ by `blend` or more, and elsewhere below
-// the smaller one by at most blend / 4 [Quilez, polynomial].
+// Returns a smooth minimum of a and b. If they differ by `blend` or more, it is the smaller value; else it is less than
+// the smaller value by at most blend / 4 [Quilez, polynomial].
 double smooth_min(double a, double b, double blend);
 
 struct Solid {
@@ -99,13 +99,13 @@ struct Solid {
     double blend;  // width of the smooth union or difference, mm
   };
   std::vector<Step> steps;
-  Box box;  // bounds of the added shapes
+  Box box;  // bounding box of the solid
 
   Solid() = default;
   explicit Solid(const Shape& shape) { add(shape); }
   Solid& add(const Shape& shape, double blend = 0);
   Solid& cut(const Shape& shape, double blend = 0);
-  // Adds a chain of cones through points with radii (w).
+  // Adds a chain of cones through the given points; the fourth component (w) is the radius at the point, mm.
   Solid& add_tube(const Frame& frame, std::span<const glm::dvec4> points_and_radii, double blend = 0);
   double distance(const glm::dvec3& p) const;
 };

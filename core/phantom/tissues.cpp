@@ -14,12 +14,12 @@ struct Row {
   std::uint32_t colour;  // 0xRRGGBB
   TissueKind kind;
   double density, young_modulus, poisson_ratio;
-  // Where tissues overlap, the higher priority wins: hard tissue over soft, inner tissue over outer.
+  // A tissue with a higher priority wins where two tissues overlap. Hard tissue wins over soft, inner over outer.
   int priority;
 };
 
 using K = TissueKind;
-constexpr std::uint32_t kRed = 0xa9423c;  // colour of muscle; the other muscles vary it, to be distinct from each other
+constexpr std::uint32_t kRed = 0xa9423c;  // typical red of muscles; each muscle has a slightly different red
 
 constexpr Row kRows[] = {
     {kSkin, "skin", 0xe0ac8b, K::Skin, 1.10, 120, 0.48, 10},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds pelvis, spine, rib cage, organs, shoulder girdle, neck and head in world coordinates, mm: the soles at z = 0,
-// the middle at x = 0, the belly towards -y. The thoracic vertebrae, ribs and breastbone are one bone part, since they
-// move together.
+// Builds pelvis, spine, rib cage, organs, shoulder girdle, neck and head in world coordinates, mm. The soles are at z =
+// 0, the plane between left and right is x = 0, and the belly points towards -y. The thoracic vertebrae, ribs and
+// breastbone are one bone part, since they move together.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +16,7 @@ using T = glm::dvec4;  // a point and a radius
 constexpr V kHip(88, 0, 915), kShoulder(180, 16, 1430);
 constexpr double kSpine[][2] = {{985, 52},  {1020, 44}, {1080, 34}, {1150, 40}, {1250, 60},
                                 {1350, 64}, {1430, 50}, {1500, 34}, {1560, 26}, {1600, 20}};
-// Cross sections of the rib cage: height z, half width, half depth, and y of the middle, mm.
+// Elliptic cross sections of the rib cage, mm: height z, half the width, half the depth, and y of the centre.
 constexpr double kCage[][4] = {{1120, 118, 84, 2}, {1170, 128, 92, 2}, {1240, 136, 97, 2}, {1300, 134, 95, 4},
                                {1360, 122, 86, 8}, {1410, 96, 70, 14}, {1445, 62, 50, 20}, {1465, 44, 38, 22}};
 
@@ -158,7 +158,7 @@ class Trunk {
     anatomy_.add_bone(pelvis, 3);
   }
 
-  // Adds a vertebra's body, arch and processes. The arch leaves the spinal canal free.
+  // Adds the body, arch and processes of a vertebra. Between body and arch the spinal canal stays free.
   static void add_vertebra(Solid& bone, double z, double height, double width, double depth, double spine_length) {
     const double y = spine_y(z), back = y + depth;
     bone.add(Loft(Frame{V(0, y, z), glm::dmat3(1)},
@@ -196,7 +196,7 @@ class Trunk {
     inner(kDisc, tube(discs));
   }
 
-  // Returns a point on a rib's arc around the cage, from t = 0 at the back to 1 at the front.
+  // Returns a point of a rib, which runs around the rib cage from t = 0 at the back to t = 1 at the front.
   static V rib_point(double z, double drop, double t, double side) {
     const double height = z - drop * (1 - std::cos(std::numbers::pi * t)) / 2,
                  angle = std::numbers::pi * (0.10 + 0.78 * t);
@@ -207,7 +207,7 @@ class Trunk {
   void add_rib_cage() {
     Solid cage;
     for (int i = 0; i < 12; ++i) add_vertebra(cage, 1187 + 25 * i, 19, 21 - 0.45 * i, 14 - 0.2 * i, 20);
-    // Rods between the arches join the thoracic vertebrae to one bone part.
+    // Adds rods between the arches of the thoracic vertebrae, which make them one connected bone part.
     for (double side : {-1.0, 1.0})
       for (int i = 0; i < 11; ++i) {
         const double z = 1187 + 25 * i;
@@ -221,7 +221,8 @@ class Trunk {
         for (double t = 0.08; t < length; t += 0.07) points.push_back(T(rib_point(z, drop, t, side), 5.2));
         cage.add_tube({}, points, 2);
         if (rib >= 10) continue;
-        // Costal cartilage connects ribs to the breastbone; the eighth to tenth ribs share one point at its lower end.
+        // Adds the cartilage between ribs and breastbone. The eighth to tenth ribs end at the same point, the
+        // breastbone's lower end.
         const V end = points.back();
         const double goal = rib < 7 ? 1420 - 23 * rib : 1272;
         const V at_sternum(side * 17, -70 - 36 * (1425 - goal) / 160, goal);
@@ -353,7 +354,7 @@ class Trunk {
                             (layer == 0 ? 952 + 27 * row : 1060 - 27 * row) + 5 * std::sin(2.3 * step), 12.5));
         }
     inner(kIntestine, tube(loops, 2));
-    // Visceral fat fills the rest of the belly; the dome of the diaphragm lies above it.
+    // Adds the visceral fat, which fills the belly around the organs, and the dome of the diaphragm above the belly.
     Solid cavity(Loft({},
                       {{862, {0, 10}, {62, 52}},
                        {920, {0, 4}, {92, 66}, 2.2},
@@ -371,7 +372,7 @@ class Trunk {
 
   void add_chest() {
     for (double side : {-1.0, 1.0}) {
-      // The heart comes earlier in the list of organs, so it takes its space from the left lung.
+      // The lungs may overlap the heart: the heart comes earlier in the list of organs and wins.
       Solid lung(Loft(Frame{V(side * 68, 0, 0), glm::dmat3(1)},
                       {{1165, {0, 14}, {50, 62}},
                        {1215, {0, 10}, {53, 74}},

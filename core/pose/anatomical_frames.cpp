@@ -16,23 +16,23 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-constexpr double kUprightLean = 7.5 * kDegree;  // a body within this angle of the world's axes counts as upright
-// The legs are also used to find the body's upright axis if their knees bend by less than kStraightKnee and they
-// deviate from the trunk by less than kLegsInLine.
+constexpr double kUprightLean = 7.5 * kDegree;  // a body with axes this near to the world's axes counts as aligned
+// Largest bend of a knee, and largest angle between leg and trunk seen from the side, at which the direction of the
+// legs is used to find the body's upright axis.
 constexpr double kStraightKnee = 20 * kDegree;
 constexpr double kLegsInLine = 25 * kDegree;
 constexpr double kKneeAside = 5 * kDegree;   // largest sideways bend of a healthy knee (varus, valgus) [Hsu 1990]
-constexpr double kElbowAside = 8 * kDegree;  // largest sideways bend of an elbow: about half of the carrying angle
+constexpr double kElbowAside = 8 * kDegree;  // largest sideways bend of an elbow, about half of the carrying angle
 constexpr double kHyperextension = 15 * kDegree;
-// Range of a foot's heading relative to its knee [Staheli 1985].
+// Range in which a foot points outwards (positive) relative to its knee [Staheli 1985].
 constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};
-constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // range of the forearm's pronation, from palms forward
+constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};  // range of the forearm's pronation; 0: palm forward
 constexpr double kSoleSlope = 23 * kDegree;   // slope from the toes up to the ankle, with the sole on the ground
-constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base
-constexpr double kBackwards = 110 * kDegree;  // a foot whose heading exceeds this points backwards, which no leg can do
+constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base, with the sole on the ground
+constexpr double kBackwards = 110 * kDegree;  // a foot turned further than this from forward points backwards
 constexpr double kSteepFoot = 75 * kDegree;   // a foot that points down more steeply than this has no heading
-// Used where the direction of the palm cannot be found from the hand. An arm raised further than this is taken to rest
-// with the thumb forward, any other arm with the palm forward.
+// Angle between upper arm and hanging, used if the hand does not show where its palm faces. In an arm raised further
+// the thumb is assumed to point forward, in a lower arm the palm.
 constexpr double kRaisedArm = 22.5 * kDegree;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
@@ -45,8 +45,8 @@ glm::dvec3 unit(const glm::dvec3& v) {
   return length > 1e-12 ? v / length : glm::dvec3(0);
 }
 
-// Converts between world axes and the body's axes. For a right limb the body's axes are mirrored, so that every limb
-// can be treated as a left one.
+// Converts between world axes and the body's axes (left, back, up). For a right limb the body's axes are mirrored, so
+// that every limb can be treated as a left limb.
 struct LimbView {
   glm::dmat3 body{1};
   bool right = false;
@@ -55,7 +55,7 @@ struct LimbView {
     const glm::dvec3 v = glm::transpose(body) * world;
     return {right ? -v.x : v.x, v.y, v.z};
   }
-  // Converts an axis of rotation: mirroring keeps its x component and reverses y and z.
+  // Converts an axis of rotation. Unlike a direction, it keeps its x component when mirrored; y and z change sign.
   glm::dvec3 seen_axis(const glm::dvec3& world) const {
     const glm::dvec3 v = glm::transpose(body) * world;
     return right ? glm::dvec3(v.x, -v.y, -v.z) : v;
@@ -69,18 +69,18 @@ struct LimbView {
   }
 };
 
-// Returns the shortest rotation from hanging straight down to a direction. To straight up, this is a half turn
-// sideways.
+// Returns the shortest rotation that moves a limb from hanging straight down to a direction. For the direction straight
+// up, this is a half turn sideways.
 glm::dquat swing_from_hanging(const glm::dvec3& direction) {
   if (direction == glm::dvec3(0)) return kNoTurn;
   if (direction.z > 1 - 1e-9) return about(kY, kPi);
   return shortest_turn(-kZ, direction);
 }
 
-// Returns the limb's rotation about its own axis, radians: the one nearest to `wanted` for which the lower limb bends
-// towards `bend_heading`, and at most by `aside` to the side.
-//   below   direction of the lower limb, in the limb's axes
-//   wanted  the rotation that a straight joint would get
+// Returns the angle, radians, by which the upper limb must rotate about its own length so that its knee or elbow bends
+// towards `bend_heading` and at most by `aside` to the side. Of all such angles, returns the one nearest to `wanted`.
+//   below   direction of the lower limb, in the upper limb's axes
+//   wanted  the angle for a straight joint
 double turn_about_itself(const glm::dvec3& below, double bend_heading, double aside, double wanted) {
   const double across = std::hypot(below.x, below.y), bend = std::atan2(across, -below.z);
   if (across <= std::sin(aside) && below.z <= 0) return wanted;
@@ -112,7 +112,7 @@ class Measuring {
     arm(side);
   }
 
-  // Bones that were not measured take the rotation of their parents.
+  // Gives each bone that was not measured the rotation of its parent.
   void fill() {
     for (std::size_t b = 0; b < done_.size(); ++b) {
       const int parent = armature_.bones[b].parent;
@@ -134,7 +134,7 @@ class Measuring {
   bool is_right(BodySide side) const {
     if (side != BodySide::Middle) return side == BodySide::Right;
     if (const auto hand = is_right_hand(skeleton_)) return *hand;
-    // A single limb without a side in its names belongs to the side to which it leans on its way down.
+    // A single limb whose names tell no side belongs to the side towards which its lower end lies.
     for (const auto& [above, below] : {std::pair{BodyPart::Thigh, BodyPart::Foot},
                                        {BodyPart::UpperArm, BodyPart::Hand},
                                        {BodyPart::UpperArm, BodyPart::Forearm}}) {
@@ -156,8 +156,9 @@ class Measuring {
     result_.frames[bone].hinge = AnatomicalHinge{sign * axis, at_rest};
   }
 
-  // Returns how far the hinge of `bone` is turned about the limb above it, relative to that limb's frame `swung`.
-  // Returns nothing if the bone has no hinge, or one along the limb.
+  // Returns the angle, radians, by which the hinge axis of `bone` is rotated about the length of the limb above it.
+  // Returns nothing if the bone has no hinge, or if the hinge axis runs along this limb.
+  //   swung  the frame of the limb above, without a rotation about its length
   std::optional<double> turn_of_hinge(int bone, const glm::dquat& swung, double sign) const {
     if (!hinge_of(bone)) return std::nullopt;
     glm::dvec3 axis = glm::conjugate(swung) * view_.seen_axis(hinge_of(bone)->axis) * sign;
@@ -223,13 +224,13 @@ void Measuring::leg(BodySide side) {
   set(*shank, shank_frame);
   if (!foot_bone) return;
   const glm::dvec3 seen = glm::conjugate(shank_frame) * direction(*foot_bone);
-  // A foot that points backwards keeps its position relative to the shank: either its bone runs to the heel, or left
-  // and right are swapped in the names.
+  // A foot that points backwards is not measured, so it keeps its pose relative to the shank: either its bone runs to
+  // the heel, or left and right are swapped in the names.
   if (std::abs(heading_of(seen)) < kBackwards) foot(*foot_bone, shank_frame, heading_of(seen), seen);
 }
 
-// Sets the frames of foot and toes. The toes, if there are any, determine the foot's pitch in the anatomical position:
-// their slope on the ground is known, and the angle between foot and toes stays as it is at rest.
+// Sets the frames of foot and toes. If the foot has toes, they determine its pitch in the anatomical position: the
+// slope of toes on the ground is known, and the angle between foot and toes stays as it is at rest.
 void Measuring::foot(int bone, const glm::dquat& shank, double heading, const glm::dvec3& seen) {
   const auto slope = [&](const glm::dvec3& v) { return std::atan2(-v.z, glm::dot(v, about(kZ, heading) * -kY)); };
   double neutral = kSoleSlope;
@@ -279,8 +280,8 @@ void Measuring::arm(BodySide side) {
   hand(side, bent, pronation.at_rest);
 }
 
-// Returns the forearm's pronation, radians, judged by the direction that the palm faces. It is 0 for palms forward, and
-// between -90 and 270 degrees.
+// Returns the forearm's pronation, radians in the range of -90 to 270 degrees, found from the direction in which the
+// palm faces. It is 0 if the palm faces forward.
 double Measuring::pronation_of_hand(BodySide side, const glm::dquat& forearm, double raised) const {
   const auto across = across_palm(skeleton_, side);
   const auto along = along_hand(skeleton_, side);
@@ -306,7 +307,7 @@ void Measuring::hand(BodySide side, const glm::dquat& forearm, double pronation)
     result_.frames[finger].hinge = hinge;
 }
 
-// Returns the signed world axes that are nearest to the given axes.
+// Replaces each of the given axes by the world axis, with its sign, that is nearest to it.
 glm::dmat3 nearest_world_axes(const glm::dmat3& axes) {
   glm::dmat3 nearest(0);
   for (int column = 0; column < 3; ++column) {
@@ -351,8 +352,8 @@ glm::dmat3 upright_axes(const Armature& armature) {
     const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
     if (left && right) across += *left - *right;
   }
-  // In an upright body, the trunk leans back on its way up and the legs lean back on their way down. The mean of their
-  // directions is upright.
+  // In an upright body, the neck is further back than the hips, and the ankles are further back than the hips too. The
+  // lines along trunk and legs therefore lean in opposite directions, and their mean is upright.
   const glm::dvec3 legs = up_of_legs(skeleton, *trunk, across);
   const glm::dvec3 up = legs == glm::dvec3(0) ? *trunk : unit(*trunk) + unit(legs);
   const std::optional<glm::dmat3> axes = axes_of(up, across);

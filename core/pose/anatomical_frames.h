@@ -3,11 +3,10 @@
 // hanging, palms and feet forward. Bones are recognised by their names (rig/joint_names.h) and measured by their
 // directions.
 //
-// The positions of a limb's joints give its direction. Its rotation about this direction follows from the joint below
-// it, which bends only one way: a bent knee or elbow spans a plane. A straight knee or elbow spans none. The limb is
-// then assumed to have swung from the anatomical position by the shortest way, without a rotation about itself. It is
-// turned further only as far as needed to bring the foot's heading or the palm into the range that feet and forearms
-// reach.
+// The positions of a limb's joints give its direction. Its rotation about this direction follows from the knee or elbow
+// at its lower end, which bends only one way: a bent knee or elbow defines a plane, a straight one does not. In the
+// latter case the limb is assumed to have moved from the anatomical position by the shortest rotation. It is rotated
+// about its own length only as far as needed to bring foot or palm into the range that feet and forearms reach.
 //
 // A joint that is a hinge in the rig's limits bends only about this hinge. All other joints are straightened
 // completely, so that a limb's direction in a pose is exactly the one that its angles give.
@@ -24,18 +23,19 @@
 
 namespace limber {
 
-// The hinge of a bone that bends about one axis only: by the rig's limits, or because it is a finger bone.
+// The hinge of a bone that bends about one axis only, either because the rig's limits say so or because it is a finger
+// bone.
 struct AnatomicalHinge {
   glm::dvec3 axis{0};  // unit vector in the world at rest: a positive turn flexes (toes: extends; ankles: dorsiflexion)
   double at_rest = 0;  // flexion at rest, radians
 };
 
 struct BoneFrame {
-  // The rotation of the bone, in world axes, from rest to the anatomical position. A bone whose name means no known
-  // body part takes the rotation of its parent.
+  // The rotation of the bone, in world axes, from the rest pose to the anatomical position. A bone whose name tells no
+  // known body part takes the rotation of its parent.
   glm::dquat anatomical_from_rest{1, 0, 0, 0};
-  // The rotation from the body's axes to the joint's axes in the anatomical position. They differ for a foot that is
-  // turned out, since it bends about its own axis.
+  // The rotation from the body's axes to the joint's axes in the anatomical position. The two differ only for a foot
+  // that points outwards, since its ankle bends across the foot.
   glm::dquat joint_axes{1, 0, 0, 0};
   std::optional<AnatomicalHinge> hinge;
 };
@@ -46,14 +46,13 @@ struct BodyFrames {
   std::vector<BoneFrame> frames;  // one for each bone of the rig
   bool feet_point_back = false;   // true: a foot points backwards, so left and right may be swapped in the bones' names
   int only_root = -1;  // index of the root bone if the rig has only one (its joint turns the whole rig), else -1
-  // The forearm's pronation at rest, radians from palms forward, and the share of a pronation that the forearm bone
-  // takes; the hand takes the rest.
+  // Pronation at rest, radians (0: palm forward), and the share of every pronation by which the forearm bone rotates.
+  // The hand bone takes the remaining share.
   struct Pronation {
     double at_rest = 0, forearm_share = 0;
   };
   std::map<BodySide, Pronation> pronation;
-  // For each side, whether its limbs are right limbs. For limbs without a side in their names (Middle), their shape
-  // decides.
+  // For each side, true if its limbs are right limbs. For limbs whose names tell no side (Middle), their shape decides.
   std::map<BodySide, bool> is_right;
 
   std::optional<int> find(BodyPart part, BodySide side, int index = 0) const;
@@ -61,9 +60,9 @@ struct BodyFrames {
 
 BodyFrames body_frames(const Armature& armature);
 
-// Returns the body's axes (left, back, up) in the world, found from its hips, shoulders, trunk and legs. If they are
-// within 7.5 degrees of the world's axes, it returns the world's axes, since the joints of an upright body deviate by
-// as much. Returns the LPS axes if the rig does not show the body's axes.
+// Returns the body's axes (left, back, up) in the world, found from its hips, shoulders, trunk and legs. If the axes
+// are within 7.5 degrees of world axes, returns these world axes, since the joints of an upright body deviate by up to
+// this angle. Returns the LPS axes for a rig without a trunk.
 glm::dmat3 upright_axes(const Armature& armature);
 
 }  // namespace limber

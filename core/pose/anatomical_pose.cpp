@@ -17,8 +17,8 @@ using enum BodyJoint;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
-// The normal of the left shoulder blade, which lies against the ribs 35 degrees in front of the frontal plane. When the
-// blade turns about this axis, it glides over the ribs [Kapandji, The Physiology of the Joints].
+// Unit normal of the left shoulder blade, which is at 35 degrees to the frontal plane. A blade that rotates about this
+// axis stays on the ribs [Kapandji, The Physiology of the Joints].
 const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
@@ -33,7 +33,8 @@ double radians_of(const JointMotions& motions, std::size_t motion) {
   return motions[motion].value_or(0) * std::numbers::pi / 180;
 }
 
-// Returns the rotation of a left joint from the anatomical position, in the body's axes.
+// Returns the rotation, from the anatomical position and in the body's axes, of a joint with these angles. Left joints
+// are assumed; callers mirror the rotation for right ones.
 glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   const double a = radians_of(motions, 0), b = radians_of(motions, 1), c = radians_of(motions, 2);
   switch (joint) {
@@ -51,17 +52,17 @@ glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
   }
 }
 
-// Returns how far these shoulder angles raise the arm from hanging down, degrees.
+// Returns the angle, degrees, between an arm with these shoulder angles and an arm that hangs down.
 double raise_of(const JointMotions& shoulder) {
   const glm::dvec3 arm = turn_of(Shoulder, shoulder) * -kZ;
   return glm::degrees(std::acos(std::clamp(-arm.z, -1.0, 1.0)));
 }
 
-// Adds the shoulder rhythm: beyond the first 30 degrees by which an arm is raised, the shoulder blade contributes a
-// third of the motion. Half of this third happens at the collarbone's inner end, the other half between collarbone and
-// blade [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint]. Here only the first half,
-// a sixth, is added, and only to collarbones for which no angles are requested. If a blade that moves as one with the
-// collarbone turned more, it would leave the ribs.
+// Adds the shoulder rhythm: when an arm is raised by more than 30 degrees, the shoulder blade contributes a third of
+// the further motion. Half of this third happens at the collarbone's inner end, the other half between collarbone and
+// blade [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint]. Only the first half, a
+// sixth of the motion, is added here: rigs move the blade together with the collarbone, and with more rotation the
+// blade would leave the ribs. Collarbones whose angles are requested are not changed.
 JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
   constexpr double kSetting = 30, kShare = 1.0 / 6;
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
@@ -86,7 +87,7 @@ std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
     if (joint.joint == Neck) add(BodyPart::Head, 0);
   } else if (is_finger(joint.joint)) {
     for (int segment = 1; segment <= 3; ++segment) add(part, segment);
-    // If one bone stands for all fingers, it bends as the middle finger.
+    // A bone that stands for all fingers together bends by the angles of the middle finger.
     if (bones.empty() && joint.joint == Middle) add(BodyPart::Fingers, 0);
   } else {
     add(part, 0);
@@ -94,8 +95,8 @@ std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
   return bones;
 }
 
-// Returns the hand bone that shares the forearm's pronation. Returns nothing if there is no hand bone, or if it is the
-// only root.
+// Returns the index of the hand bone, which shares the forearm's pronation. Returns nothing if there is no hand bone,
+// or if the hand bone is the rig's only root bone.
 std::optional<int> hand_of_forearm(const BodyFrames& frames, BodySide side) {
   const auto hand = frames.find(BodyPart::Hand, side);
   return hand && *hand != frames.only_root ? hand : std::nullopt;
@@ -156,11 +157,11 @@ class Posing {
   }
 
  private:
-  // The joint angles that are requested of one bone.
+  // The requested joint angles that move one bone.
   struct Wanted {
     std::vector<std::pair<SidedJoint, JointMotions>> joints;
-    double share = 1;        // share of the spine's or neck's rotation that this bone takes
-    std::size_t motion = 0;  // for a finger bone: index into JointMotions
+    double share = 1;        // share of the rotation of spine or neck by which this bone rotates
+    std::size_t motion = 0;  // index of a finger bone's angle in JointMotions
   };
 
   void want(const SidedJoint& joint, const JointMotions& motions) {
@@ -179,7 +180,7 @@ class Posing {
     if (hand) wanted_[static_cast<std::size_t>(*hand)].joints.emplace_back(joint, motions);
   }
 
-  // A finger bone whose parent is the forearm follows the hand all the same.
+  // Makes finger bones follow the hand in rigs in which their parent is the forearm.
   void follow_hands() {
     followed_.assign(armature_.bones.size(), -1);
     for (const auto& [role, bone] : frames_.bone) {
@@ -216,8 +217,8 @@ class Posing {
     return glm::normalize(now);
   }
 
-  // Returns the bone that a joint's angles are relative to: for a shoulder the collarbone's parent, else the bone's own
-  // parent.
+  // Returns the bone relative to which the angles of a joint are measured. For a shoulder this is the parent of the
+  // collarbone, for any other joint the parent of `bone`.
   int reference_of(int bone, BodyJoint joint) const {
     int above = armature_.bones[static_cast<std::size_t>(bone)].parent;
     if (joint != Shoulder) return above;
@@ -227,7 +228,7 @@ class Posing {
     return above;
   }
 
-  // Returns the bone's rotation from the anatomical position.
+  // Converts a bone's rotation from the rest pose into its rotation from the anatomical position, in world axes.
   glm::dquat from_anatomical(int bone, const glm::dquat& turned) const {
     return bone < 0 ? kNoTurn
                     : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
@@ -267,7 +268,7 @@ class Posing {
     return above * world * frame.anatomical_from_rest;
   }
 
-  // Returns the bone's rotation after its joint's rotation was replaced by a flexion of the hinge.
+  // Returns the bone's world rotation with the joint's rotation replaced by a flexion of its hinge, radians.
   glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
     return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) *
            about(hinge.axis, flexion - hinge.at_rest);
@@ -279,16 +280,16 @@ class Posing {
     return sine > 0 ? v * (2 * std::atan2(sine, q.w) / sine) : glm::dvec3(0);
   }
 
-  // The forearm bone is moved by the elbow and the forearm joint, the hand bone by the wrist and the forearm joint.
-  // This function replaces the rotation of one of these two joints and keeps that of the other.
+  // Elbow and pronation both move the forearm bone; wrist and pronation both move the hand bone. This function replaces
+  // the rotation of `joint` in the bone's rotation `before`, and keeps the rotation of the other joint.
   glm::dquat arm_turn(int bone, const glm::dquat& before, const SidedJoint& joint, const JointMotions& motions) const {
     const auto found = frames_.pronation.find(joint.side);
     const BodyFrames::Pronation pronation = found == frames_.pronation.end() ? BodyFrames::Pronation{} : found->second;
     const bool is_hand = frames_.find(BodyPart::Hand, joint.side) == bone;
     const double share = is_hand ? 1 - pronation.forearm_share : pronation.forearm_share;
     if (joint.joint == Forearm && share == 0) return before;
-    // The pronation is a rotation about the limb's length. It is the first factor of a hand's rotation, and the last
-    // factor of a forearm's.
+    // The pronation is a rotation about the limb's length: the leftmost factor of a hand's rotation, the rightmost
+    // factor of a forearm's rotation.
     const glm::dmat3 m = glm::mat3_cast(before);
     const glm::dquat kept = about(kZ, is_hand ? std::atan2(-m[1].x, m[1].y) : std::atan2(-m[1].x, m[0].x));
     if (joint.joint == Elbow) return turn_of(Elbow, motions) * kept;
@@ -315,14 +316,15 @@ Pose with_joint_angles(const Armature& armature, const BodyFrames& frames, const
 }
 
 JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, const std::string& where) {
-  // A request for both sides or for a whole hand may name joints that the rig does not have. They are left out.
+  // A request for both sides or for a whole hand stands for several joints. Those that the rig does not have are left
+  // out.
   JointAngles found;
   for (const auto& [joint, motions] : angles)
     if (angles.size() == 1 || has(frames, joint) ||
         (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
       found[sided(frames, joint, where)] = motions;
   if (!found.empty() || angles.empty()) return found;
-  // A limb without a side in its names takes the angles that are requested for either side.
+  // A limb whose bone names tell no side takes angles that are requested for the left or the right side.
   for (const auto& [joint, motions] : angles)
     if (has(frames, {joint.joint, BodySide::Middle})) found[{joint.joint, BodySide::Middle}] = motions;
   if (found.empty()) sided(frames, angles.begin()->first, where);
@@ -333,7 +335,7 @@ JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
   JointAngles known;
   for (const auto& [joint, motions] : angles) {
     if (has(frames, joint)) known[joint] = motions;
-    // A limb without a side in its names takes the angles of the left or the right side, whichever its shape resembles.
+    // A limb whose bone names tell no side takes the angles of the left or the right side, as its shape tells.
     const bool right = joint.side == BodySide::Right;
     const SidedJoint sideless{joint.joint, BodySide::Middle};
     const auto shape = frames.is_right.find(BodySide::Middle);
@@ -396,7 +398,7 @@ std::string joints_of_rig(const BodyFrames& frames) {
 }
 
 std::string beyond_limits(const Armature& armature, const Pose& pose) {
-  constexpr double kShown = 0.05;  // degrees; a bone beyond its limits by less is not listed
+  constexpr double kShown = 0.05;  // degrees; a bone that exceeds its limits by less is not listed
   constexpr int kNamed = 8;
   std::string names;
   int count = 0;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses a rig by the angles of a body's joints; works on any rig whose bones are recognised. Angles are measured from
-// the anatomical position, whatever the rig's rest pose. In a named joint, motions whose angles are not given become
-// zero. Joints that are not named keep their rotation. The descendants of a named joint move with it.
+// Poses a rig by the angles of a body's joints, such as the flexion of the left knee. Works on any rig whose bones are
+// recognised by their names. Angles are measured from the anatomical position, whatever the rig's rest pose is. A
+// request that names a joint sets all motions of this joint; those without an angle become zero (in fingers they stay).
+// Other joints keep their rotation. Bones below a joint move with it.
 //
 // Hips and shoulders turn by flexion about the body's left-right axis, then by abduction about the axis that the
 // flexion has carried along, then by rotation about the limb [Grood & Suntay 1983]. Shoulder angles are relative to the
-// trunk, not to the collarbone. A raised arm takes the collarbone and the shoulder blade along, unless angles for the
-// shoulder girdle are given too. The bones of spine and neck share the rotation evenly. Forearm and hand share a
-// pronation. The body as a whole neither turns nor moves.
+// trunk, not to the collarbone. A raised arm also moves the collarbone and the shoulder blade, unless the request sets
+// the shoulder girdle. The bones of the spine share its rotation evenly, and so do the bones of the neck. Forearm and
+// hand share a pronation. The body as a whole neither turns nor moves.
 #pragma once
 
 #include <string>
@@ -32,8 +33,8 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
 // Returns those joints of `angles` that the rig has, with their sides. This fits a pose for any body to the rig.
 JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles);
 
-// Lists those joints of `angles` that the rig does not have although it has a joint further out on the same limb: "left
-// hip, right hip". A joint missing at the end of a limb is not listed.
+// Returns the names of the joints of `angles` that the rig lacks although it has the next joint of the same limb: "left
+// hip, right hip". A joint that is missing at the end of a limb is not listed.
 std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& angles);
 
 // Returns a warning that lists limb bones that are not descendants of the bone above them. Such a bone stays behind
@@ -46,7 +47,8 @@ std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& an
 // Returns the names of the joints that a rig has: "left hip, right hip, neck"; empty where no bone is recognised.
 std::string joints_of_rig(const BodyFrames& frames);
 
-// Returns a warning that lists the bones that a pose turns beyond the rig's joint limits; empty where there are none.
+// Returns a warning that lists the bones that a pose turns beyond the rig's joint limits. The text is empty if there
+// are no such bones.
 std::string beyond_limits(const Armature& armature, const Pose& pose);
 
 }  // namespace limber

@@ -18,7 +18,8 @@ Armature with_pose_as_rest(const Armature& armature, const Pose& pose) {
     bone.roll = roll_of(bone, posed[b].rotation * rest_axes(before)[0]);
     JointLimits& limits = bone.limits;
     if (limits.axis == glm::dvec3(0)) continue;
-    // A hinge's axis moves with the parent bone, a ball joint's axis with the bone itself.
+    // Rotates the axis of the joint limits: the axis of a hinge rotates with the parent bone, the axis of a ball joint
+    // with the bone itself.
     const bool hinge = limits.type == JointLimits::Type::Hinge;
     const glm::dquat carries = !hinge              ? posed[b].rotation
                                : before.parent < 0 ? glm::dquat(1, 0, 0, 0)

@@ -6,9 +6,9 @@
 
 namespace limber {
 
-// Returns the rig with the pose as its rest pose. The limits of a hinge are measured from the new rest pose and keep
-// their range; if the pose was beyond the limits, the range is widened to contain it. The cone and twist limits of a
-// ball joint keep their size around the new rest pose.
+// Returns the rig with the pose as its rest pose. A hinge can still reach the same positions; if the pose was beyond
+// the hinge's limits, they are widened to contain it. The cone and twist limits of a ball joint keep their size around
+// the new rest pose.
 Armature with_pose_as_rest(const Armature& armature, const Pose& pose);
 
 }  // namespace limber

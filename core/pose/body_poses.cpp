@@ -44,7 +44,8 @@ constexpr BodyPose kPoses[] = {
     {"A", "Arms straight and half way down, thumbs forward.", "shoulders abduction=45; forearms pronation=90"},
 };
 
-// The joints that every body pose sets. Those that a pose does not name take the anatomical position.
+// The joints that every named pose of the body sets. A pose that gives no angles for one of these joints puts it in the
+// anatomical position.
 constexpr BodyJoint kLimbs[] = {BodyJoint::Shoulder, BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist,
                                 BodyJoint::Hip,      BodyJoint::Knee,  BodyJoint::Ankle};
 

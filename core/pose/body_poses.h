@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Named poses for any body ("sit", "walk"), given by the angles of its joints from the anatomical position.
+// Named poses for any body ("sit", "walk"), given as joint angles that are measured from the anatomical position.
 #pragma once
 
 #include <span>
@@ -15,32 +15,33 @@ namespace limber {
 
 struct BodyPose {
   std::string_view name;         // "sit"
-  std::string_view description;  // a full sentence
-  // Joint requests (joint_angles.h), separated by semicolons. Limb joints that are not named take the anatomical
-  // position; spine, neck, fingers and toes keep their rest pose, and collarbones follow raised arms.
+  std::string_view description;  // a full sentence for the user
+  // Joint requests such as "hips flexion=90" (joint_angles.h), separated by semicolons. Shoulders, elbows, forearms,
+  // wrists, hips, knees and ankles without a request take the anatomical position. Spine, neck, fingers and toes
+  // without a request do not move. Collarbones follow raised arms.
   std::string_view joints;
 };
 
 std::span<const BodyPose> body_poses();
 
-// Finds a body pose by its name, in upper or lower case; "_", "-" and blanks are equal. Throws Error that lists the
-// known names.
+// Finds a named pose of the body. Upper and lower case are equal; "_", "-" and blanks are ignored. Throws Error for an
+// unknown name, and lists the known ones.
 const BodyPose& require_body_pose(const std::string& name, const std::string& where);
 
 JointAngles angles_of(const BodyPose& pose);
 
 // A requested pose: the name of a body pose, single joints that override it, or both.
 struct PoseRequest {
-  std::string name;                 // one of body_poses(); empty: none
-  std::vector<std::string> joints;  // joint requests (joint_angles.h)
+  std::string name;                 // name of one of body_poses(); empty: no named pose
+  std::vector<std::string> joints;  // joint requests such as "left elbow flexion=30" (joint_angles.h)
 
   bool empty() const { return name.empty() && joints.empty(); }
 };
 
 // Returns `pose` with the requested joint angles. Joints of a named pose that the rig does not have are left out. Adds
-// to `warnings` a line for each requested angle that adults do not reach, and lines for bones beyond the rig's own
-// limits and for other doubts about the rig. Throws Error for an unknown name or joint, or a requested joint that the
-// rig does not have.
+// lines to `warnings`: one for each requested angle that adults do not reach, one for bones beyond the rig's own
+// limits, and others if the rig's bones look wrong (feet that point backwards, bones apart from their limb). Throws
+// Error for an unknown pose or joint, or for a single requested joint that the rig does not have.
 Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest& request,
                   std::vector<std::string>& warnings);
 

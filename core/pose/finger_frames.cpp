@@ -11,14 +11,14 @@ namespace limber {
 namespace {
 
 constexpr BodyPart kFingers[] = {BodyPart::Index, BodyPart::Middle, BodyPart::Ring, BodyPart::Little};
-// Sum of the sines of a finger's bends. A finger with a larger sum (30 degrees in one bend) is curled enough to show
-// the plane in which it bends.
+// Curl of a finger (sum of the sines of its joints' bends) above which the finger shows the plane in which it bends; 30
+// degrees in one joint give 0.5.
 constexpr double kCurled = 0.5;
-// Cosine of 37 degrees. A finger whose curl axis deviates further from the line across the palm counts as crooked, not
-// curled.
+// Cosine of the largest angle (37 degrees) between the axis of a finger's curl and the line across the palm. A finger
+// beyond this angle is crooked, so its curl does not show the axis about which it bends.
 constexpr double kAskew = 0.8;
-// Sum of the sines of the bends of all fingers (15 degrees in one bend) from which a left hand can be told from a right
-// hand.
+// Curl of a hand (sum of the sines of the bends of all finger joints) above which its direction tells a left hand from
+// a right hand; 15 degrees in one joint give 0.26.
 constexpr double kSided = 0.26;
 
 glm::dvec3 unit(const glm::dvec3& v) {
@@ -31,7 +31,7 @@ std::optional<int> bone_of(const Skeleton& skeleton, BodyPart part, BodySide sid
   return found == skeleton.joint.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Returns the position of the knuckle, the joint between palm and finger.
+// Returns the position of a finger's knuckle, which is the joint between palm and finger.
 std::optional<glm::dvec3> knuckle(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   if (const auto place = skeleton.place_of(finger, side, 1)) return place;
   const auto metacarpal = bone_of(skeleton, finger, side, 0);
@@ -44,7 +44,7 @@ std::optional<glm::dvec3> wrist(const Skeleton& skeleton, BodySide side) {
   return forearm ? std::optional(skeleton.tip[*forearm]) : std::nullopt;
 }
 
-// Returns the bone of the finger's last segment.
+// Returns the bone of the finger's outermost segment.
 std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   for (int segment = 3; segment >= 1; --segment)
     if (const auto bone = bone_of(skeleton, finger, side, segment)) return bone;
@@ -52,8 +52,8 @@ std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodyS
 }
 
 struct Finger {
-  std::vector<int> bones;  // from the knuckle to the tip
-  // Unit vectors: first the direction of the metacarpal or palm, then that of each bone.
+  std::vector<int> bones;  // indices of the finger's bones, from the knuckle to the tip
+  // Unit vectors. The first is the direction of the palm or metacarpal before the finger; one for each bone follows.
   std::vector<glm::dvec3> directions;
 };
 
@@ -72,7 +72,8 @@ Finger finger_of(const Skeleton& skeleton, BodyPart part, BodySide side) {
   return finger;
 }
 
-// Returns the axis about which the finger is curled. The length of the axis is the sum of the sines of the bends.
+// Returns the axis about which the finger is curled. The vector's length is the sum of the sines of the angles between
+// successive segments, if they all bend in one plane.
 glm::dvec3 curl(const Finger& finger) {
   glm::dvec3 axis(0);
   for (std::size_t i = 1; i < finger.directions.size(); ++i)
@@ -153,11 +154,11 @@ std::optional<bool> is_right_hand(const Skeleton& skeleton) {
 Hinges finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySide side, bool right) {
   Hinges hinges;
   const glm::dvec3 to_little = unit(across_palm(skeleton, side).value_or(glm::dvec3(0)));
-  // The fingers of a left hand flex about the axis from index to little finger, those of a right hand about the
-  // opposite axis.
+  // The fingers of a left hand flex by a positive rotation about the axis from index to little finger. In a right hand
+  // the axis is opposite.
   const glm::dvec3 across = right ? -to_little : to_little;
   for (const BodyPart finger : kFingers) add_hinges(hinges, armature, finger_of(skeleton, finger, side), across);
-  // A thumb flexes in the direction across the palm.
+  // A thumb bends across the palm, towards the little finger.
   const Finger thumb = finger_of(skeleton, BodyPart::Thumb, side);
   if (!thumb.bones.empty()) add_hinges(hinges, armature, thumb, unit(glm::cross(thumb.directions[1], to_little)));
   if (const auto fingers = bone_of(skeleton, BodyPart::Fingers, side, 0)) {

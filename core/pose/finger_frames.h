@@ -11,20 +11,21 @@
 
 namespace limber {
 
-// Returns the vector from the wrist to the middle finger's knuckle, else to the mean of the other knuckles; nothing
-// without fingers or a wrist.
+// Returns the vector from the wrist to the middle finger's knuckle. Without this knuckle, the vector ends at the mean
+// of the other knuckles. Returns nothing for a hand without fingers or wrist.
 std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side);
 
 // Returns the vector across the palm from the index finger to the little finger, or away from the thumb if there is no
 // other finger. The vector is not normalized.
 std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side);
 
-// Tells whether a hand without a side in its names is a right hand, judged by the direction in which its fingers curl.
-// Returns nothing if they are straight.
+// Returns true if the rig's only hand, whose bone names tell no side, is a right hand. The direction in which the
+// fingers curl decides; returns nothing if they are straight.
 std::optional<bool> is_right_hand(const Skeleton& skeleton);
 
-// Returns a hinge for each finger bone of a hand. A curled finger bends in the plane of its curl, a straight one about
-// the line across the palm. Fingers stay spread as they are.
+// Returns the hinge of each finger bone of a hand, with the bone's index. A curled finger bends further in the plane in
+// which it is curled, a straight finger about the line across the palm. The hinges do not change the angles by which
+// fingers are spread.
 std::vector<std::pair<int, AnatomicalHinge>> finger_hinges(const Armature& armature, const Skeleton& skeleton,
                                                            BodySide side, bool right);
 

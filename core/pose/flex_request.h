@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads requests such as "Forearm=45": a bone, and the angle in degrees by which to turn it about its hinge.
+// Reads requests such as "Forearm=45": the name of a bone, and the angle in degrees by which the bone turns about its
+// hinge.
 #pragma once
 
 #include <string>
@@ -11,8 +12,8 @@ struct FlexRequest {
   double degrees = 0;  // from -360 to 360; a positive angle bends further
 };
 
-// Reads BONE=DEG. A bone's name may hold an equals sign; the number follows the last one. Throws Error when there is no
-// bone, no number, or an angle beyond 360 degrees.
+// Reads BONE=DEG. A bone's name may contain equals signs; the number follows the last one. Throws Error if the bone's
+// name or the number is missing, or for an angle beyond 360 degrees.
 //   where  names the option or key in messages
 FlexRequest parse_flex_request(const std::string& request, const std::string& where);
 

@@ -16,25 +16,27 @@ namespace limber {
 
 namespace {
 
-constexpr int kSteps = 80;            // largest number of steps in one search
+constexpr int kSteps = 80;            // upper limit of the steps of one search
 constexpr double kLongestStep = 0.6;  // largest change of a parameter in one step, radians
 constexpr double kAtLimit = 1e-10;    // a parameter within this distance of its limit counts as at the limit, radians
-// A search ends when a step reduces the squared error by a smaller share than this.
+// A search ends at a step that reduces the squared distance from the targets by a smaller share than this.
 constexpr double kNoProgress = 1e-6;
-constexpr double kRoughly = 1e-3;  // used instead of kNoProgress in a search that only prepares the next one
-// Weight of 1 mm off the half plane of the pole; 1 mm off a target has the weight 1.
+constexpr double kRoughly = 1e-3;  // replaces kNoProgress in a search that only prepares the next one
+// Weight of the joint's distance from the half plane in which the limb bends towards its pole, relative to the distance
+// of a bone's tail from its target.
 constexpr double kPoleWeight = 0.1;
 constexpr int kRestartsBeyondReach = 6;
-// The pose found by a restart is used if it is nearer to the target by this share of the chain's length.
+// The smallest gain for which the pose found by a restart replaces the best pose so far, which it may differ from a
+// lot: it must be nearer to the target by this share of the chain's length.
 constexpr double kWorthAJump = 1e-4;
 
 double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
 
-// A joint that the search may turn, with its limits and the current values of its parameters.
+// A joint that the search may rotate: its limits, and the current values of the parameters of its rotation.
 struct Joint {
   int bone;
   JointLimits::Type type;
-  glm::dvec3 axis{0};               // the axis of the hinge or of the twist
+  glm::dvec3 axis{0};               // axis of a hinge's rotation or of a ball joint's twist
   double minimum = 0, maximum = 0;  // limits of `angle`, radians
   double cone = 0;
 
@@ -54,7 +56,8 @@ struct Joint {
     return free;
   }
 
-  // Returns the two directions in which the swing's parameters change it: away from the rest pose, and around it.
+  // Returns the two directions in which the parameters of a ball joint change its swing: away from the rest pose, and
+  // around the rest pose at the same distance.
   std::array<glm::dvec3, 2> swing_directions() const {
     const double length = glm::length(swing);
     glm::dvec3 outward = swing;
@@ -66,13 +69,15 @@ struct Joint {
     return {outward, glm::cross(axis, outward)};
   }
 
-  // Computes, in the parent's rest frame, the axis about which a small change of each parameter turns the bone.
+  // Computes, for each parameter of the joint, the axis about which the bone turns when the parameter changes a little.
+  // The axes are in the parent's rest frame.
   void turning_axes(glm::dvec3* out) const {
     if (type == JointLimits::Type::Hinge) out[0] = axis;
     if (type == JointLimits::Type::Free)
       for (int i = 0; i < 3; ++i) out[i] = glm::dvec3(i == 0, i == 1, i == 2);
     if (type != JointLimits::Type::Ball) return;
-    // Derivative of the exponential map at the swing s with the angle a: I + (1 - cos)/a^2 [s] + (a - sin)/a^3 [s]^2.
+    // Derivative of the exponential map at the swing s, with a = |s| and the matrix [s] of the cross product with s: I
+    // + (1 - cos a)/a^2 [s] + (a - sin a)/a^3 [s]^2.
     const double a = glm::length(swing);
     const double first = a < 1e-4 ? 0.5 : (1 - std::cos(a)) / (a * a);
     const double second = a < 1e-4 ? 1.0 / 6 : (a - std::sin(a)) / (a * a * a);
@@ -84,7 +89,7 @@ struct Joint {
     out[2] = exponential(swing) * axis;
   }
 
-  // Returns whether parameter i is at a limit and a change by `push` would pass the limit.
+  // Returns true if parameter i is at its limit and adding `push` would exceed the limit.
   bool is_held(int i, double push) const {
     if (type == JointLimits::Type::Free) return false;
     if (type == JointLimits::Type::Ball && i == 0) return push > 0 && glm::length(swing) >= cone - kAtLimit;
@@ -127,7 +132,7 @@ Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool kee
     joint.axis = twist_axis(bone);
     joint.minimum = bone.limits.twist_minimum;
     joint.maximum = bone.limits.twist_maximum;
-    joint.cone = std::min(bone.limits.cone, std::numbers::pi - 1e-6);  // a swing by half a turn has no unique direction
+    joint.cone = std::min(bone.limits.cone, std::numbers::pi - 1e-6);  // half a turn has no unique direction
   } else {
     return joint;
   }
@@ -144,7 +149,7 @@ Joint joint_of(const Bone& bone, int index, const glm::dquat& rotation, bool kee
 }
 
 struct State {
-  std::vector<Joint> joints;  // the joints of the bones that move, parents first
+  std::vector<Joint> joints;  // one joint for each bone that may move, parents before children
   glm::dvec3 root{0};
 };
 
@@ -191,7 +196,8 @@ class Search {
     const int restarts = lies_beyond_reach() ? std::min(settings_.restarts, kRestartsBeyondReach) : settings_.restarts;
     for (int i = 0; i < restarts && nearest > settings_.tolerance && parameters_ > 0; ++i) {
       State next = initial_;
-      // The first two restarts begin near the start pose, since a straight chain has no gradient that would bend it.
+      // The first two restarts begin close to the start pose: if its chain is straight, the gradient is zero, and a
+      // small random bend is enough to leave it. Later restarts begin at random poses.
       for (Joint& joint : next.joints) {
         Joint other = joint;
         other.scatter(random);
@@ -215,8 +221,8 @@ class Search {
     int bone;
     glm::dvec3 target;
     double weight;
-    int first;      // the uppermost bone that moves to reach this goal
-    double length;  // length of the chain, mm
+    int first;      // index of the bone at the upper end of the chain that moves to reach this goal
+    double length;  // length of this chain, mm
     std::vector<bool> moved_by;
   };
 
@@ -226,7 +232,7 @@ class Search {
     return bone.parent < 0 ? own : own + glm::distance(bone.head, armature_.bones[bone.parent].tail);
   }
 
-  // Returns whether a target is further from the base of its chain than the chain is long.
+  // Returns true if the distance between a target and the base of its chain exceeds the chain's length.
   bool lies_beyond_reach() {
     place(initial_);
     return !settings_.move_root && std::any_of(goals_.begin(), goals_.end(), [&](const Goal& goal) {
@@ -262,8 +268,8 @@ class Search {
     return furthest;
   }
 
-  // Runs a search from this state. If a target lies beyond the chain's reach, a first search aims at a nearer point in
-  // the same direction, so that the final search has little left to gain.
+  // Runs the search from a start state. If a target is beyond the chain's reach, a first search aims at the reachable
+  // point nearest to it, from which the final search needs few steps.
   State from(State state) {
     place(state);
     std::vector<glm::dvec3> targets;
@@ -283,9 +289,9 @@ class Search {
 
   int rows(bool pole) const { return static_cast<int>(3 * goals_.size()) + (pole ? 1 : 0); }
 
-  // Returns the distance of the first chain's last joint from its wanted position in the half plane through the chain's
-  // base, the chain's tip and the pole, mm.
-  //   normal  set to the unit direction from the joint to this position
+  // Returns how far, in mm, the last joint of the first chain is from where the pole wants it: in the half plane that
+  // the line from the chain's base to its tip bounds and that contains the pole.
+  //   normal  set to the unit direction from the joint to the wanted position
   double beside_pole(glm::dvec3& normal) const {
     const Goal& goal = goals_[0];
     const glm::dvec3 base = pivot(goal.first), along = tip(goal) - base, joint = pivot(goal.bone) - base;
@@ -297,7 +303,7 @@ class Search {
     if (length < 1e-9) return 0;
     towards /= length;
     const glm::dvec3 across = joint - along * (glm::dot(joint, along) / squared);
-    normal = glm::length(across) * towards - across;  // from the joint's position to the wanted one
+    normal = glm::length(across) * towards - across;  // vector from the joint to its wanted position
     const double off = glm::length(normal);
     if (off > 0) normal /= off;
     return off;
@@ -335,7 +341,8 @@ class Search {
         for (size_t g = 0; g < goals_.size(); ++g) J(3 * g + i, column) = goals_[g].weight;
   }
 
-  // Computes a damped least squares step. Repeats it without the parameters that it would push beyond their limits.
+  // Computes a step of damped least squares. If the step would change parameters beyond their limits, computes it again
+  // without these parameters.
   Eigen::VectorXd damped_step(const State& state, const Eigen::VectorXd& e, const Eigen::MatrixXd& J,
                               double damping) const {
     Eigen::MatrixXd free = J;
@@ -377,8 +384,8 @@ class Search {
     return arrived;
   }
 
-  // Minimizes the errors, starting from this state. The damping is relative to the mean squared lever arm of the chain,
-  // mm^2 per radian^2.
+  // Minimizes the distances from the targets, starting from the given state. The damping is scaled by the mean squared
+  // lever arm of the chain (mm^2 per radian^2), so that it does not depend on the rig's size.
   State search(State state, const std::vector<glm::dvec3>& targets, bool pole, double no_progress) {
     if (parameters_ == 0) return state;
     Eigen::VectorXd e(rows(pole));
@@ -422,8 +429,8 @@ class Search {
   const Pose& start_;
   const ReachSettings& settings_;
   std::vector<Goal> goals_;
-  // The bones of the goals and all bones above them; for each of these bones, its index in State::joints (-1: it does
-  // not move).
+  // needed_: the bones of the goals and all bones above them. joint_of_: for each entry of needed_, the bone's index in
+  // State::joints, or -1 if the bone does not move.
   std::vector<int> needed_, joint_of_;
   State initial_;
   int parameters_ = 0;

@@ -15,14 +15,14 @@ namespace {
 
 using enum BodyJoint;
 
-// A name of a joint. A plural name means the joint on both sides.
+// A name of a joint in requests. A plural name ("knees") means the joint on both sides.
 struct JointName {
   std::string_view name;
   BodyJoint joint;
   bool plural = false;
 };
 
-// A joint may have several names. Messages use the first name of each joint.
+// The names of the joints. A joint may have several names; messages use the first one.
 constexpr JointName kNames[] = {
     {"spine", Spine},
     {"trunk", Spine},
@@ -77,7 +77,8 @@ struct MotionWord {
   double sign = 1;
 };
 
-// A motion may have several words. Messages use the first word of each motion. For fingers see finger_motions().
+// The words for the motions of each joint, except for fingers (see finger_motions()). A motion may have several words;
+// messages use the first one.
 constexpr MotionWord kMotions[] = {
     {Spine, "flexion", 0},
     {Spine, "extension", 0, -1},
@@ -154,9 +155,9 @@ constexpr UsualRange kUsualThumb[] = {{Thumb, 0, -10, 60}, {Thumb, 1, -15, 80}, 
 constexpr UsualRange kUsualFinger[] = {{Index, 0, -45, 95}, {Index, 1, -10, 110}, {Index, 2, -10, 90}};
 
 constexpr double kMostDegrees = 360;
-// The last joint of a finger bends two thirds as far as the middle one, since one tendon bends both.
+// Bend of a finger's last joint relative to the bend of its middle joint, since one tendon bends both joints.
 constexpr double kLastJointShare = 2.0 / 3;
-// When the whole hand curls, the thumb bends half as far as the fingers.
+// Bend of the thumb relative to the bend of the fingers when a request curls the whole hand.
 constexpr double kThumbShare = 0.5;
 
 constexpr bool is_finger(BodyJoint joint) { return joint >= Thumb; }
@@ -222,8 +223,8 @@ void set_fingers(JointAngles& angles, Sides sides, double degrees, bool with_thu
   }
 }
 
-// Reads a request that sets several joints at once: "left hand curl", "fingers flexion". Returns false for any other
-// request.
+// Reads a request that sets several finger joints at once ("left hand curl", "fingers flexion") and adds the angles.
+// Returns false if the request is not of this kind.
 bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words, std::size_t first, Sides sides,
                       double degrees) {
   if (words.size() != first + 2) return false;
@@ -236,7 +237,8 @@ bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words
   return true;
 }
 
-// Returns the angles of a finger's joints: "flexion" bends all of them, "knuckle flexion" and the like only one.
+// Returns the angles of a finger's joints for a requested motion. "flexion" bends all joints of the finger, a motion
+// with the name of a joint ("knuckle flexion") only this joint.
 std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& motion, double degrees) {
   if (motion == "flexion" || motion.empty()) {
     if (finger == Thumb) return JointMotions{std::nullopt, degrees, degrees};
@@ -262,7 +264,7 @@ std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& 
 std::optional<JointMotions> motions_of(BodyJoint joint, const std::string& motion, double degrees) {
   if (is_finger(joint)) return finger_motions(joint, motion, degrees);
   for (const MotionWord& word : kMotions) {
-    // For a joint that only flexes, the word for the motion may be left out: "left elbow=30".
+    // Requests for elbows and knees may omit the word for the motion, since these joints only flex: "left elbow=30".
     const bool only = motion.empty() && (joint == Elbow || joint == Knee);
     if (word.joint != joint || (word.word != motion && !only)) continue;
     JointMotions motions;

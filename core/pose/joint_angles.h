@@ -42,12 +42,13 @@ enum class BodyJoint {
 
 struct SidedJoint {
   BodyJoint joint;
-  BodySide side = BodySide::Middle;  // Middle: the joint has no sides, or no side was given
+  BodySide side = BodySide::Middle;  // Middle: the joint is neither left nor right, or the request gave no side
 
   auto operator<=>(const SidedJoint&) const = default;
 };
 
-// The angles of a joint's motions (one to three), degrees, in the order in which they are applied; empty: not given.
+// The angles of the motions of one joint, degrees. Entries are empty for angles that were not given. The order of the
+// entries is the order in which the motions are applied:
 //   Spine, Neck   flexion, lateral bending to the right, axial rotation to the left
 //   Hip, Shoulder flexion, abduction, internal rotation      Girdle  elevation, protraction, upward rotation
 //   Wrist         flexion, ulnar deviation                   Ankle   dorsiflexion, inversion
@@ -57,8 +58,8 @@ struct SidedJoint {
 using JointMotions = std::array<std::optional<double>, 3>;
 using JointAngles = std::map<SidedJoint, JointMotions>;
 
-// Adds a request such as "left hip flexion=90" to `angles`; it replaces an angle that is already there. Words may be in
-// upper or lower case; a plural or "both" means both sides. Throws Error for an unknown joint or motion or a bad
+// Adds a request such as "left hip flexion=90" to `angles`, and replaces an earlier angle of the same motion. Words may
+// be in upper or lower case; a plural or "both" means both sides. Throws Error for an unknown joint or motion or a bad
 // number, and lists the known words.
 void add_joint_request(JointAngles& angles, const std::string& request, const std::string& where);
 

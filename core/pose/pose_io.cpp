@@ -14,9 +14,9 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Upper limit of a pose file's size in bytes. A file with a rotation for each of 4096 bones is far smaller.
+// Upper limit of a pose file's size in bytes. Even a file with rotations of 4096 bones is far smaller.
 constexpr std::uint64_t kMostBytes = 64 << 20;
-// Upper limit of a number in a pose file, mm or degrees. No body travels 1000 km.
+// Upper limit of a number in a pose file, mm or degrees. No body moves by 1000 km.
 constexpr double kLargest = 1e9;
 
 std::vector<double> numbers(const Json& value, size_t count, const char* key, const std::string& where) {
@@ -37,7 +37,7 @@ glm::dquat unit(const glm::dquat& q, const std::string& where) {
   const double length = glm::length(q);
   if (!(length > 1e-9) || !std::isfinite(length))
     throw Error("the rotation is not a quaternion that can be made unit", where, "give w, x, y, z, not all zero");
-  // A quaternion that already has unit length is kept bit for bit.
+  // Keeps a quaternion of unit length bit for bit, so that a file that was written reads back unchanged.
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }
 

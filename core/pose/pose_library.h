@@ -16,7 +16,7 @@ namespace limber {
 struct NamedPose {
   std::string name;                            // unique in the library
   std::map<std::string, glm::dquat> rotation;  // rotation of each bone by its name, as in Pose
-  std::optional<glm::dvec3> root_translation;  // mm; set if a root bone is among the bones
+  std::optional<glm::dvec3> root_translation;  // shift of the body, mm; empty if the pose has no root bone
   std::string picture;                         // contents of a PNG file, a picture of the posed body; may be empty
 
   bool operator==(const NamedPose&) const = default;
@@ -24,7 +24,8 @@ struct NamedPose {
 
 using PoseLibrary = std::vector<std::shared_ptr<const NamedPose>>;
 
-// Makes a library entry from the pose of `bones`. Appends a number to the name when the library already has it.
+// Makes a library entry from the rotations that `bones` have in a pose. The entry gets the name `wanted`, with a number
+// appended if the library has this name already.
 NamedPose named_pose(const PoseLibrary& library, const std::string& wanted, const Armature& armature, const Pose& pose,
                      const std::vector<int>& bones);
 std::string unique_pose_name(const PoseLibrary& library, const std::string& wanted);

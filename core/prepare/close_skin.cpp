@@ -12,11 +12,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kFilledCavity = 0.7;  // g/cm3; a cavity at least this dense is filled with tissue or fluid
+constexpr double kFilledCavity = 0.7;  // density, g/cm3, from which a cavity is not air but tissue or fluid
 
 constexpr std::array<glm::ivec3, 6> kFaces{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-// Finds the connected components of tissue within one layer of voxels (8-connected: by edges and corners in the layer).
+// Finds the connected components of tissue within one layer of voxels. Voxels of the layer are connected if they share
+// an edge or a corner (8-connected).
 class LayerPieces {
  public:
   LayerPieces(const LabelVolume& volume, int axis, int layer)
@@ -74,8 +75,8 @@ class LayerPieces {
   std::vector<int> piece_;
 };
 
-// Distinguishes, for one of the volume's six faces, tissue that was cut there from tissue that only touches the face
-// (close_skin.h).
+// Decides, at one of the volume's six faces, which tissue was cut there and which tissue only touches the face. The
+// rule is in close_skin.h.
 class BorderSide {
  public:
   BorderSide(const LabelVolume& volume, int side, const LabelSet& bone)
@@ -151,7 +152,7 @@ class SkinCloser {
   }
 
  private:
-  // Returns the label with the most voxels among the labels that are skin in the table.
+  // Returns the skin label that has the most voxels. Skin labels are those whose kind is skin in the tissue table.
   Label main_skin(const TissueTable& tissues) const {
     std::vector<std::int64_t> counts(65536, 0);
     for (const Label label : volume_.voxels) counts[label] += skin_[label];
@@ -228,8 +229,8 @@ class SkinCloser {
     for (size_t i = 0; i < changed.size(); ++i) closed_.volume.at(changed[i]) = labels[i];
   }
 
-  // Returns for each changed voxel the label of the nearest skin voxel. Distance is the number of steps from voxel to
-  // voxel through faces, over tissue and changed voxels.
+  // Returns, for each changed voxel, the label of the nearest skin voxel. The distance is the number of steps through
+  // voxel faces, along a path of tissue voxels and changed voxels.
   std::vector<Label> nearest_skin(const std::vector<glm::ivec3>& changed) const {
     const LabelVolume& volume = closed_.volume;
     const auto index = [&](const glm::ivec3& v) { return volume.grid.index(v); };
@@ -261,7 +262,7 @@ class SkinCloser {
     return labels;
   }
 
-  // Returns the number of air voxels that were outside air and that the new skin has enclosed.
+  // Returns the number of voxels that were connected to the outside air before and are now enclosed by the new skin.
   std::int64_t newly_enclosed() const {
     const std::vector<std::uint8_t> outside = outside_air(closed_.volume);
     const int margin = closed_.is_padded ? 1 : 0;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives a body a closed skin, one voxel thick. In phantoms that were segmented slice by slice, skin surrounds the flesh
-// within every slice but is missing on its upper and lower faces, so shoulders and soles are bare. Skin is closed when
-// no flesh other than skin shares a voxel face with outside air. The share of the surface that is skin is counted in
-// the same way (report/metrics.h).
+// Gives a body a closed skin, one voxel thick. In volumes that were segmented slice by slice, skin surrounds the flesh
+// within every slice but is missing where the body's surface faces up or down, so shoulders and soles are bare. Skin is
+// closed if no flesh other than skin shares a voxel face with the air around the body. The metric for the share of the
+// surface that is skin (report/metrics.h) uses the same definition.
 //
-// Outside air is what outside_air() finds; air inside the body stays unchanged. Bone keeps its labels, and so do nails
-// and air-filled cavities (less dense than tissue), which may naturally touch the air.
+// outside_air() finds the air around the body; air inside the body stays unchanged. Bone, nails and air-filled cavities
+// (less dense than tissue) keep their labels. Nails and cavities may naturally touch the air.
 //
-// Tissue at a face of the volume was either cut there (a torso without its legs) or only touches the face, as a
-// shoulder in a volume that was cropped to the body. Tissue that was cut gets no skin at the cut; tissue that only
-// touches gets skin. A connected component of tissue in the outermost layer of voxels only touches when it contains no
-// bone and has at most kTouchShare times as many voxels as the tissue that continues it in the next layer. A flat sole
-// looks like a cut, so pad the volume first.
+// Tissue at a face of the volume was either cut there (a torso without its legs), or it only touches the face (a
+// shoulder in a volume that was cropped to the body). Tissue that was cut gets no skin at the cut. Tissue counts as
+// touching if its connected component in the outermost layer of voxels contains no bone, and has at most kTouchShare
+// times as many voxels as the tissue that continues it in the next layer. Flat soles look like a cut, so pad the volume
+// first.
 #pragma once
 
 #include <array>
@@ -32,20 +32,21 @@ constexpr double kTouchShare = 0.6;
 struct ClosedSkin {
   LabelVolume volume;
   std::int64_t changed_voxels = 0;
-  // Number of voxels that touched outside air, for each label 0 .. 65535. With SkinGrowth::Inward these voxels became
-  // skin; with Outward the air beside them did.
+  // For each label 0 .. 65535, the number of its voxels that touched the air around the body. With SkinGrowth::Inward
+  // these voxels became skin; with Outward the air voxels beside them became skin.
   std::vector<std::int64_t> covered;
-  std::int64_t bare_bone_voxels = 0;  // with Inward: bone voxels at outside air, which stay bone
-  // Number of voxels other than skin where the body was cut at a face of the volume: lowest x, highest x, lowest y ...
+  std::int64_t bare_bone_voxels = 0;  // number of bone voxels that touch the air around the body and stay bone (Inward)
+  // Number of voxels, skin excluded, at which each face of the volume cuts the body. The faces are in the order lowest
+  // x, highest x, lowest y ...
   std::array<std::int64_t, 6> cut{};
-  bool is_padded = false;            // with Outward: the volume was padded by one voxel on every side to hold the skin
-  std::int64_t enclosed_voxels = 0;  // with Outward: voxels of outside air that the new skin encloses
+  bool is_padded = false;  // true: the volume was padded by one voxel on every side to hold the skin (Outward)
+  std::int64_t enclosed_voxels = 0;  // number of voxels of surrounding air that the new skin encloses (Outward)
 };
 
-// Closes the skin. Each new skin voxel gets the label of the nearest skin voxel, counted in steps through tissue. When
-// no skin is connected to it, it gets the skin label with the most voxels.
-//   skin_label  label of all new skin, whatever its kind in the table
-//   throws Error when no label is given and the table names no skin, or several of which none is in the volume
+// Closes the skin. If several labels are skin, each new skin voxel gets the label of the nearest skin voxel, counted in
+// steps through tissue. If no such path leads to skin, the voxel gets the skin label with the most voxels. Throws Error
+// if `skin_label` is empty and the table has no skin, or has several kinds of skin none of which is in the volume.
+//   skin_label  label of all new skin; need not be skin in the table
 ClosedSkin close_skin(const LabelVolume& volume, const TissueTable& tissues, SkinGrowth growth,
                       std::optional<Label> skin_label = {});
 

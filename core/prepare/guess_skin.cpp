@@ -11,11 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kCovered = 0.99;  // smallest share of the surface voxels that have the skin's label
-constexpr double kThin =
-    0.4;  // smallest share of the skin's voxels that lie at the surface: a sheet of at most two or three voxels
+constexpr double kCovered = 0.99;  // lower limit of the share of the body's surface voxels that have the skin's label
+constexpr double kThin = 0.4;      // lower limit of the share of skin voxels at the surface: a sheet of 2 to 3 voxels
 
-// Returns for each label how many of its voxels share a face with the air around the body.
+// Counts, for each label, the voxels that share a face with the air around the body.
 std::map<Label, std::int64_t> at_surface(const LabelVolume& volume) {
   constexpr std::array<glm::ivec3, 6> kFaces{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
   const std::vector<std::uint8_t> is_air = outside_air(volume);

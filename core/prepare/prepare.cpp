@@ -20,7 +20,7 @@ constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
 // A permutation and flip of the voxel axes. The new voxel v gets the label of the old voxel `old`, where old[axis] is
 // v[from[axis]], or size - 1 - v[from[axis]] for a flipped axis.
 struct AxisMap {
-  std::array<int, 3> from;  // the new axis of each old axis
+  std::array<int, 3> from;  // for each old axis, the new axis that it becomes
   std::array<bool, 3> flipped;
 };
 
@@ -40,7 +40,8 @@ LabelVolume permuted(const LabelVolume& volume, const Grid& grid, const AxisMap&
   return result;
 }
 
-// Returns the box of `size` voxels whose lowest voxel is `low`. Where the box extends beyond the volume, it is air.
+// Returns the part of the volume in a box of `size` voxels, whose lowest voxel is `low`. Voxels of the box outside the
+// volume are air.
 LabelVolume boxed(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& size) {
   LabelVolume result{volume.grid, {}};
   result.grid.size = size;
@@ -57,8 +58,9 @@ LabelVolume boxed(const LabelVolume& volume, const glm::ivec3& low, const glm::i
   return result;
 }
 
-// Returns for each of three orthogonal unit vectors `wanted` the voxel axis most nearly parallel to it. Each axis is
-// used once: of the six assignments it returns the one with the largest sum of |cosine|.
+// Assigns to each of the three orthogonal unit vectors `wanted` the index of the voxel axis that is most nearly
+// parallel to it. Each axis is used once: of the six possible assignments, the one with the largest sum of |cosine| is
+// returned.
 std::array<int, 3> nearest_axes(const glm::dmat3& direction, const std::array<glm::dvec3, 3>& wanted) {
   std::array<int, 3> axes{0, 1, 2}, best = axes;
   double most = -1;
@@ -108,7 +110,7 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
     throw Error("this is no orientation", code, "name three axes by L or R, P or A, S or I, for example LPS or RAS");
 
   const Grid& grid = volume.grid;
-  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);  // the old axis of each new axis
+  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);  // for each new axis, the old axis it was
   Grid turned = grid;
   AxisMap map{};
   glm::dvec3 first(0);  // the old voxel that becomes voxel (0, 0, 0)
@@ -177,10 +179,10 @@ LabelVolume drop_specks(const LabelVolume& volume, std::int64_t voxels) {
   const glm::ivec3 size = volume.grid.size;
   const auto is_speck = [&](const Components::Run& run) { return components.voxels[run.component] < voxels; };
 
-  // The new label of a speck is chosen from `volume` and not from `result`, so that the order of specks does not
-  // matter.
+  // Neighbouring labels are read from `volume`, which does not change, so that the result does not depend on the order
+  // in which specks are removed.
   LabelVolume result = volume;
-  // First voxel and length of each run of each component that is a speck; empty for other components.
+  // The voxels of each component that is a speck, as runs along x: first voxel and length. Empty for larger components.
   std::vector<std::vector<std::pair<glm::ivec3, int>>> runs_of(components.voxels.size());
   for (std::int64_t row = 0; row + 1 < std::ssize(components.first_run); ++row)
     for (std::int64_t i = components.first_run[row]; i < components.first_run[row + 1]; ++i) {
@@ -220,7 +222,7 @@ std::vector<LabelStatistics> label_statistics(const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   struct Sums {
     std::int64_t voxels = 0, components = 0;
-    glm::dvec3 position{0};  // sum over voxels, in voxels; exact, because it adds whole and half numbers
+    glm::dvec3 position{0};  // sum of voxel coordinates, in voxels; exact, since all addends are whole or half numbers
     glm::ivec3 low{INT32_MAX}, high{-1};
   };
   std::vector<Sums> sums(65536);
@@ -282,7 +284,7 @@ std::string to_csv(const std::vector<LabelStatistics>& statistics, const TissueT
   for (const LabelStatistics& s : statistics) {
     const Tissue* tissue = tissues.find(s.label);
     std::string name = tissue ? tissue->name : "";
-    // A quote inside a quoted field is written twice [RFC 4180].
+    // Doubles each quotation mark in the name, which CSV requires inside quoted fields [RFC 4180].
     for (std::size_t i = 0; i < name.size(); ++i)
       if (name[i] == '"') name.insert(i++, 1, '"');
     csv << (tissue ? tissue->file_value : s.label) << ",\"" << name << "\"," << s.voxels << ',' << s.volume_mm3 << ','

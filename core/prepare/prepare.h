@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Prepares a volume: reorients, mirrors, merges labels, changes the spacing, removes specks, crops, pads and computes
-// statistics. Only regrid() resamples.
+// statistics. Only regrid(), which changes the spacing, resamples; all other functions keep voxels as they are.
 #pragma once
 
 #include <string>
@@ -12,40 +12,42 @@
 
 namespace limber {
 
-// Returns the volume at another spacing (mm). The new grid has the axes and lowest corner of the old one and covers all
-// of it. There are two steps, and neither depends on what a label means.
-//   vote   Each new voxel gets the label with the largest share of its box, by exact overlap with the old voxels. Of
-//          labels with equal shares, the one with the larger share in the box extended by an old voxel on every side
+// Returns the volume at another spacing (mm). The new grid has the axes and the lowest corner of the old grid and
+// covers all of it. A voxel's box is the space that it fills. There are two steps, and neither depends on what a label
+// means.
+//   vote   Each new voxel gets the label with the largest share of its box, by exact overlap with the old voxels. If
+//          labels have equal shares, the one with the larger share in the box extended by an old voxel on every side
 //          wins, then the smaller label.
-//   close  A layer thinner than a new voxel would lose every vote, and the tissues that it separates would touch. So
-//          the layer is restored between two new voxels that share a face, if their labels touch nowhere in the old
-//          volume within the boxes of these two voxels. Then the tissue between them replaces one of the two voxels:
-//          the one in which it has the larger share. Between tissue and air it replaces the tissue voxel, unless more
-//          than half of the air voxel's box is tissue, so that the body keeps its volume. Between tissue and air this
-//          also applies to voxels that share only an edge or a corner: a skin of 1 mm is a closed skin at 4 mm.
+//   close  A layer thinner than a new voxel would lose every vote, and the tissues that it separates would touch. This
+//          step restores such layers. If the labels of two new voxels that share a face touch nowhere in the old volume
+//          within the boxes of these voxels, the tissue between them replaces one of the two: the voxel in which it
+//          has the larger share. Between tissue and air, the tissue voxel is replaced, or the air voxel if more than
+//          half of its box is tissue, so that the body keeps its volume. Between tissue and air this also applies to
+//          voxels that share only an edge or a corner, so that a skin of 1 mm is a closed skin at 4 mm.
 // Throws Error for a spacing that is not positive or gives too many voxels.
 LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progress& progress = no_progress());
 
-// Returns the volume on the same grid, mirrored about the middle of the grid along a world axis (0, 1, 2 = x, y, z). On
-// an oblique grid the nearest voxel axis is used.
+// Mirrors the volume along a world axis (0, 1, 2 = x, y, z) about the middle of its grid. The grid stays the same. On
+// an oblique grid, the voxel axis nearest to the world axis is used.
 LabelVolume flip(const LabelVolume& volume, int axis);
 
-// Permutes and flips the voxel axes so that they point as nearly as possible in the directions of `code`: three
-// letters, one each of L or R, P or A, S or I ("LPS", "RAS" ...). No voxel is resampled or moves in the world. Throws
-// Error for a code that does not name three axes.
+// Permutes and flips the voxel axes so that they point as nearly as possible in the directions of `code`. A code has
+// three letters, one each of L or R, P or A, S or I ("LPS", "RAS" ...). Voxels keep their labels and their positions in
+// the world. Throws Error for a code that does not name three axes.
 LabelVolume reorient(const LabelVolume& volume, const std::string& code);
 
 // Crops to the bounding box of the tissue. Throws Error when there is no tissue.
 LabelVolume crop_to_tissue(const LabelVolume& volume);
-// Returns the voxels from `low` to `high`, both included. Throws Error when that box contains no voxel of the volume.
+// Crops to the box from voxel `low` to voxel `high`, both included. Throws Error if the box contains no voxel of the
+// volume.
 LabelVolume crop(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high);
 // Adds `voxels` voxels of air on every side. Throws Error when the result would have too many voxels.
 LabelVolume pad(const LabelVolume& volume, int voxels);
 LabelVolume merge_labels(const LabelVolume& volume, Label from, Label into);
 
-// Removes specks: connected components of one label (26-connected) with fewer than `voxels` voxels. A speck gets the
-// most frequent label, air included, among the voxels around it that are not in specks. A speck surrounded only by
-// specks becomes air.
+// Removes specks: connected components of one label (26-connected) with fewer than `voxels` voxels. The voxels of a
+// speck get the most frequent label, air included, of the neighbouring voxels that are not in specks. A speck that is
+// surrounded only by specks becomes air.
 LabelVolume drop_specks(const LabelVolume& volume, std::int64_t voxels);
 
 struct LabelStatistics {
@@ -55,7 +57,7 @@ struct LabelStatistics {
   glm::dvec3 centre{0};              // mean position of the label's voxels, world, mm
   glm::ivec3 lowest{0}, highest{0};  // bounding box, voxel indices, both included
   int components = 0;                // number of connected components (26-connected)
-  std::int64_t surface_voxels = 0;   // voxels that share a face with another label or the grid's outside
+  std::int64_t surface_voxels = 0;   // number of voxels that share a face with another label or the grid's outside
 };
 // Returns the statistics of every tissue label in the volume, sorted by label.
 std::vector<LabelStatistics> label_statistics(const LabelVolume& volume);

@@ -13,12 +13,12 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
-constexpr double kLargestSpacing = 1e6;  // upper limit on the spacing, mm; the same as for volumes that are read
-// Shares that differ by less than this fraction of a voxel's volume count as equal, because they are sums of rounded
+constexpr double kLargestSpacing = 1e6;  // upper limit of the spacing, mm; volumes that are read have the same limit
+// Labels whose shares of a voxel's volume differ by less than this have equal shares: the shares are sums of rounded
 // products.
 constexpr double kTie = 1e-9;
-// Upper limit on the rounds of insertions. An insertion may cause others: a voxel that becomes skin may touch labels
-// that it must not touch. In practice two rounds suffice.
+// Upper limit of the rounds in which lost layers are restored. A round may cause another one: a voxel that becomes skin
+// may touch labels that skin did not touch before. In practice two rounds suffice.
 constexpr int kMostRounds = 8;
 
 struct Share {
@@ -42,17 +42,18 @@ double share_of(const Shares& shares, Label label) {
   return 0;
 }
 
-// The interval of a box along one axis, in units of old voxels: old voxel i is the interval [i, i + 1]. cover(i)
-// returns the length of old voxel i that lies in the interval.
+// The interval that a new voxel covers along one axis, in units of old voxels: old voxel i is the interval [i, i + 1].
+// cover(i) returns the length of the overlap with old voxel i.
 struct Span {
   double low, high;
-  int first, end;  // the old voxels first .. end - 1 of the volume overlap the interval
+  int first, end;  // old voxels that overlap the interval: first .. end - 1
   int reach;       // `end`, or end + 1 when the interval extends beyond the volume into air
   double cover(int i) const { return std::min(high, i + 1.0) - std::max(low, static_cast<double>(i)); }
 };
 
 Span span(double low, double high, int size) {
-  // An interval that ends at the border of two old voxels does not overlap the second one, despite rounding errors.
+  // Allows for rounding errors: an interval that ends at the border of two old voxels must not overlap the second
+  // voxel.
   const double first = std::clamp(std::floor(low + kTie), 0.0, double(size)), end = std::ceil(high - kTie);
   const int inside = static_cast<int>(std::clamp(end, 0.0, double(size)));
   return {low, high, static_cast<int>(first), inside, end > inside ? inside + 1 : inside};
@@ -73,8 +74,8 @@ class Regrid {
 
   LabelVolume run(Progress& progress) {
     vote(progress);
-    // Restores layers between tissue and air first, because skin must be closed, and locks the voxels that become skin.
-    // Then restores layers inside the body, which must not open the skin again.
+    // Restores lost layers between tissue and air first, because skin must be closed. The voxels that become skin are
+    // locked, so that the layers inside the body, which are restored next, do not open the skin again.
     if (!every_voxel_lies_in_an_old_one()) {
       locked_.assign(to_.voxels.size(), false);
       std::vector<std::int64_t> ignored, changed;
@@ -127,7 +128,8 @@ class Regrid {
     if (outside > kTie) add_share(shares, 0, outside);
   }
 
-  // Returns the label of a box when all its old voxels have the same label, as nearly everywhere; else nothing.
+  // Returns the label of a box if all its old voxels have the same label, else nothing. This case is fast and the most
+  // frequent one.
   std::optional<Label> only_label(const Span& x, const Span& y, const Span& z) const {
     if (x.reach > x.end || y.reach > y.end || z.reach > z.end || x.first == x.end || y.first == y.end ||
         z.first == z.end)
@@ -146,7 +148,7 @@ class Regrid {
     gather(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z], shares);
   }
 
-  // Returns the label with the largest share; nothing when another label has an equal share.
+  // Returns the label with the largest share. Returns nothing if two labels share the first place.
   static std::optional<Label> largest(const Shares& shares, double volume) {
     const auto most = std::max_element(shares.begin(), shares.end(),
                                        [](const Share& a, const Share& b) { return a.volume < b.volume; });
@@ -201,8 +203,8 @@ class Regrid {
     }
   }
 
-  // Returns whether an old voxel of label a touches one of label b within the boxes of the new voxels p and q: by a
-  // face, or with `corners` also by an edge or corner.
+  // Returns true if the labels a and b touch in the old volume, within the boxes of the new voxels p and q. Old voxels
+  // touch if they share a face; if `corners` is true, an edge or a corner is enough.
   bool met(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b, bool corners) const {
     glm::ivec3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
@@ -223,8 +225,8 @@ class Regrid {
     return false;
   }
 
-  // Returns the label of the lost layer between the new voxels p (label a) and q (label b), and which of the two voxels
-  // gets it. Returns nothing when no other tissue lies in their boxes, or when both voxels are locked.
+  // Finds the lost layer between the new voxels p (label a) and q (label b). Returns its label, and which of the two
+  // voxels gets the label. Returns nothing if their boxes contain no other tissue, or if the voxels are locked.
   std::optional<Insertion> insertion(const glm::ivec3& p, const glm::ivec3& q, Label a, Label b) const {
     Shares of_p, of_q, together;
     gather(p, of_p);
@@ -239,7 +241,7 @@ class Regrid {
     const double in_p = share_of(of_p, between.label), in_q = share_of(of_q, between.label);
     const std::int64_t i = to_.grid.index(p), k = to_.grid.index(q);
     bool p_gives_way = in_p > in_q || (in_p == in_q && i < k);
-    // An air voxel is replaced only where most of its box is tissue, so that the body keeps its volume.
+    // An air voxel becomes tissue only if most of its box is tissue, so that the body keeps its volume.
     if (a == 0) p_gives_way = share_of(of_p, 0) < 0.5 * volume_;
     if (b == 0) p_gives_way = share_of(of_q, 0) >= 0.5 * volume_;
     const bool take_p = !locked_[i] && (locked_[k] || p_gives_way);
@@ -247,7 +249,7 @@ class Regrid {
     return Insertion{take_p ? i : k, between.label, take_p ? in_p : in_q};
   }
 
-  // Appends the insertion that restores a lost layer between the new voxels p and p + step, if there is one.
+  // If a layer between the new voxels p and p + step was lost, appends the change that restores it to `insertions`.
   void add_insertion(const glm::ivec3& p, const glm::ivec3& step, Closing closing,
                      std::vector<Insertion>& insertions) const {
     const glm::ivec3 q = p + step;
@@ -301,11 +303,11 @@ class Regrid {
     return all;
   }
 
-  // Carries out the insertions, then those that become necessary around them, round by round. Appends the changed
-  // voxels to `changed`.
+  // Writes the given changes of voxels to the new volume. Repeats this with the changes that thereby become necessary
+  // around these voxels. Appends the indices of all changed voxels to `changed`.
   void close_all(std::vector<Insertion> insertions, Closing closing, std::vector<std::int64_t>& changed) {
     for (int round = 0; round < kMostRounds && !insertions.empty(); ++round) {
-      // Of several insertions for one voxel, the one with the largest share wins, then the one with the smaller label.
+      // If a voxel would get several labels, the label with the largest share wins, then the smaller label.
       std::sort(insertions.begin(), insertions.end(), [](const Insertion& a, const Insertion& b) {
         if (a.voxel != b.voxel) return a.voxel < b.voxel;
         return a.share != b.share ? a.share > b.share : a.label < b.label;

@@ -25,8 +25,8 @@ class Names {
     const auto found = before_.find(now);
     return found != before_.end() && found->second != now;
   }
-  // Returns the present name of the bone that was called `name`. Returns nothing for a removed bone whose name another
-  // bone has taken.
+  // Returns the name that the bone with the earlier name `name` has after the edit. Returns nothing when that bone was
+  // removed and another bone has taken its name.
   std::optional<std::string> now(const std::string& name) const {
     if (const auto found = now_.find(name); found != now_.end()) return found->second;
     return before_.contains(name) ? std::nullopt : std::optional(name);
@@ -58,8 +58,8 @@ RetargetMap matched(const Clip& clip, const Armature& armature) {
   }
 }
 
-// Prepares the clip's retargeting without root travel. Preparing root travel is slow, and it does not change the rest
-// offsets.
+// Prepares the clip's retargeting without the motion of the root bone. Preparing that motion is slow, and
+// follow_motion() needs only the rest offsets and the scale.
 Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap& map) {
   RetargetSettings settings = clip.retarget;
   settings.travel = Travel::Locked;
@@ -125,7 +125,7 @@ void follow_names(Document& document, const Armature& before, const Armature& af
 
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {
   const MirrorPlane plane = mirror_plane(before);
-  std::map<std::string, std::string> gone_over;  // mirrored bones whose data move with them: old name -> new name
+  std::map<std::string, std::string> gone_over;  // mirrored bones without a swapped counterpart: old name -> new name
   for (const int bone : bones) {
     const std::string& name = before.bones[bone].name;
     if (!mirrored_name(name) || (after.bones[bone].name != name && before.find(after.bones[bone].name))) continue;

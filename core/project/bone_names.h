@@ -15,9 +15,9 @@ namespace limber {
 //   before, after  the rig before and after the edit, with the same bones in the same order
 void follow_names(Document& document, const Armature& before, const Armature& after);
 
-// Updates the document after mirrored_bones() mirrored `bones`; both armatures list the bones in the same order. A bone
-// of the left or right side that did not swap names with its counterpart takes its pose, keys, library poses and pole
-// targets along, mirrored. Its pins and weight locks follow too. All its data are stored under its present name.
+// Updates the document after mirrored_bones() mirrored `bones`; both armatures list the bones in the same order. When a
+// bone of the left or right side did not swap names with its counterpart, its data move to its new name. Its pose,
+// keys, library poses and pole targets are mirrored as well.
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones);
 
 }  // namespace limber

@@ -25,8 +25,8 @@ constexpr std::int64_t kHashType = 12 + 2 * 32;  // SQLite's serial type of a bl
 constexpr std::uint32_t kMostPayload = (16u << 20) + (1u << 20);
 constexpr std::int64_t kBatch = 32;     // number of chunks that are unpacked in parallel
 constexpr std::size_t kLeastCell = 38;  // size of the smallest row of the chunk table, bytes
-// Upper limit on the bytes read, as a multiple of the file's size. The rows of an intact file share no page, so only a
-// hostile file exceeds it.
+// Upper limit on the bytes that a scan reads, as a multiple of the file's size. In an intact file no two rows share an
+// overflow page, so only a hostile file exceeds the limit.
 constexpr std::int64_t kMostReading = 4;
 constexpr std::array<std::string_view, 5> kStates = {"root", "mark", "editor", "thumbnail", "program"};
 
@@ -50,7 +50,7 @@ std::optional<std::int64_t> varint(std::string_view bytes, std::size_t& at) {
   return static_cast<std::int64_t>(value);
 }
 
-// Returns how many bytes of a row's payload are stored in the row's own page; the others are in overflow pages.
+// Returns how many bytes of a row's payload SQLite stores in the row's own page. The other bytes are in overflow pages.
 std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index) {
   const std::int64_t most = index ? (usable - 12) * 64 / 255 - 23 : usable - 35, least = (usable - 12) * 32 / 255 - 23;
   if (payload <= most) return payload;
@@ -58,7 +58,7 @@ std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index
   return static_cast<std::uint32_t>(fitting <= most ? fitting : least);
 }
 
-// The SQLite types of the two columns of a record.
+// The SQLite types of the columns of a record that has two columns.
 struct TwoColumns {
   std::int64_t first_type, second_type;
   std::size_t header;  // size of the record's header, bytes
@@ -190,8 +190,8 @@ std::optional<std::string> CarvedChunks::packed(const Cell& cell) const {
   return record->substr(columns->header + sizeof(ChunkHash));
 }
 
-// Drops rows whose chunk does not have the hash that the row gives. Several rows may give the same hash, since free
-// pages keep old rows: then one row with an undamaged chunk is kept.
+// Drops every row whose chunk does not have the hash that the row gives. Several rows may give the same hash, since
+// free pages keep old rows. In this case one row with an undamaged chunk is kept.
 void CarvedChunks::keep_whole(Progress& progress) {
   std::vector<std::pair<ChunkHash, std::vector<Cell>>> all(cells_.begin(), cells_.end());
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {

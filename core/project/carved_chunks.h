@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds the chunks of a damaged project file without the structure of its database. The scan reads every page on its
-// own, follows whatever looks like a row of the chunk table through its overflow pages, and accepts only bytes whose
-// hash is the chunk's name. So a lost page costs only the chunks that it held. The file is only read.
+// own. It follows whatever looks like a row of the chunk table through the row's overflow pages, and accepts only bytes
+// whose SHA-256 is the hash in that row. So a lost page costs only the chunks that it held. The file is only read.
 //
 // The file format is SQLite's: "Database File Format", sections 1.5 and 1.6 (sqlite.org/fileformat2.html).
 #pragma once
@@ -29,7 +29,8 @@ class CarvedChunks final : public ChunkSource {
   CarvedChunks(const CarvedChunks&) = delete;
   CarvedChunks& operator=(const CarvedChunks&) = delete;
 
-  // Returns the packed chunk from this file or from an added source, or nothing where it is damaged in all of them.
+  // Returns the compressed chunk from this file or from an added source, or nothing where the chunk is damaged in all
+  // of them.
   std::optional<std::string> find(const ChunkHash& hash) override;
   // Adds a source for the chunks that are lost in this file: an earlier copy, or the files that the project was made
   // from.
@@ -42,7 +43,7 @@ class CarvedChunks final : public ChunkSource {
  private:
   struct Cell {                    // a row of the chunk table
     std::int64_t rowid, offset;    // offset of the payload in the file, bytes
-    std::uint32_t payload, local;  // payload: its whole size, bytes; local: its bytes on the row's own page
+    std::uint32_t payload, local;  // bytes of the whole payload; bytes of the payload on the row's own page
   };
   void scan(Progress& progress);
   void scan_table_page(const std::string& page, std::int64_t number);

@@ -15,13 +15,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRoots = 64;       // number of root nodes that are tried, latest first
+constexpr int kMostRoots = 64;       // number of root nodes (one for each save) that are tried, latest first
 constexpr int kMostCandidates = 16;  // number of nodes that are tried for one part of the document
 constexpr std::size_t kLargestNode = std::size_t{4} << 20;  // upper limit on a node's packed size, bytes
 
 bool is_empty(const Document& document) { return document == Document{}; }
 
-// Reads the document below `root`. Returns nothing where the document cannot be read or is empty.
+// Reads the document whose root node is `root`. Returns nothing where the document cannot be read or is empty.
 std::optional<Document> try_root(const ChunkHash& root, ChunkSource& source, const std::string& where,
                                  std::vector<std::string>& warnings, Progress& progress) {
   try {
@@ -84,7 +84,7 @@ struct Root {
   }
 };
 
-// A source of the carved chunks and of one root node that was assembled here.
+// A chunk source that offers the carved chunks and one assembled root node.
 class WithRoot final : public ChunkSource {
  public:
   WithRoot(ChunkSource& chunks, const Root& root)
@@ -146,8 +146,8 @@ class Assembly {
   }
 
  private:
-  // Collects the nodes of each kind, latest first. The volumes of results and the weights of weight layers go last, so
-  // that the document's own volume and weights are tried before them.
+  // Collects the nodes of each kind of document part, latest first. The posed volumes of results and the weights of
+  // weight layers go last, so that the document's own volume and weights are tried before them.
   void find_nodes() {
     std::vector<std::pair<PartKind, ChunkHash>> owned;
     for (const ChunkHash& hash : chunks_.latest_first()) {
@@ -186,8 +186,8 @@ class Assembly {
     }
   }
 
-  // Returns a root node with the parts that the reader needs to check a part of this kind: weights need the volume, for
-  // example.
+  // Returns a root node with the other parts that the reader needs to check a part of this kind. For example, weights
+  // can be checked only with their volume.
   Root needed_by(PartKind kind) const {
     Root root;
     const auto take = [&](PartKind part) {

@@ -9,9 +9,10 @@
 
 namespace limber {
 
-// Returns the project as last saved, as far as its chunks are undamaged. When the root node of the last save is lost,
-// takes the latest save whose root node survives. When no root node survives, assembles a document from the part of
-// each kind that was written last; this document may be empty. The project's warnings say what is missing.
+// Returns the project as last saved, as far as its chunks are undamaged. Each save has a root node, the chunk that
+// names all parts of the document. When the last save's root node is lost, the latest save whose root node is intact is
+// read. When all root nodes are lost, the latest readable part of each kind forms the document, which may be empty. The
+// project's warnings say what is missing.
 //   where  the file's name in messages
 Project put_together(CarvedChunks& chunks, const std::string& where, Progress& progress = no_progress());
 

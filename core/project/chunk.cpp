@@ -32,7 +32,7 @@ std::size_t ChunkHash::Hasher::operator()(const ChunkHash& hash) const {
 ChunkHash hash_of(std::string_view chunk) { return {sha256(chunk.data(), chunk.size())}; }
 
 std::string pack(std::string_view chunk, Packing packing) {
-  // Each thread keeps one compression context, since creating one allocates a megabyte.
+  // Each thread keeps its own zstd compression context, since creating a context allocates a megabyte.
   thread_local const std::unique_ptr<ZSTD_CCtx, FreeContext> context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
   std::string packed(ZSTD_compressBound(chunk.size()), '\0');

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects and journals consist of chunks: byte strings that are named by their SHA-256 and stored packed (zstd).
-// Unchanged bytes keep their name and are not written again. Bytes whose SHA-256 is not their name are damaged.
+// Projects and journals consist of chunks: byte strings that are named by their SHA-256 and stored compressed (zstd). A
+// chunk that is already stored is not written again. If the bytes of a stored chunk do not have the SHA-256 that is its
+// name, they are damaged.
 //
 // A chunk is a leaf (plain bytes) or a node, which names other chunks and carries bytes of its own. A node is written
 // only after all chunks that it names, so where a node is stored, everything below it is stored too.
@@ -42,10 +43,10 @@ class ChunkSink {
 class ChunkSource {
  public:
   virtual ~ChunkSource() = default;
-  virtual std::optional<std::string> find(const ChunkHash& hash) = 0;  // returns the packed chunk, or nothing
+  virtual std::optional<std::string> find(const ChunkHash& hash) = 0;  // returns the compressed chunk, or nothing
 };
 
-// Quick is the faster compression, for journals. Dense gives smaller chunks and is still faster than most disks.
+// Quick: the faster compression, for journals. Dense: smaller chunks; this compression is still faster than most disks.
 enum class Packing { Quick, Dense };
 std::string pack(std::string_view chunk, Packing packing);
 // Returns the unpacked chunk. Returns nothing when the bytes are damaged, do not have this hash, or would unpack to
@@ -59,7 +60,8 @@ struct Node {
 std::string to_chunk(const Node& node);
 std::optional<Node> to_node(std::string_view chunk);  // nothing when the chunk is not a node
 
-// Adds `root` and every chunk below it to `reached`. Returns false when a node below `root` is missing or damaged.
+// Adds the chunk `root`, and every chunk that it names directly or indirectly, to `reached`. Returns false when one of
+// the nodes among them is missing or damaged.
 bool reach(const ChunkHash& root, ChunkSource& source, ChunkSet& reached);
 
 }  // namespace limber

@@ -18,7 +18,7 @@ constexpr int kBusyMilliseconds = 2000;
 // Upper limit on the size of a value, bytes. SQLite then allocates no more, even if a damaged file asks for it.
 constexpr int kLargestValue = 32 << 20;
 
-// Limits set for SQLite: the most that a project and Limber's own statements need, with a margin.
+// Limits set for SQLite. Each limit is what a project and Limber's own SQL statements need at most, plus a margin.
 constexpr std::array<std::pair<int, int>, 10> kLimits = {{{SQLITE_LIMIT_LENGTH, kLargestValue},
                                                           {SQLITE_LIMIT_SQL_LENGTH, 1 << 16},
                                                           {SQLITE_LIMIT_COLUMN, 16},
@@ -39,8 +39,8 @@ constexpr std::array<std::pair<int, int>, 9> kSwitches = {{{SQLITE_DBCONFIG_DEFE
                                                            {SQLITE_DBCONFIG_DQS_DDL, 0},
                                                            {SQLITE_DBCONFIG_DQS_DML, 0}}};
 
-// Reads the first bytes through SQLite's own file handle: opening and closing a second descriptor would drop the locks
-// of this process (see Database::first_bytes).
+// Reads the file's first bytes through SQLite's own file handle. If this process opened and closed the file a second
+// time, the system would drop the process's locks on it.
 std::string first_bytes_of(sqlite3* handle, int size) {
   sqlite3_file* file = nullptr;
   sqlite3_int64 there = 0;
@@ -51,13 +51,13 @@ std::string first_bytes_of(sqlite3* handle, int size) {
   return code == SQLITE_OK ? bytes : "";
 }
 
-// Returns whether another program has switched the database to write-ahead logging, which Limber never does.
+// Returns true if another program has switched the database to write-ahead logging, which Limber never does.
 bool uses_wal(sqlite3* handle) {
   const std::string header = first_bytes_of(handle, 20);
   return header.size() == 20 && (header[18] == 2 || header[19] == 2);
 }
 
-// Returns whether the file begins like a journal or a write-ahead log of SQLite. A journal whose transaction has ended
+// Returns true if the file begins like a journal or a write-ahead log of SQLite. A journal whose transaction has ended
 // is empty or begins with zeros.
 bool begins_as_journal(const Path& path) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06";
@@ -107,7 +107,7 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
       throw Error("this is not a file", where_, "name a .limber file");
   }
   // Opens the file for writing even for a reader, since the reader may have to roll back an interrupted transaction.
-  // SQLite opens it for reading where writing is not allowed.
+  // Where writing is not allowed, SQLite opens the file for reading.
   const int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX | (mode == Mode::Create ? SQLITE_OPEN_CREATE : 0);
   const int opened = sqlite3_open_v2(vfs_.database().c_str(), &handle_, flags, vfs_.name().c_str());
   try {
@@ -117,7 +117,8 @@ Database::Database(const Path& path, Mode mode) : where_(path.string()), vfs_(pa
     sqlite3_busy_timeout(handle_, kBusyMilliseconds);
     distrust();
     run("PRAGMA cell_size_check = ON; PRAGMA temp_store = MEMORY; PRAGMA mmap_size = 0");
-    // Without shared memory, only one connection at a time can use a write-ahead log.
+    // A write-ahead log is normally shared by connections through shared memory, which is off here. So the one
+    // connection needs exclusive access.
     if (uses_wal(handle_)) run("PRAGMA locking_mode = EXCLUSIVE");
   } catch (...) {
     sqlite3_close(handle_);
@@ -159,7 +160,7 @@ void Database::clear_journal(const Path& path) {
     int code = sqlite3_prepare_v2(database.handle_, "PRAGMA schema_version", -1, &statement, nullptr);
     if (code == SQLITE_OK) sqlite3_step(statement);
     code = sqlite3_finalize(statement);
-    // A broken database is no failure here, since a new file replaces it.
+    // A broken database does not stop the call, since the caller replaces the file by a new one.
     const bool is_broken = (code & 0xff) == SQLITE_NOTADB || (code & 0xff) == SQLITE_CORRUPT;
     if (code != SQLITE_OK && !is_broken) database.fail(code);
   }

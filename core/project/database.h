@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Wraps the few SQLite calls that a project needs. Every failure is an Error that says what the user can do: the disk
-// is full, the file cannot be written, another program is writing it, it is not a database, or it is damaged.
+// Wraps the few SQLite calls that a project needs. Every failure is an Error with a cause that the user can act on: the
+// disk is full, the file cannot be written, another program is writing the file, it is not a database, or it is
+// damaged.
 //
 // A database is treated as hostile: SQLite sees only the database and its journal (core/project/named_file_vfs.h), and
 // triggers, views, attached databases and extensions are off.
@@ -21,7 +22,7 @@ struct sqlite3_stmt;
 
 namespace limber {
 
-// Error thrown while another program uses the file: trying again helps, recovering does not.
+// Error thrown while another program uses the file. The user can try again later; the file is not damaged.
 class ProjectInUse : public Error {
  public:
   using Error::Error;
@@ -37,14 +38,14 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  // Returns up to `size` first bytes of the file, or "" where it cannot be read. Reads through SQLite: if we opened and
-  // closed a file descriptor of our own, the system would drop the locks of this process on the file, and a save that
-  // runs would lose its lock.
+  // Returns up to `size` first bytes of the file, or "" where it cannot be read. Reads through SQLite: if this process
+  // opened and closed the file itself, the system would drop all locks of the process on the file, and a running save
+  // would lose its lock.
   static std::string first_bytes(const Path& path, int size);
 
-  // Rolls back what an interrupted save left unfinished in the database at `path`, and removes its journal, so that a
-  // new file can take the name. Throws Error when the database is in use, or when the file with the journal's name is
-  // not a journal of SQLite.
+  // Rolls back what an interrupted save left unfinished in the database at `path`, and removes the database's journal,
+  // so that a new file can take the name. Throws Error when the database is in use, or when the file with the journal's
+  // name is not a journal of SQLite.
   static void clear_journal(const Path& path);
 
   void run(const char* sql);

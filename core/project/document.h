@@ -38,8 +38,8 @@ struct TissueLook {
   bool operator==(const TissueLook&) const = default;
 };
 
-// The box of the volume that is shown, in voxel coordinates of the volume's grid (voxel faces lie at whole numbers -
-// 0.5).
+// The box outside which the volume is hidden, in voxel coordinates of the volume's grid. Voxel centres have integer
+// coordinates, voxel faces lie half a voxel beside them.
 struct ClipBox {
   bool enabled = false;
   glm::dvec3 low{0}, high{0};
@@ -64,17 +64,17 @@ struct Visibility {
   bool operator==(const Visibility&) const = default;
 };
 
-// Voxels of a resampled volume onto which the pose moves two different places of the body, as ascending indices.
+// Voxels of a resampled volume that the pose fills twice, as ascending voxel indices.
 struct Overlap {
-  std::vector<std::int64_t> tissue, bones;  // taken twice by tissue not adjacent at rest; taken by two bones
+  std::vector<std::int64_t> tissue, bones;  // filled by two tissue regions not adjacent at rest; filled by two bones
 
   bool operator==(const Overlap&) const = default;
 };
 
-// A posed volume made by resampling. It keeps the parts that it was made from: when they are no longer the document's
-// parts, the result is stale.
+// A posed volume made by resampling. It keeps pointers to the document parts that it was made from. When the document
+// has other parts by now, the result is stale.
 struct Result {
-  std::string name;    // unique among the results
+  std::string name;    // unique among the document's results
   std::string method;  // "lbs", "dqs", "fem", "fem-contact"
   std::shared_ptr<const LabelVolume> volume;
   std::string report;  // limber-report/1, JSON
@@ -83,32 +83,32 @@ struct Result {
   std::shared_ptr<const Armature> from_armature;
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
-  std::shared_ptr<const SolvedMesh> solved;      // the mesh solved by finite elements; null where no joint bends
+  std::shared_ptr<const SolvedMesh> solved;      // the posed mesh of the FEM solver; null where no joint bends
   std::shared_ptr<const Overlap> overlap;        // null where the overlap was not kept
-  std::shared_ptr<const Seams> from_seams;       // the seams used (Document::seams)
-  std::shared_ptr<const BoneMap> from_bone_map;  // the bone map used (Document::bone_map)
+  std::shared_ptr<const Seams> from_seams;       // Document::seams at the time of resampling
+  std::shared_ptr<const BoneMap> from_bone_map;  // Document::bone_map at the time of resampling
 };
 
-// A whole document. Any part may be absent (null), but weights, weight layers, pose and results need the parts that
-// they refer to.
+// A whole document. Any part may be absent (null). A part that refers to others needs them too: weights need the
+// volume, for example, and a pose needs the armature.
 struct Document {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
-  std::shared_ptr<const FileType> volume_type;  // the format that the volume was read from
+  std::shared_ptr<const FileType> volume_type;  // the format of the file that the volume was read from
   std::shared_ptr<const Armature> armature;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Pose> pose;  // starts as the clip's pose at `frame`; the user may change it
+  std::shared_ptr<const Pose> pose;  // at first the clip's pose at `frame`; the user may change it
   std::shared_ptr<const Visibility> visibility;
   std::vector<std::shared_ptr<const Result>> results;
   std::vector<std::shared_ptr<const Clip>> clips;
-  int clip = 0;   // index of the clip that moves the rig, where there are clips
+  int clip = 0;   // index of the clip that moves the rig, if there are clips
   int frame = 0;  // the current frame of that clip
   PoseLibrary poses;
   std::shared_ptr<const Anchors> anchors;
   std::shared_ptr<const WeightLocks> locks;
-  std::shared_ptr<const WeightLayers> layers;  // their blend is `weights`; null when the weights have no layers
-  std::shared_ptr<const Seams> seams;          // seams that the user edited (empty: none); null: found automatically
-  std::shared_ptr<const BoneMap> bone_map;     // the rig bones that the user assigned to labels; null: none assigned
+  std::shared_ptr<const WeightLayers> layers;  // `weights` is the blend of these layers; null: no layers
+  std::shared_ptr<const Seams> seams;  // seams edited by the user (empty: none); null: seams are found automatically
+  std::shared_ptr<const BoneMap> bone_map;  // the rig bones that the user assigned to labels; null: none assigned
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -21,8 +21,8 @@
 
 namespace limber {
 
-// Writes documents and remembers the parts it has written (by weak pointer), so that a part shared with an earlier
-// document is not written again. Only one thread may use a writer at a time.
+// Writes documents and remembers the parts that it has written (by weak pointer). A part that two documents share is
+// then written once. Only one thread may use a writer at a time.
 class DocumentWriter {
  public:
   // Writes the chunks that the sink lacks, the root node last, and returns the root's hash. Reports progress as stage
@@ -34,8 +34,8 @@ class DocumentWriter {
     std::weak_ptr<const void> part;
     ChunkHash hash;
   };
-  // The weights last written as the blend, as the base or as one layer. New weights mostly differ from some of these in
-  // a few bricks only.
+  // One set of weights as last written: the blended weights, the base weights or the weights of one layer. New weights
+  // mostly differ from one of these sets in a few bricks only.
   struct LastWeights {
     std::vector<std::weak_ptr<const SkinWeights::Chunk>> bricks;
     std::vector<ChunkHash> groups;
@@ -48,12 +48,12 @@ class DocumentWriter {
 
 struct ReadLimits {
   std::int64_t most_bytes = 0;  // upper limit on the bytes of voxels and weights; 0: 90 % of the free memory
-  // true: keeps the undamaged parts of the document, and the undamaged blocks of the volume and of weights; warnings
-  // say what is lost. Lost voxels become air. Lost weights get the influences of a neighbouring voxel.
+  // If true, reading keeps the undamaged parts of the document, and the undamaged blocks of the volume and of weights.
+  // Warnings say what is lost. Lost voxels become air. Lost weights get the influences of a neighbouring voxel.
   bool leave_out_damaged = false;
 };
 
-// Reads the document below `root`. Throws Error when a chunk is missing, damaged or invalid.
+// Reads the document whose root node is `root`. Throws Error when a chunk is missing, damaged or invalid.
 //   where     the file's name in messages
 //   warnings  receives a line for each part that was left out: damaged parts (only if limits.leave_out_damaged is set),
 //             and weights or a pose that do not fit the volume or armature

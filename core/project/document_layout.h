@@ -10,9 +10,9 @@
 
 namespace limber {
 
-// The reader also accepts the earlier layouts. Layout 1 has one motion and no clips, 2 has no pose library, 3 no
-// anchors, 4 only bits 0 and 1 of packed_reference(), 5 no weight locks, 6 no weight layers, 7 no overlap in a result,
-// 8 neither seams nor a bone map.
+// The reader also accepts the earlier layouts. Layout 1 has one motion and no clips. Layout 2 has no pose library, 3
+// has no anchors, 4 has only bits 0 and 1 of packed_reference(), 5 has no weight locks, 6 has no weight layers, 7 has
+// no overlap in a result, and 8 has neither seams nor a bone map.
 constexpr std::uint32_t kDocumentLayout = 9;
 
 // The first byte of a part, which names its type.
@@ -136,16 +136,16 @@ struct PartKindOf<BoneMap> {
   static constexpr const char* kName = "bone map";
 };
 
-// Packs three settings of a clip into one byte: the retargeting's reference into bits 0 and 1, the rest stance (T-pose,
-// A-pose, ...) of the source skeleton into bits 2 and 3, and the rig's rest stance into bits 4 and 5.
+// Packs three settings of a clip into one byte. Bits 0 and 1 are the retargeting's reference, bits 2 and 3 the rest
+// stance (T-pose, A-pose, ...) of the source skeleton, and bits 4 and 5 the rig's rest stance.
 inline std::uint8_t packed_reference(const Clip& clip) {
   return static_cast<std::uint8_t>(static_cast<int>(clip.retarget.reference) |
                                    static_cast<int>(clip.map.stances.source) << 2 |
                                    static_cast<int>(clip.map.stances.rig) << 4);
 }
 
-constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;   // size limit of a leaf of voxels or long text, bytes
-constexpr std::int64_t kGroupBricks = 32;                    // number of weight bricks in one leaf: 256 KB at most
-constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // size limit of a part stored in its node itself, bytes
+constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // size limit of a leaf of voxels or long text, bytes
+constexpr std::int64_t kGroupBricks = 32;  // number of weight bricks whose influences fill one leaf, 256 KB at most
+constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // largest part stored in its node itself, bytes
 
 }  // namespace limber

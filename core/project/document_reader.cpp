@@ -32,7 +32,7 @@ glm::dquat get_rotation(ByteReader& in) {
   for (double* value : {&q.w, &q.x, &q.y, &q.z}) *value = in.get<double>();
   return q;
 }
-// Reads a frame number and limits its size, so that sums of a few frame numbers cannot overflow.
+// Reads a frame number. Limits its magnitude, so that a sum of a few frame numbers cannot overflow.
 std::int32_t get_frame(ByteReader& in) {
   const auto frame = in.get<std::int32_t>();
   in.require(std::abs(std::int64_t{frame}) <= kMostFrames);
@@ -240,7 +240,7 @@ void get(ByteReader& in, Visibility& visibility) {
   visibility.clip_plane.normal = get_vector(in);
 }
 
-// Returns whether the weights fit the volume: equal numbers of bricks, and of tissue voxels in each brick.
+// Returns true if the weights fit the volume: equal numbers of bricks, and of tissue voxels in each brick.
 bool fits(const SkinWeights& weights, const LabelVolume& volume) {
   const TissueVoxels tissue(volume);
   if (std::ssize(tissue.bricks()) != weights.chunk_count()) return false;
@@ -349,7 +349,7 @@ class Reading {
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take) {
     for_leaves(leaves, first, what, take, [&](std::int64_t) { throw damaged(what); });
   }
-  // Calls take(i, bytes) for each whole leaf and lost(i) for each leaf that is missing or damaged, in order.
+  // Calls take(i, bytes) for each undamaged leaf, and lost(i) for each missing or damaged leaf, in the leaves' order.
   template <class Take, class Lost>
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take,
                   const Lost& lost) {
@@ -386,7 +386,7 @@ class Reading {
     bytes_left_ -= bytes;
   }
 
-  // Returns the part with this hash. Reads each part only once: later calls with its hash return the same pointer.
+  // Returns the part with this hash. Each part is read once: later calls with its hash return the same pointer.
   template <class T>
   std::shared_ptr<const T> read(const ChunkHash& hash) {
     const std::string what = PartKindOf<T>::kName;
@@ -473,7 +473,7 @@ class Reading {
     return volume;
   }
 
-  // Adds a damaged block to `lost`. Throws Error unless damaged blocks may be left out.
+  // Adds the index of a damaged block to `lost`. Throws Error when the limits do not allow leaving out damaged blocks.
   void lose(std::vector<std::int64_t>& lost, std::int64_t block, const std::string& what) const {
     if (!limits_.leave_out_damaged) throw damaged(what);
     lost.push_back(block);
@@ -506,7 +506,7 @@ class Reading {
         [&](std::int64_t group, const std::string& leaf) {
           const auto first = lengths.begin() + group * kGroupBricks;
           const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
-          // Two sets of weights that name the same group of bricks share its bricks in memory.
+          // A group of bricks that several sets of weights contain, with equal hash, is in memory once.
           auto& known = groups_[node.leaves[group + 1].bytes];
           const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
                                          [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
@@ -529,7 +529,7 @@ class Reading {
     return {std::move(bones), std::move(chunks)};
   }
 
-  // Fills each lost brick with the last influence in the bricks before it, or with the first influence there is.
+  // Fills each lost brick with the last influence of the bricks before it, or else with the first influence of all.
   static void fill_lost_bricks(std::vector<std::shared_ptr<const SkinWeights::Chunk>>& bricks,
                                const std::vector<std::uint16_t>& lengths) {
     Influence known = rigid_influence(0);

@@ -161,8 +161,8 @@ void put(ByteWriter& out, const RetargetMap& map) {
   }
 }
 
-// Returns the influences of a group of bricks as eight arrays in a row: the first bone of every voxel, the second, the
-// third and the fourth, then the four weights in the same order. Arrays of one kind of value compress better.
+// Returns the influences of a group of bricks as eight arrays, one behind the other: four arrays of bones (first to
+// fourth bone of every voxel), then four arrays of weights. Values of one kind compress better together.
 std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
   const std::int64_t first = group * kGroupBricks, end = std::min(weights.chunk_count(), first + kGroupBricks);
   std::vector<std::uint16_t> planes;
@@ -183,7 +183,7 @@ std::string group_bytes(const SkinWeights& weights, std::int64_t group) {
 
 }  // namespace
 
-// The state while one document is written into one sink.
+// Data needed while one document is written into one sink.
 class DocumentWriter::Writing {
  public:
   Writing(DocumentWriter& memory, ChunkSink& sink, Packing packing, Progress& progress)
@@ -230,7 +230,7 @@ class DocumentWriter::Writing {
   }
 
  private:
-  // Writes a part's node unless the sink has it, and returns the node's hash.
+  // Writes the node of a document part unless the sink already has that node. Returns the node's hash.
   template <class T>
   ChunkHash write(const std::shared_ptr<const T>& part) {
     const auto known = memory_.parts_.find(part.get());
@@ -276,7 +276,8 @@ class DocumentWriter::Writing {
     std::vector<std::uint16_t> lengths(bricks);
     for (std::int64_t brick = 0; brick < bricks; ++brick)
       lengths[brick] = static_cast<std::uint16_t>(weights.chunk(brick).size());
-    // The number of voxels of each brick is stored in a leaf of its own, since it stays the same while weights change.
+    // The number of voxels of each brick is stored in a leaf of its own. This leaf stays the same while weights change,
+    // so it is written once.
     node.leaves.push_back(
         put_chunk({reinterpret_cast<const char*>(lengths.data()), lengths.size() * sizeof(std::uint16_t)}));
 
@@ -308,8 +309,8 @@ class DocumentWriter::Writing {
     return true;
   }
 
-  // Writes a weight layer. One leaf tells which bricks have a mask; then each group of bricks has a leaf with its masks
-  // in the order of the bricks.
+  // Writes a weight layer. One leaf tells which bricks have a mask. Then each group of bricks has a leaf with the masks
+  // of its bricks in order.
   void fill(Node& node, ByteWriter& out, const WeightLayer& layer) {
     out.text(layer.name);
     out.flag(layer.visible);
@@ -341,8 +342,8 @@ class DocumentWriter::Writing {
     role_ = 0;
   }
 
-  // Writes a layer's weights and returns the hash of their node. The weights are a plain member of the layer, so parts_
-  // cannot remember them by pointer.
+  // Writes a layer's weights and returns the hash of their node. The layer holds them by value and not by shared
+  // pointer, so the writer cannot remember them in parts_.
   ChunkHash write_weights(const SkinWeights& weights) {
     Node node;
     ByteWriter out;
@@ -366,8 +367,8 @@ class DocumentWriter::Writing {
     out.text(result.name);
     out.text(result.method);
     out.text(result.report);
-    // Writes the optional parts last, up to the last one that exists, so that a result without optional parts has the
-    // same bytes as in earlier layouts.
+    // Writes the optional parts last, and leaves out those behind the last one that exists. So a result without
+    // optional parts has the same bytes as in earlier layouts.
     const bool has_sources = result.from_seams || result.from_bone_map;
     if (result.solved || result.overlap || has_sources) part(result.solved);
     if (result.overlap || has_sources) part(result.overlap);
@@ -438,7 +439,7 @@ class DocumentWriter::Writing {
       });
       for (std::int64_t i = 0; i < batch; ++i)
         if (missing[i] && !sink_.has(hashes[first + i]))
-          sink_.put(hashes[first + i], bytes[i]);  // equal chunks are put once
+          sink_.put(hashes[first + i], bytes[i]);  // the sink stores equal chunks once
     }
     return hashes;
   }
@@ -453,7 +454,7 @@ class DocumentWriter::Writing {
   ChunkSink& sink_;
   const Packing packing_;
   Progress& progress_;
-  int role_ = 0;  // weights being written: 0 the blend of all layers, 1 the base, 2... the layers from bottom to top
+  int role_ = 0;  // whose weights are written: 0 the blend, 1 the base, 2... the layers from bottom to top
 };
 
 ChunkHash DocumentWriter::write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress) {

@@ -37,7 +37,7 @@ std::int64_t own_bytes(const Armature& armature) {
   for (const Bone& bone : armature.bones) bytes += heap_bytes(bone.name);
   return bytes;
 }
-std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are counted on their own
+std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are counted separately
   std::int64_t bytes = kBlock + weights.chunk_count() * std::int64_t{sizeof(std::shared_ptr<const SkinWeights::Chunk>)};
   for (const std::string& bone : weights.bones()) bytes += heap_bytes(bone) + std::int64_t{sizeof bone};
   return bytes;
@@ -56,7 +56,7 @@ std::int64_t own_bytes(const NamedPose& pose) {
     bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
   return bytes;
 }
-std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is counted on its own
+std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is counted separately
   constexpr std::int64_t kNode = kBlock + 48;  // overhead of a map's node, bytes
   std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
   for (const auto& [bone, source] : clip.map.sources)
@@ -89,8 +89,8 @@ std::int64_t own_bytes(const BoneMap& map) {
   return bytes;
 }
 std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
-// Counts neither the chunks of the layer's weights nor its masks: documents share them, so they are counted on their
-// own.
+// Returns the layer's size without its mask blocks and the chunks of its weights. Documents share these, so they are
+// counted separately.
 std::int64_t own_bytes(const WeightLayer& layer) {
   return heap_bytes(layer.name) + own_bytes(layer.weights) + heap_bytes(layer.mask);
 }
@@ -113,8 +113,9 @@ std::int64_t own_bytes(const Result& result) {
 
 }  // namespace
 
-// Counts how many documents of the history use each part, by the part's address. The parts within a part (the chunks of
-// weights, the parts that a result was made from) are counted once for the part that contains them.
+// Counts how many documents of the history use each part, by the part's address. Parts nested in another part (the
+// chunks of weights, the parts that a result was made from) count once for each outer part, however many documents use
+// the outer part.
 class History::Ledger {
  public:
   void add(const Document& document) { visit(document, +1); }
@@ -122,8 +123,8 @@ class History::Ledger {
   std::int64_t bytes() const { return bytes_; }
 
  private:
-  // Adds or removes one use of a part, for step 1 or -1. Returns true for the part's first use and when its last use is
-  // removed.
+  // Adds a use of a part (step 1) or removes a use (step -1). Returns true when the part's first use was added or its
+  // last use was removed.
   template <class T>
   bool count(const std::shared_ptr<const T>& part, int step) {
     if (!part) return false;
@@ -251,7 +252,7 @@ void History::set_limit(std::int64_t bytes) {
   keep_within_limit();
 }
 
-// Drops the oldest undo steps first; when none is left, drops redo steps from the end.
+// Drops the oldest undo steps first. When no undo step is left, drops redo steps, the last one first.
 void History::keep_within_limit() {
   if (bytes() <= limit_) return;
   const std::int64_t most = std::max(limit_, current_bytes() + limit_ / 2);

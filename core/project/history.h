@@ -23,7 +23,7 @@ class History {
   struct Step {
     std::string label;  // the edit that made the document, such as "Paint weights"
     Document document;
-    std::int64_t revision;  // unique number of this state of the document
+    std::int64_t revision;  // unique number of this document state
   };
 
   explicit History(Document first = {}, std::string label = "New project", std::int64_t limit_bytes = kDefaultLimit);
@@ -40,7 +40,7 @@ class History {
   // Replaces the current step by `next` and forgets all steps that could be redone. So a series of small edits, such as
   // a drag, becomes one step.
   void amend(std::string label, Document next);
-  // Starts the history of another project: one step, which counts as saved.
+  // Replaces the whole history by one step with the first document of another project. That step counts as saved.
   void reset(Document first, std::string label);
 
   bool can_undo() const { return position_ > 0; }
@@ -55,10 +55,11 @@ class History {
 
   // Marks the state with this revision as saved. It may no longer be the current state when a save ends.
   void mark_saved(std::int64_t revision) { saved_ = revision; }
-  void mark_unsaved() { saved_ = -1; }  // for example after a recovery
+  void mark_unsaved() { saved_ = -1; }  // the current state counts as unsaved too, for example after a recovery
   bool unsaved() const { return revision() != saved_; }
 
-  // bytes() returns the size of the distinct parts of all steps, current_bytes() that of the current document's parts.
+  // bytes() returns the size of the distinct parts of all steps. current_bytes() returns the size of the current
+  // document's parts alone.
   std::int64_t bytes() const;
   std::int64_t current_bytes() const;
   std::int64_t limit() const { return limit_; }

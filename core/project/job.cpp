@@ -22,10 +22,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kChangeInterval = std::chrono::milliseconds(50);
 constexpr int kLongAtOnce = 1;           // number of long jobs that run together; each uses all cores
-constexpr double kFirstEstimate = 0.5;   // seconds that a stage runs without an estimate, since early ones fluctuate
-constexpr double kLeastFraction = 0.02;  // fraction of a stage done without an estimate, since early ones fluctuate
-constexpr double kPatience = 0.1;        // seconds for which a cancelled job that still runs blocks its queue
-constexpr double kFarewell = 1;          // seconds that ~Jobs waits for its jobs to end
+constexpr double kFirstEstimate = 0.5;   // seconds that a stage runs before its end is estimated: early guesses vary
+constexpr double kLeastFraction = 0.02;  // finished share of a stage before its end is estimated: early guesses vary
+constexpr double kPatience = 0.1;        // seconds for which a cancelled job that still runs keeps the next job waiting
+constexpr double kFarewell = 1;          // seconds that the destructor of Jobs waits for running jobs to end
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -44,7 +44,7 @@ struct Jobs::Board {
   bool changed = false;
   std::vector<int> finished;  // ids of jobs whose edit must be committed, in the order in which they ended
 
-  void tell() {  // call this with the mutex locked
+  void tell() {  // the caller must hold the mutex
     changed = true;
     if (on_change) on_change();
   }
@@ -75,7 +75,7 @@ struct Jobs::Job final : Progress {
   const std::shared_ptr<Board> board;
   const Lane lane;
   Work work;
-  std::jthread thread;  // used only by the owner's thread
+  std::jthread thread;  // only the thread that owns Jobs uses this member
 
   // The members below are guarded by board->mutex.
   JobStatus status;
@@ -115,7 +115,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
   JobState state = JobState::Done;
   std::string message;
   Edit edit;
-  const std::string label = job->status.label;  // does not change, so it needs no lock
+  const std::string label = job->status.label;  // read without a lock, since the label never changes
   try {
     const CancelScope cancels_loops(*job);
     edit = job->work(*job);
@@ -137,7 +137,7 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
     state = JobState::Failed;
     message = Error("a mistake of the program itself", label, "please report what you did").what();
   }
-  job->work = {};  // also frees the job's inputs
+  job->work = {};  // the job's inputs are freed here too
 
   const std::lock_guard lock(board->mutex);
   if (job->cancelled()) state = JobState::Cancelled;

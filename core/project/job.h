@@ -26,8 +26,7 @@ namespace limber {
 using Edit = std::function<Document(const Document& now)>;
 using Work = std::function<Edit(Progress& progress)>;
 
-// The queue of a job. Long jobs take minutes: they run one at a time beside the common jobs, so that no common job
-// waits for them.
+// The queue of a job. Long jobs take minutes. They run one at a time, and common jobs run beside them without waiting.
 enum class Lane { Common, Long };
 
 enum class JobState { Queued, Running, Stopping, Done, Failed, Cancelled };
@@ -39,8 +38,8 @@ struct JobStatus {
   std::string stage;                   // such as "weights"; empty before the first stage
   double fraction = 0;                 // finished fraction of the stage, [0, 1]
   double seconds = 0;                  // running time of the job
-  std::optional<double> seconds_left;  // estimated time until the stage ends; empty without an estimate
-  std::string message;                 // reason for which the job failed
+  std::optional<double> seconds_left;  // estimated time until the stage ends; empty: no estimate yet
+  std::string message;                 // why the job failed
 
   bool active() const { return state == JobState::Queued || state == JobState::Running || state == JobState::Stopping; }
 };
@@ -57,7 +56,7 @@ class Jobs {
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  void set_at_once(int count) { at_once_ = count; }                   // for jobs that start from now on
+  void set_at_once(int count) { at_once_ = count; }  // number of common jobs that run together from now on
   int start(std::string label, Work work, Lane lane = Lane::Common);  // returns the job's id
   void cancel(int id);
   void cancel_all();
@@ -69,7 +68,7 @@ class Jobs {
   // The jobs, oldest first. Ended jobs stay in the list until they are dismissed.
   std::vector<JobStatus> statuses() const;
   JobStatus status(int id) const;
-  bool busy() const;  // true when any job is active or has ended since the last poll()
+  bool busy() const;  // true if any job is active, or any job's state has changed since the last poll()
   void dismiss(int id);
   void dismiss_ended();
 

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMagic = "LimberEd";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeadBytes = 8, kSumBytes = 8;
-// Upper limit on a record's payload, bytes. A packed chunk can be slightly longer than the unpacked one.
+// Upper limit on a record's payload, bytes. Compression can make a chunk slightly longer, so the limit exceeds the
+// limit of an unpacked chunk by 1 MB.
 constexpr std::size_t kMostPayload = kLargestChunk + (std::size_t{1} << 20);
 
 enum RecordType : std::uint32_t { kHeader = 1, kChunk = 2, kEdit = 3 };
@@ -33,7 +34,8 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// Returns a journal record: type, length, payload, and a checksum (the first bytes of the SHA-256 of the others).
+// Returns a journal record: type, length, payload and checksum. The checksum is the first bytes of the SHA-256 of
+// everything before it.
 std::string record(std::uint32_t type, const std::string& payload) {
   ByteWriter out;
   out.put(type);
@@ -220,11 +222,11 @@ Path edits_folder() {
 Path journal_path(const Path& project) { return project.string() + "-edits"; }
 
 namespace {
-// Returns the root of the project's last save, or nothing when it cannot be read.
+// Returns the hash of the root chunk of the project's last save, or nothing when the project cannot be read.
 std::optional<ChunkHash> saved_root(const Path& project) {
   try {
     if (is_project(project)) return read_mark(project).root;
-  } catch (const Error&) {  // a damaged or busy project: its edits are offered
+  } catch (const Error&) {  // damaged or in use: the caller then treats the journal's edits as unsaved
   }
   return std::nullopt;
 }
@@ -269,7 +271,7 @@ std::vector<Recoverable> all_recoverable(const Path& folder) {
 
 namespace {
 
-// A source that looks for a chunk in the journal first, then in the saved project.
+// A chunk source that looks for a chunk in the journal first, then in the saved project.
 class Both final : public ChunkSource {
  public:
   Both(JournalReader& journal, ChunkSource* saved) : journal_(journal), saved_(saved) {}
@@ -283,7 +285,7 @@ class Both final : public ChunkSource {
   ChunkSource* saved_;
 };
 
-// Reads the latest edit that is readable within the limits. Returns false when no edit is.
+// Reads the latest edit of the journal that is readable within the limits. Returns false when no edit is readable.
 bool read_latest(const JournalReader& reader, ChunkSource& source, const ReadLimits& limits, const Path& journal,
                  Recovered& recovered, Progress& progress) {
   const auto& edits = reader.edits();
@@ -301,7 +303,7 @@ bool read_latest(const JournalReader& reader, ChunkSource& source, const ReadLim
                                      " edits could not be read: parts of the project are missing");
       return true;
     } catch (const Error&) {
-      continue;  // an earlier edit may be readable
+      continue;  // tries the edit before this one
     }
   }
   return false;
@@ -321,8 +323,8 @@ Recovered recover(const Path& journal, Progress& progress) {
   Both both(reader, saved.get());
   if (read_latest(reader, both, {}, journal, recovered, progress)) return recovered;
 
-  // No edit is readable, so the project file that the journal builds on is damaged. Searches that file for undamaged
-  // chunks, and reads the latest edit of which at least one part is readable.
+  // No edit is readable, so the project file on which the journal builds must be damaged. Searches that file for
+  // undamaged chunks, and reads the latest edit of which at least one part is readable.
   std::error_code error;
   if (fs::is_regular_file(reader.project(), error)) {
     CarvedChunks carved(reader.project(), progress);

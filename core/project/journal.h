@@ -24,8 +24,9 @@ namespace limber {
 
 class JournalWriter final : public ChunkSink {
  public:
-  // The settings of a new journal. Its file appears in one step, complete and locked. The constructor throws Error when
-  // the file cannot be written, or when the name is taken and `replace` is false.
+  // The settings of a new journal. The writer's constructor first completes the file under another name, so that the
+  // journal appears complete and locked. The constructor throws Error when the file cannot be written, or when a file
+  // of this name exists and `replace` is false.
   //   project  absolute path, empty for a project that was never saved
   //   base     the save that the journal builds on; base_chunks lists that save's chunks
   struct Start {
@@ -38,8 +39,8 @@ class JournalWriter final : public ChunkSink {
   };
   JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open = open_log);
 
-  // Writes the document as an edit, which is on the disk when the call returns. After an Error the caller calls this
-  // again, or starts a new journal when broken() is true.
+  // Writes the document as an edit. When the call returns, the edit is on the disk. After an Error the caller calls
+  // this again, or starts a new journal when broken() is true.
   void write(const Document& document, const std::string& label, DocumentWriter& writer);
   bool broken() const { return broken_; }
   std::int64_t bytes() const { return bytes_; }
@@ -100,12 +101,12 @@ Path edits_folder();
 // Returns the project's path with "-edits" appended: NAME.limber-edits.
 Path journal_path(const Path& project);
 
-// Describes the edits in a journal. Returns nothing when the journal is in use or unreadable, or when the project file
-// holds its last edit.
+// Describes the unsaved edits in a journal. Returns nothing when the journal is in use or unreadable, or when its last
+// edit is already saved in the project file.
 std::optional<Recoverable> recoverable(const Path& journal);
-// Describes the edits in a journal that the caller has open and that has at least one edit.
+// Describes the unsaved edits in a journal that is already open. The journal must have at least one edit.
 Recoverable recoverable(const JournalReader& reader, const Path& journal);
-// Describes the edits of all journals in the edits folder or linked from it, the latest first.
+// Describes the unsaved edits of all journals that are in the edits folder or linked from it, the latest first.
 std::vector<Recoverable> all_recoverable(const Path& folder = edits_folder());
 
 struct Recovered {

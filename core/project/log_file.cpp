@@ -22,7 +22,7 @@ class PosixLogFile final : public LogFile {
     ::unlink(path.c_str());
     descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail();
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // cannot fail on a new file, except where the file system has no locks
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // succeeds on a new file where the file system has locks
   }
   ~PosixLogFile() override { ::close(descriptor_); }
 
@@ -38,8 +38,7 @@ class PosixLogFile final : public LogFile {
     if (::fdatasync(descriptor_) != 0) fail();
   }
   void cut(std::int64_t size) override {
-    if (::ftruncate(descriptor_, size) != 0)
-      return;  // the bytes that remain are an incomplete record, so readers ignore them
+    if (::ftruncate(descriptor_, size) != 0) return;  // ignored: readers skip the incomplete record that remains
   }
 
  private:
@@ -64,7 +63,7 @@ bool same_file(int descriptor, const Path& path) {
 std::unique_ptr<LogFile> open_log(const Path& path) { return std::make_unique<PosixLogFile>(path); }
 
 FileLock::FileLock(const Path& path) {
-  constexpr int kAttempts = 100;  // attempts to lock; another process may replace the file meanwhile
+  constexpr int kAttempts = 100;  // upper limit on attempts: the file may be replaced just before it is locked
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return;

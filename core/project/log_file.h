@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A file that is only appended to, and locked by the process that has it open. It is an interface so that tests can
-// simulate a power cut by losing the bytes that were not synced.
+// A file that is only appended to, and locked by the process that has it open. LogFile is an interface, so that tests
+// can simulate a power cut by dropping the bytes that were not synced.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ class LogFile {
   virtual ~LogFile() = default;
   virtual void append(std::string_view bytes) = 0;  // appends all bytes; an Error may leave some of them appended
   virtual void sync() = 0;                          // returns when all bytes are on the disk, or throws Error
-  virtual void cut(std::int64_t size) = 0;          // shortens the file to `size` bytes where that is possible
+  virtual void cut(std::int64_t size) = 0;          // shortens the file to `size` bytes; failures are ignored
 };
 
-// Creates an empty file in place of any file with that name. Throws Error when it cannot.
+// Creates an empty file at the path, in place of any existing file. Throws Error when the file cannot be created.
 using OpenLog = std::function<std::unique_ptr<LogFile>(const Path&)>;
 std::unique_ptr<LogFile> open_log(const Path& path);
 
@@ -29,7 +29,7 @@ std::unique_ptr<LogFile> open_log(const Path& path);
 class FileLock {
  public:
   FileLock() = default;
-  // Locks nothing when another process has the lock or when there is no such file; taken() then returns false.
+  // Tries to lock the file. When another process has the lock or there is no such file, taken() returns false.
   explicit FileLock(const Path& path);
   ~FileLock();
   FileLock(FileLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }

@@ -35,14 +35,14 @@ namespace {
 
 using State = NamedFileVfs::State;
 
-// The last eight bytes of a journal that names a super-journal. Before these bytes stand the super-journal's name, the
+// The last eight bytes of a journal that names a super-journal. In front of them are the super-journal's name, the
 // name's length (4 bytes) and the sum of the name's bytes (4 bytes).
 constexpr std::array<unsigned char, 8> kJournalMagic = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
 constexpr int kSuperTail = 16;
 
 State* state_of(sqlite3_vfs* vfs) { return static_cast<State*>(vfs->pAppData); }
 
-// Gives `file` a copy of the system's file methods, but without shared memory and memory maps, which would open further
+// Gives `file` a copy of the system's file methods without shared memory and memory maps, since these would open other
 // files. The copy is stored behind the system's own data of the file.
 void limit_methods(sqlite3_file* file, int system_bytes) {
   auto* methods = new (reinterpret_cast<char*>(file) + system_bytes) sqlite3_io_methods(*file->pMethods);
@@ -55,8 +55,8 @@ bool is_regular_or_missing(const char* path) {
   return ::lstat(path, &status) != 0 || S_ISREG(status.st_mode);
 }
 
-// Returns whether the journal ends like one that names a super-journal. The name's checksum is not verified, since a
-// wrong one does not make the journal harmless.
+// Returns true if the journal ends like one that names a super-journal. The sum of the name's bytes is not verified,
+// since a wrong sum does not make the journal harmless.
 bool names_super_journal(sqlite3_file* file) {
   sqlite3_int64 size = 0;
   std::array<unsigned char, kSuperTail> tail{};
@@ -67,8 +67,8 @@ bool names_super_journal(sqlite3_file* file) {
          std::memcmp(tail.data() + kSuperTail - kJournalMagic.size(), kJournalMagic.data(), kJournalMagic.size()) == 0;
 }
 
-// Returns true when the file does not begin like a journal. Such a file must be refused, since SQLite would take any
-// file with the journal's name for one and delete it.
+// Returns true when the file does not begin like a journal. Such a file must be refused: SQLite would treat any file
+// with the journal's name as its journal and delete it.
 bool is_no_journal(sqlite3_file* file) {
   sqlite3_int64 size = 0;
   std::array<unsigned char, 8> begin{};
@@ -78,7 +78,8 @@ bool is_no_journal(sqlite3_file* file) {
   return begin[0] != 0 && begin != kJournalMagic;
 }
 
-// Records why the journal that has just been opened must be refused. Returns false when it is acceptable.
+// Checks the journal that has just been opened. Returns true when it must be refused, and records the reason in
+// `state`.
 bool refuse_journal(State& state, sqlite3_file* file) {
   const std::string move_away =
       "move it away if you do not know where it comes from, then check the project: limber project " + state.database +

@@ -74,7 +74,8 @@ Error damaged(const Path& path) {
           "open an earlier copy, or keep what is whole: limber project " + path.string() + " recover -o OUT.limber"};
 }
 
-// Throws Error unless the database is Limber's, has a known version, and has exactly the two tables of a project.
+// Throws Error unless the database was made by Limber, has a known version, and has exactly the two tables of a
+// project.
 void check_schema(Database& database, const Path& path) {
   if (database.number("PRAGMA application_id") != kApplication)
     throw Error("this is not a Limber project", path.string(), "name a .limber file");
@@ -144,7 +145,8 @@ void shrink(Database& database) {
   if (free > kMostFreeBytes && free > all / 2) database.run("PRAGMA incremental_vacuum");
 }
 
-// Makes each commit return only after the data and the removal of the journal have reached the disk.
+// Makes SQLite commit durably: a commit returns only after the data and the removal of the journal have reached the
+// disk.
 void write_durably(Database& database) { database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA"); }
 
 void sync(const Path& path, int flags) {
@@ -200,7 +202,7 @@ Error not_written(const Path& path) {
   return {"the project cannot be written", path.string(), std::strerror(errno)};
 }
 
-// Syncs the temporary file to the disk and gives it the permissions of the file that it replaces.
+// Syncs the temporary file to the disk and gives it the permissions of the project file `target` that it replaces.
 void finish(const Path& temporary, const Path& target, const Path& path) {
   const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw not_written(path);
@@ -223,8 +225,8 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   const Unfinished unfinished(temporary);
   std::error_code error;
   fs::remove(temporary, error);
-  // A file that replaces a project is created with access for its owner alone, since the project's own permissions may
-  // keep others from reading it.
+  // When the new file replaces a project, it is created with access for its owner alone. The project's own permissions
+  // may keep others from reading it.
   const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
                           fs::exists(target, error) ? 0600 : 0666);
   if (file < 0) throw not_written(path);
@@ -246,12 +248,12 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
     mark = fill(store, project, writer, Packing::Dense, progress);
     for (const ChunkHash& hash : spare.hashes)
       if (const auto packed = spare.source->find(hash))
-        store.put(hash, *packed);  // ignored where the file has the chunk already
+        store.put(hash, *packed);  // does nothing where the file already has the chunk
     transaction.commit();
   } catch (const Error& failure) {
     throw with_name(failure, temporary, path);
   }
-  Database::clear_journal(target);  // otherwise SQLite would roll the old journal back into the new file
+  Database::clear_journal(target);  // else SQLite would apply the old file's journal to the new file
   finish(temporary, target, path);
   if (::rename(temporary.c_str(), target.c_str()) != 0) throw not_written(path);
   sync(folder, O_RDONLY | O_DIRECTORY);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads and writes the project file NAME.limber: an SQLite database with the document's chunks (core/project/chunk.h),
-// the hash of the root chunk, and what the editor restores when it opens the project (views, layout, a picture), as
-// bytes that are not interpreted here. Its two tables:
+// Reads and writes the project file NAME.limber. It is an SQLite database with the document's chunks
+// (core/project/chunk.h), the hash of the root chunk, and what the editor restores when it opens the project (views,
+// layout, a picture). The editor's bytes are not interpreted here. Its two tables:
 //   chunk(hash, packed)      state(name, value): root, mark, editor, thumbnail, program
-// A save writes the missing chunks and the new root in one transaction, so whoever opens the file later finds the
-// state before or after the save, whatever happened. A new file is written under another name and then renamed.
+// A save writes the missing chunks and the new root in one transaction. So whoever opens the file later finds the state
+// before or after the save, even if the save was interrupted. A new file is written under another name and then
+// renamed.
 //
 // Every save stores a mark of its own. The next save names the mark that it expects, so that a project that another
 // program has changed or replaced meanwhile is not overwritten.
@@ -23,7 +24,7 @@ namespace limber {
 // Identifies one save of a project.
 struct SaveMark {
   ChunkHash root;
-  std::string id;  // random, unique to this save
+  std::string id;  // random, differs for every save
 
   bool operator==(const SaveMark&) const = default;
 };
@@ -36,7 +37,7 @@ struct Project {
   std::vector<std::string> warnings;  // parts that were left out when reading
 };
 
-// Returns whether the file's content is that of a project: an SQLite header with Limber's application id.
+// Returns true if the file is a project: it has an SQLite header with Limber's application id.
 bool is_project(const Path& path);
 
 // Reads a project. Throws Error when the file is not a project, is damaged, was written by a newer version, or is in
@@ -45,7 +46,7 @@ Project read_project(const Path& path, Progress& progress = no_progress(), const
 // Returns the project's thumbnail, or "" when there is none or the file cannot be read.
 std::string read_thumbnail(const Path& path);
 
-// Chunks that are written into a new file in addition to the document's own. The next save removes them.
+// Chunks that a new file gets in addition to those of its document. The next save removes them.
 struct SpareChunks {
   std::vector<ChunkHash> hashes;
   ChunkSource* source = nullptr;
@@ -55,11 +56,11 @@ struct SpareChunks {
 SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer,
                         Progress& progress = no_progress(), const SpareChunks& spare = {});
 
-// Whether update_project() removes or keeps chunks that only earlier saves need.
+// What update_project() does with chunks that only earlier saves need.
 enum class Unused { Remove, Keep };
 
-// Writes what has changed since the save with the mark `expected`. Throws Error, and leaves the file as it was, when
-// the file has another mark, is gone, or cannot be written.
+// Saves into an existing project file: writes only what has changed since the save with the mark `expected`. Throws
+// Error when the file has another mark, is gone, or cannot be written; the file then stays as it was.
 SaveMark update_project(const Project& project, const Path& path, const SaveMark& expected, Unused unused,
                         DocumentWriter& writer, Progress& progress = no_progress());
 // Removes the chunks that the last save does not need.
@@ -67,7 +68,7 @@ void prune_project(const Path& path);
 
 // Returns the mark of the file's last save.
 SaveMark read_mark(const Path& path);
-// Returns the hashes of the last save's root chunk and of all chunks below it.
+// Returns the hashes of the last save's root chunk and of all chunks that it names directly or indirectly.
 ChunkSet reachable_chunks(const Path& path);
 
 // Checks the database's structure and every chunk. Returns one line for each fault.
@@ -80,7 +81,8 @@ struct ProjectSummary {
 };
 ProjectSummary summarize_project(const Path& path);
 
-// Finds chunks in a project file. Readers of a journal need it, since a journal omits the chunks that the project has.
+// Finds chunks in a project file. Readers of a journal need this class, since a journal omits the chunks that the
+// project has.
 class ProjectChunks final : public ChunkSource {
  public:
   explicit ProjectChunks(const Path& path);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::duration;
 
-constexpr std::int64_t kMostGrowth = 4;  // a large journal starts anew at this multiple of its first size
+constexpr std::int64_t kMostGrowth = 4;  // a large journal is replaced when it exceeds this multiple of its first size
 
 constexpr const char* kGone =
     "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
@@ -104,7 +104,7 @@ void Session::choose_journal_path(const Path& project) {
   journal_path_ = beside ? journal_path(project) : folder_ / name;
 }
 
-// Links to the journal from the edits folder, so that all_recoverable() finds the journal.
+// Makes a link in the edits folder to the journal, so that all_recoverable() finds the journal.
 void Session::note_journal() const {
   if (journal_path_.parent_path() == folder_) return;
   const Path link =
@@ -143,7 +143,7 @@ void Session::set_message(std::string message) {
   if (settings_.on_change) settings_.on_change();
 }
 
-// ---- the journal; these functions need disk_ to be locked
+// ---- the journal: call these functions with disk_ locked
 
 bool Session::journal_in_use() const {
   std::error_code ignored;
@@ -163,8 +163,8 @@ void Session::begin_journal(const Document* document, const std::string& label) 
   note_journal();
 }
 
-// Reads the journal that an earlier session left. If it has unsaved edits, they are offered to the user. If it cannot
-// be read (another version may have written it), it is moved aside, since this session must not remove it.
+// Reads the journal that an earlier session left. Its unsaved edits, if any, are offered to the user. If the journal
+// cannot be read (another version may have written it), it is moved aside, since this session must not remove it.
 void Session::look_at_leftover() {
   try {
     const JournalReader reader(journal_path_);
@@ -202,14 +202,14 @@ void Session::write_journal(const Document& document, const std::string& label) 
   else journal_->write(document, label, journal_writer_);
 }
 
-// Starts a journal with the whole document when the project's file was removed or replaced, because a reader of the
-// journal then finds no chunks in that file.
+// Starts a journal with the whole document when another program removed or replaced the project's file. The old journal
+// is of no use then, since it omits the chunks that were in that file.
 void Session::watch_project() {
   if (!base_ || !identity_ || save_runs_) return;
   const auto now = identity_of(path());
   if (now == identity_) return;
   try {
-    if (now && read_mark(path()) == *mark_) {  // same save: the file was only touched
+    if (now && read_mark(path()) == *mark_) {  // the file has the same save, only its time or inode differs
       identity_ = now;
       return;
     }
@@ -217,7 +217,7 @@ void Session::watch_project() {
   }
   base_.reset();
   identity_.reset();
-  if (leftover_) return;  // leftover edits build on the missing file, so they stay as they are
+  if (leftover_) return;  // leftover edits build on the missing file, so their journal is not touched
   const Document document = last();
   begin_journal(&document, "The project's file has gone");
   set_message(kGone);
@@ -236,7 +236,7 @@ void Session::work(const std::stop_token& stop) {
     std::string message;
     {
       const std::lock_guard disk(disk_);
-      // Reads the waiting document here, after disk_ is locked, since a save may have written it meanwhile.
+      // Reads waiting_ only after disk_ is locked, since a save may have written that document in the meantime.
       std::string label;
       std::int64_t handed = 0;
       {
@@ -351,7 +351,7 @@ void Session::after_save(const Document& saved, const SaveMark& mark) {
   changed_.notify_all();
 }
 
-// Writes the project file without disk_ locked, so that edits still reach the journal meanwhile.
+// Writes the project file without locking disk_, so that edits can be written to the journal in the meantime.
 void Session::write_file(const std::function<SaveMark()>& write, const Document& saved) {
   {
     const std::lock_guard disk(disk_);
@@ -388,7 +388,7 @@ std::string Session::save(const Project& project, Progress& progress) {
 void Session::save_as(const Project& project, const Path& new_path, Progress& progress) {
   const Path file = absolute_of(new_path);
   const std::lock_guard one_at_a_time(saving_);
-  if (file == path()) {  // replaces whatever file is there now
+  if (file == path()) {  // overwrites the session's own file, even if another program changed it
     write_file([&] { return create_project(project, file, save_writer_, progress); }, project.document);
     return;
   }
@@ -427,7 +427,7 @@ void Session::discard() {
   if (leftover_ || !journal_) return;
   try {
     if (base_) return begin_journal(nullptr, "");
-  } catch (const Error&) {  // no room even for an empty journal: the old one is removed
+  } catch (const Error&) {  // no room even for an empty journal, so the journal is removed below
   }
   journal_.reset();
   remove_journal(journal_path_);

@@ -30,17 +30,17 @@
 namespace limber {
 
 struct SessionSettings {
-  Path edits_folder;  // empty: limber::edits_folder()
+  Path edits_folder;  // folder for journals; empty: the folder that limber::edits_folder() returns
   OpenLog open_log = limber::open_log;
   std::function<void()> on_change;  // called from any thread when status() has changed
   double retry_seconds = 1;         // seconds until a failed write is tried again
   double watch_seconds = 2;         // seconds between checks of the project file
-  // The journal starts anew when it is larger than this and has grown to several times its first size.
+  // Size above which a journal is started anew once it has also grown to several times its first size.
   std::int64_t large_journal = std::int64_t{256} << 20;  // bytes
 };
 
 struct SessionStatus {
-  bool kept = true;     // true: everything handed to keep() is on the disk
+  bool kept = true;     // true: every document handed to keep() is on the disk
   std::string message;  // what is wrong, "" when nothing is
 };
 
@@ -52,7 +52,7 @@ class Session {
   static std::unique_ptr<Session> open(const Path& path, Project& project, Progress& progress = no_progress(),
                                        SessionSettings settings = {});
   // Removes the journal when the last document handed to keep() has been saved or discarded. Otherwise the journal
-  // stays, and its edits are offered for recovery.
+  // stays, and the next session offers its edits for recovery.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -61,25 +61,26 @@ class Session {
   SessionStatus status() const;
 
   // Returns the unsaved edits of this project that an earlier session left. If keep() is called before recover() or
-  // drop_leftover(), they are moved to the file NAME.limber-edits-1 and offered again later.
+  // drop_leftover(), the edits are moved to the file NAME.limber-edits-1 and offered again later.
   std::optional<Recoverable> leftover() const;
   Recovered recover(Progress& progress = no_progress());
   void drop_leftover();
 
   void keep(const Document& document, std::string label);
-  // Waits up to `seconds` until every document handed to keep() is on the disk. Returns false when one is not.
+  // Waits up to `seconds` until every document handed to keep() is on the disk. Returns false when a document is still
+  // not on the disk then.
   bool flush(double seconds);
 
-  // Saves into the project's file; the first save must be save_as(). Throws Error and leaves the file as it was.
-  // Returns a remark for the user when the file was missing and had to be written anew, else "".
+  // Saves into the project's file; the first save must be save_as(). On failure throws Error and leaves the file as it
+  // was. Returns a remark for the user when the file was missing and had to be written anew, else "".
   std::string save(const Project& project, Progress& progress = no_progress());
-  // Saves into another file, which is the project's file from then on. Throws Error, also when another session has
-  // that file open.
+  // Saves into another file, which is the session's file from then on. Throws Error when the file cannot be written or
+  // when another session has it open.
   void save_as(const Project& project, const Path& path, Progress& progress = no_progress());
-  // Writes a copy of the project into another file. The file of a session stays the same.
+  // Writes a copy of the project into another file, without changing the file of any session.
   static void save_copy(const Project& project, const Path& path, Progress& progress = no_progress());
 
-  // Drops the unsaved edits, that is, those handed to keep() since the last save.
+  // Drops the unsaved edits: the documents handed to keep() since the last save.
   void discard();
 
  private:
@@ -112,12 +113,12 @@ class Session {
   const SessionSettings settings_;
   const Path folder_;  // the folder for journals and links to journals
 
-  mutable std::mutex state_;  // guards what keep() and status() touch
+  mutable std::mutex state_;  // guards the members up to status_
   std::condition_variable_any changed_;
   Path path_;
   std::optional<Document> waiting_;
   std::string waiting_label_;
-  Document last_;  // the document last handed to keep(), saved or opened
+  Document last_;  // the document last passed to keep(), saved or opened
   std::int64_t handed_ = 0, written_ = 0;
   SessionStatus status_;
 
@@ -128,10 +129,10 @@ class Session {
   std::unique_ptr<JournalWriter> journal_;
   std::optional<FileLock> leftover_lock_;
   std::optional<Recoverable> leftover_;
-  std::optional<SaveMark> base_;  // the save whose chunks the journal builds on
+  std::optional<SaveMark> base_;  // the save whose chunks the journal omits
   std::optional<SaveMark> mark_;  // the mark of this session's last save
   std::optional<FileIdentity> identity_;
-  std::int64_t fresh_bytes_ = 0;  // size of the journal when it started
+  std::int64_t fresh_bytes_ = 0;  // size of the current journal when it was started, bytes
   Document saved_;
   DocumentWriter save_writer_, journal_writer_;
 

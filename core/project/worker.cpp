@@ -36,12 +36,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kPollMilliseconds = 20, kEndingMilliseconds = 5;
-constexpr double kDying = 0.01;  // seconds to wait for a killed worker to end
+constexpr double kDying = 0.01;  // seconds to wait for a killed worker process to end
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostWarnings = 1000;
 constexpr auto kBeat = std::chrono::seconds(1);
-// Processor time between two heartbeats that counts as a sign of work, seconds. A heartbeat itself takes a tenth of it.
+// Processor time that a worker must use between two heartbeats to count as working, seconds. A heartbeat itself uses
+// about a tenth of it.
 constexpr double kLeastWork = .001;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -84,8 +85,8 @@ void bury(pid_t process) {
 }
 
 // The worker process. It has a process group of its own, so that its children end with it. The destructor kills the
-// worker. A killed worker does nothing more, but one at idle priority frees its memory only when the machine has time
-// for it, so a thread waits for its end.
+// worker without waiting. A worker at idle priority can take long to free its memory after the kill, so another thread
+// waits for its end.
 class Process {
  public:
   Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
@@ -107,8 +108,8 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const { ::kill(-id_, signal); }
-  // Returns whether the worker has ended. If so, kills the processes that it left in its group, before the system can
-  // reuse its process id.
+  // Returns true if the worker has ended. If so, kills the processes that it left in its group, before the system can
+  // reuse the worker's process id.
   bool has_ended() {
     siginfo_t info{};
     if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
@@ -143,8 +144,8 @@ class Listener {
       bytes = line_end + 1;
     }
   }
-  // Returns the seconds since the worker's last sign of work. Reports it as not answering when they exceed `shown`, and
-  // reports its last progress again once it answers.
+  // Returns the seconds since the worker's last sign of work. Reports the worker as not answering when they exceed
+  // `shown`. Reports its last progress again once it answers.
   double silence(double shown) {
     const double seconds = seconds_since(sign_);
     const bool silent = seconds > shown;
@@ -195,12 +196,12 @@ class Listener {
   const std::function<void(const WorkerProgress&)>& on_progress_;
   std::string line_;
   Clock::time_point sign_ = Clock::now();
-  double worked_ = 0;  // seconds of processor time at the last sign of work
+  double worked_ = 0;  // processor time of the worker at its last sign of work, seconds
   bool silent_ = false;
   WorkerProgress last_;
 };
 
-// Turns the worker's message "what: where: what to do" into an Error.
+// Turns the worker's error message, of the form "what: where: what to do", into an Error.
 Error relay(const std::string& line, const Path& job) {
   const std::size_t first = line.find(": "), last = line.rfind(": ");
   if (first == std::string::npos || first == last)
@@ -298,7 +299,7 @@ Heartbeat::Heartbeat() : beating_(std::make_unique<Beating>()) {
       char line[64];
       const int size = std::snprintf(line, sizeof line, "{\"processor_seconds\": %lld.%06ld}\n",
                                      static_cast<long long>(spent.tv_sec), spent.tv_nsec / 1000);
-      // Writes the line with one call and not through a stream, since a child of this process may hold the stream's
+      // Writes the line with one system call and not through a stream: a child of this process may hold the stream's
       // lock.
       if (::write(STDERR_FILENO, line, static_cast<std::size_t>(size)) < 0 && errno != EINTR) return;
     }
@@ -313,7 +314,7 @@ Heartbeat::~Heartbeat() {
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {
   if (parent > 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) std::_Exit(3);  // the parent died before prctl
+    if (::getppid() != parent) std::_Exit(3);  // the parent ended before prctl was called
   }
   if (yields) {
     const sched_param none{};

@@ -21,7 +21,8 @@
 
 namespace limber {
 
-// The progress that a worker reports. Stage and fraction are always set; the other values only while it solves.
+// The progress that a worker reports. Stage and fraction are always set; the other values only while the FEM solver
+// runs.
 struct WorkerProgress {
   std::string stage;
   double fraction = 0;  // finished fraction of the stage, [0, 1]
@@ -30,11 +31,11 @@ struct WorkerProgress {
 };
 
 struct WorkerSettings {
-  std::int64_t memory_limit_mb = 0;  // limit of the address space, MB; 0: none
-  double time_limit = 0;             // seconds; 0: none
-  double silence_shown = 10;         // seconds without a sign of work until the worker is shown as not answering
+  std::int64_t memory_limit_mb = 0;  // limit of the worker's address space, MB; 0: none
+  double time_limit = 0;             // limit of the running time, seconds; 0: none
+  double silence_shown = 10;         // seconds without sign of work until the worker is shown as not answering
   double silence_limit = 600;        // seconds without a sign of work until the worker is ended; 0: never
-  double patience = 0.05;            // seconds between asking the worker to end and killing it
+  double patience = 0.05;            // seconds between the request to end and killing the worker
   bool yields = false;               // true: the worker runs at idle priority
   Path program = "/proc/self/exe";
   std::function<void(const WorkerProgress&)> on_progress;  // called in run_worker's thread for each progress line
@@ -42,23 +43,24 @@ struct WorkerSettings {
 
 struct WorkerOutput {
   std::string text;                   // the worker's standard output, at most 16 MB of it
-  std::vector<std::string> warnings;  // one line each
-  bool pose_reached = true;           // false: the worker wrote the last pose that it could solve; warnings say more
+  std::vector<std::string> warnings;  // one line for each warning
+  bool pose_reached = true;           // false: the solver stopped early and wrote the last pose it solved; see warnings
 };
 
-// Runs the job to its end and blocks meanwhile, so call it in a Job. Throws Error with what went wrong, and Cancelled
-// after a cancel.
+// Runs the job in a worker process and blocks until it ends, so call this function inside a Job. Throws Error with the
+// worker's message or the cause of its end, and Cancelled after a cancel.
 WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings = {});
 
-// Call this in the worker before it starts any thread. Sets the memory limit. Lowers the priority below all other
-// programs if `yields` is true. Lets the worker die with `parent`, the id of the process that started it (0: none).
+// Call this function in the worker process before it starts any thread. It sets the memory limit. If `yields` is true,
+// it lowers the priority below all other programs. It makes the worker end together with `parent`, the id of the
+// process that started it (0: none).
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent);
 
-// The stage name that is shown for a worker that does not answer.
+// The stage that a worker's progress shows while the worker does not answer.
 constexpr const char* kNotAnswering = "no answer";
 
-// Writes a sign of life of the worker every second while this object lives: a line of JSON with the worker's processor
-// time, on the error stream.
+// While this object lives, writes a line of JSON with the worker's processor time to the error stream every second. The
+// parent process takes it as a sign of life.
 class Heartbeat {
  public:
   Heartbeat();

@@ -12,26 +12,29 @@
 namespace limber {
 
 namespace {
-constexpr double kNeighbours = 3;  // steps of the posed grid; voxels this far apart at rest were no neighbours
-constexpr int kArcSteps = 16;      // number of steps between the motions of a joint's two bones
+// Two posed neighbours count as neighbours at rest if they were closer there than this, in voxel edges of the posed
+// grid.
+constexpr double kNeighbours = 3;
+constexpr int kArcSteps = 16;  // number of steps in which a joint's arc (its turn from rest to the pose) is sampled
 
 struct Joint {
   int parent, bone;
   glm::dvec3 head;
-  double reach;                                          // distance from the head, mm
-  std::array<RigidTransform, kArcSteps + 1> on_the_way;  // motions from that of the parent to that of the bone
+  double reach;                                          // radius around the head within which tissue may stretch, mm
+  std::array<RigidTransform, kArcSteps + 1> on_the_way;  // motions along the arc, from the parent's to the bone's
 };
 
 bool same_motion(const RigidTransform& a, const RigidTransform& b, const glm::dvec3& at) {
   return std::abs(glm::dot(a.rotation, b.rotation)) > 1 - 1e-12 && glm::distance(a * at, b * at) < 1e-6;
 }
 
-// Returns how deep a point lies below the outside air, in mm, but at least one voxel edge.
+// Returns the distance in mm from a point to the nearest outside air, but at least one voxel edge.
 double depth_at(const Grid& grid, const OutsideAir& outside, const glm::dvec3& p) {
   const glm::ivec3 middle(glm::floor(voxel_from_world(grid) * p + 0.5));
   const double edge = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   if (outside.contains(middle)) return edge;
-  // Searches larger and larger boxes until the nearest air found is nearer than the border of the box.
+  // Searches larger and larger boxes around the point, until the nearest air in the box is nearer than the box's
+  // border.
   for (double half = 8 * edge;; half *= 2) {
     const glm::ivec3 steps(glm::ceil(half / grid.spacing));
     double nearest = std::numeric_limits<double>::infinity();
@@ -71,14 +74,15 @@ double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return glm::distance(p, squared > 0 ? a + glm::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) * d : a);
 }
 
-// Returns whether the joint explains where stretched tissue moved: the tissue is near the joint at rest, and its posed
-// position is near the arc or the chord between where the joint's two bones would take it.
+// Returns true if the joint explains where stretched tissue moved. The tissue must be near the joint at rest. Its posed
+// position must be near the arc, or the straight chord, between the two positions to which the joint's two bones would
+// move it.
 bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& posed, const BandLimits& limits) {
   if (glm::distance(rest, joint.head) > joint.reach) return false;
   const double within = limits.off_arc * joint.reach;
   glm::dvec3 before = joint.on_the_way[0] * rest;
   if (distance_to_segment(posed, before, joint.on_the_way[kArcSteps] * rest) <= within)
-    return true;  // linear blend skinning moves tissue along the chord
+    return true;  // linear blend skinning may leave tissue anywhere on the chord of the arc
   for (int k = 1; k <= kArcSteps; ++k) {
     const glm::dvec3 next = joint.on_the_way[k] * rest;
     if (distance_to_segment(posed, before, next) <= within) return true;
@@ -87,8 +91,8 @@ bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& pose
   return false;
 }
 
-// The gradient of the map from posed to rest positions, in world axes. It is empty at a voxel that has no neighbour of
-// soft tissue along some axis.
+// The gradient of the map from posed to rest positions, in world axes. A voxel has no gradient if along one of the axes
+// neither neighbour is soft tissue that was a neighbour at rest too.
 class RestGradient {
  public:
   RestGradient(const JudgedPose& pose, std::vector<bool> is_soft) : pose_(pose), is_soft_(std::move(is_soft)) {}
@@ -119,7 +123,7 @@ class RestGradient {
 
  private:
   const JudgedPose& pose_;
-  std::vector<bool> is_soft_;  // for each label: whether it is soft tissue
+  std::vector<bool> is_soft_;  // by label: true for soft tissue
 };
 
 struct StretchedVoxels {
@@ -157,8 +161,9 @@ StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient
   return all;
 }
 
-// Returns the rig bone that carried the tissue from its rest to its posed position. Of the bones whose motion matches
-// the movement to within a voxel edge of the best match, it is the one nearest at rest.
+// Returns the rig bone that most likely moved the tissue from its rest position to its posed position. A bone may be
+// the one if its motion misses the posed position by at most a voxel edge more than the best bone's. Of these bones,
+// returns the one that is nearest to the tissue at rest.
 int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm::dvec3& posed) {
   const auto off = [&](std::size_t b) { return glm::distance(pose.applied[b] * rest, posed); };
   double least = std::numeric_limits<double>::infinity(), nearest = least;
@@ -171,8 +176,8 @@ int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm:
   return best;
 }
 
-// Returns the names of two rig bones: the one that most of the band's voxels follow, and the most followed one of those
-// that move differently.
+// Returns the names of the two rig bones that a band joins. The first is the bone that most of the band's voxels
+// follow. The second is, of the bones that move differently, the one that most voxels follow; empty: there is none.
 std::array<std::string, 2> ends_of(const JudgedPose& pose, const std::vector<glm::ivec3>& voxels) {
   std::vector<std::int64_t> votes(pose.armature->bones.size(), 0);
   glm::dvec3 middle(0);

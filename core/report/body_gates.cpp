@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Judges the body gates, which tell whether a posed volume is still a body.
+// Judges the body gates: tests of a report's figures that tell whether a posed volume is still a body
+// (quality_gates.h).
 #include "core/report/quality_gates.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kTear = 0.5;  // smallest tear that counts, in voxel edges; smaller ones are invisible in voxels
+// Smallest tear of a bone that counts, in voxel edges. Smaller tears do not show in a voxel volume.
+constexpr double kTear = 0.5;
 
 void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
   const Json& doubts = part(report, "doubts");
@@ -27,7 +29,7 @@ void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
       doubts.empty() ? "Volume, labels and rig belong together." : "The inputs do not belong together: " + first + ".");
 }
 
-// Returns the edge length of a rest voxel in mm, as the cube root of its volume, or 0 where no tissue was measured.
+// Returns the edge length in mm of a cube with the volume of a rest voxel; 0: no tissue was measured.
 double voxel_edge(const Json& report) {
   for (const Json& tissue : part(report, "tissues"))
     if (const auto mm3 = number(tissue, "mm3_before"), voxels = number(tissue, "voxels_before");
@@ -113,7 +115,7 @@ void judge_trapped(const Json& report, const QualityLimits& limits, QualityGate&
                       ".");
 }
 
-// Returns the change of a tissue's volume in percent, or nothing for a tissue that is too small at rest to be judged.
+// Returns the change of a tissue's volume in percent; nothing if the tissue is too small at rest to be judged.
 std::optional<double> change_of(const Json& tissue, const QualityLimits& limits) {
   const auto change = number(tissue, "volume_change_percent"), voxels = number(tissue, "voxels_before");
   return change && voxels && *voxels >= double(limits.least_organ_voxels) ? change : std::nullopt;
@@ -157,8 +159,8 @@ void judge_lost(const Json& report, const QualityLimits& limits, QualityGate& ga
 }
 
 void judge_torn(const Json& report, const QualityLimits&, QualityGate& gate) {
-  // Skips labels that name bones, since the gate `whole` judges each voxel of these bones. In thick slices a thin bone
-  // that was turned may look torn although it is not, because it misses voxel centres.
+  // Skips labels that name bones: the gate `whole` judges these by the motion of their voxels. In a volume of thick
+  // slices a thin bone may look torn after a turn although it is whole, because it misses voxel centres.
   std::set<double> named;
   for (const Json& bone : part(report, "whole_bones"))
     if (const auto label = number(bone, "label")) named.insert(*label);

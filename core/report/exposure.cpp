@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 constexpr std::array<glm::ivec3, 6> kFaces = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-// Flood fill of the air in a box from seed voxels. It fills one run along x at a time.
+// Flood fill of the air inside a box, starting from seed voxels; each step fills a whole run of air voxels along x.
 class AirFlood {
  public:
   AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside)
@@ -48,7 +48,7 @@ class AirFlood {
     }
   }
 
-  // Adds one seed for each run of air that is not filled yet, in the row of `from` between from.x and `end`.
+  // Adds a seed for each run of air voxels that is not filled yet. Looks only at x = from.x .. end - 1 of one row.
   void seed_row(const glm::ivec3& from, int end) {
     const Label* labels = volume_.voxels.data() + volume_.grid.index(from);
     const std::uint8_t* outside = outside_.data() + box_.index(from);
@@ -66,7 +66,7 @@ class AirFlood {
   std::vector<glm::ivec3> seeds_;
 };
 
-// Returns the offsets to all voxels whose centre is at most `reach` mm away, the nearest first.
+// Returns the offsets from a voxel to all voxels whose centres are at most `reach` mm away, the nearest first.
 std::vector<glm::ivec3> ball(const glm::dvec3& spacing, double reach) {
   const glm::ivec3 most(glm::dvec3(reach) / spacing + 1e-9);
   std::vector<glm::ivec3> steps;
@@ -80,7 +80,7 @@ std::vector<glm::ivec3> ball(const glm::dvec3& spacing, double reach) {
   return steps;
 }
 
-// Returns a voxel in the middle of the largest connected component of the voxels, or nothing without voxels.
+// Returns the position in the middle of the largest connected component of the given voxels; nothing if there are none.
 //   voxels  indices into the posed grid, ascending
 std::optional<WorstPlace> worst_of(const JudgedPose& pose, const std::vector<std::int64_t>& voxels) {
   if (voxels.empty()) return std::nullopt;
@@ -155,7 +155,8 @@ Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air) {
   const Grid& grid = pose.posed.grid;
   const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
-  // Enclosed air has no displacement, so the displacement of the tissue beside it tells where it was at rest.
+  // Returns true if an enclosed air voxel of the pose was enclosed at rest too. Air has no displacement, so that of the
+  // tissue beside the voxel tells where the voxel was at rest.
   const auto was_enclosed = [&](const glm::ivec3& v) {
     for (const glm::ivec3& face : kFaces) {
       const glm::ivec3 beside = v + face;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Measures which tissue a pose exposed to the air and which air it enclosed, from the volumes and the displacement
-// alone.
-//   newly exposed  posed voxels that touch the outside air, are not skin, and were deep at rest: further from the
-//                  outside air at rest than a voxel's diagonal plus its shortest edge, so that rounding at a surface
-//                  does not count
-//   trapped        air that tissue encloses when posed, but did not enclose at rest
+// Measures which tissue a pose exposes to the air and which air it encloses, only from the two volumes and the
+// displacement between them.
+//   newly exposed  posed voxels that touch the outside air, are not skin, and are deep at rest: further from the
+//                  outside air than a voxel's diagonal plus its shortest edge, so that rounding at a surface does not
+//                  count
+//   trapped        air that tissue encloses in the pose but not at rest
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ namespace limber {
 class OutsideAir {
  public:
   explicit OutsideAir(const LabelVolume& volume);
-  // Returns whether the voxel is outside air. Every voxel outside of the grid is.
+  // Returns true if the voxel is outside air. Every voxel beyond the grid counts as outside air.
   bool contains(const glm::ivec3& voxel) const { return !box_.contains(voxel) || outside_[box_.index(voxel)]; }
 
  private:
@@ -35,10 +35,10 @@ AirAround air_around(const JudgedPose& pose);
 
 struct Exposure {
   std::int64_t voxels = 0;          // number of newly exposed voxels
-  std::int64_t surface_voxels = 0;  // number of posed tissue voxels with a face at outside air
-  double deeper_than_mm = 0;        // depth in mm beyond which a voxel at rest counts as deep
+  std::int64_t surface_voxels = 0;  // number of posed tissue voxels that share a face with outside air
+  double deeper_than_mm = 0;        // depth at rest, mm, beyond which a voxel counts as deep
   std::map<Label, std::int64_t> by_label;
-  std::optional<WorstPlace> worst;  // empty where nothing is newly exposed
+  std::optional<WorstPlace> worst;  // the largest newly exposed area; empty: there is none
 
   double percent() const { return surface_voxels ? 100.0 * double(voxels) / double(surface_voxels) : 0; }
 };

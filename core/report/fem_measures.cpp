@@ -18,7 +18,7 @@ namespace limber {
 namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr int kSticksOut = 2;  // voxels up to this far outside of the mesh get a neighbour's tet
+constexpr int kSticksOut = 2;  // largest distance from the mesh, in voxels, at which a voxel gets a neighbour's tet
 
 Eigen::Matrix3d edges(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, std::int64_t t) {
   Eigen::Matrix3d columns;
@@ -31,8 +31,8 @@ double energy_of(const TetMaterial& material, const Eigen::Matrix3d& F) {
   return J > 0 ? energy_density({.shear = material.shear_modulus, .bulk = tet_bulk(material)}, F, J) : kInfinite;
 }
 
-// Returns the root mean square edge length of the tets in mm, which serves as the limit between near and far skin: skin
-// that was further apart at rest and is near now must have folded.
+// Returns the root mean square of the tets' edge lengths in mm. It is the distance below which gaps are measured; only
+// skin that was more than three times as far apart at rest counts, since such skin must have folded.
 double mean_edge(const TetMesh& mesh) {
   double sum = 0;
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
@@ -78,9 +78,10 @@ std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen:
   const AffineTransform to_voxel = voxel_from_world(grid);
   std::vector<glm::dvec3> nodes(V.rows());
   for (std::size_t v = 0; v < nodes.size(); ++v) nodes[v] = to_voxel * glm::dvec3(V(v, 0), V(v, 1), V(v, 2));
-  const bool mirrored = glm::determinant(to_voxel.linear) < 0;  // in a mirrored grid every tet would be inverted
+  const bool mirrored = glm::determinant(to_voxel.linear) < 0;  // tets are inverted in voxel coordinates
 
-  // Each thread works on layers of bricks. Layers share no voxel, so two threads never write the same voxel.
+  // A thread handles whole layers of bricks (cubes of 8^3 voxels). Layers share no voxel, so no two threads write the
+  // same voxel.
   const int layers = tissue.brick_grid().z;
   std::vector<std::vector<std::int32_t>> of_layer(layers);
   for (Eigen::Index t = 0; t < T.rows(); ++t) {

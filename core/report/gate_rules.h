@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Defines how gates are written and judged: tables of rules over a report in JSON, each with its limit, its meaning
-// and a function that reads the figures. The JSON type is a template parameter, so that no header depends on the JSON
-// library.
+// Defines how quality gates are written and judged. Each gate is a rule in a table: its limit, its meaning, and a
+// function that judges the figures of a report in JSON. The JSON type is a template parameter, so that no header
+// depends on the JSON library.
 #pragma once
 
 #include <cstdio>
@@ -38,7 +38,7 @@ inline std::string formatted(const char* format, double value) {
   return buffer;
 }
 
-// Returns a number with its noun, in the plural unless the number is 1: "3 286 voxels", "1 pair".
+// Returns text with a number and a noun, which gets an "s" unless the number is 1: "3 286 voxels", "1 pair".
 inline std::string counted(double count, const char* what) {
   std::string digits = formatted("%.0f", count);
   for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
@@ -48,7 +48,7 @@ inline std::string counted(double count, const char* what) {
 
 inline std::string in_quotes(const std::string& name) { return "\"" + name.substr(0, 80) + "\""; }
 
-// Returns " at (12, -40, 812) mm near LeftThigh" for the position where a fault is worst.
+// Returns text for the position at which a fault is worst, such as " at (12, -40, 812) mm near LeftThigh".
 template <class Json>
 std::string at_place(const Json& worst) {
   const Json& place = part(worst, "place");
@@ -96,8 +96,8 @@ inline std::string with_limit(std::string words, const std::string& limit) {
   return words;
 }
 
-// Judges a report by each rule, in the order of the rules.
-//   report  limber-report/1; when it is not JSON, every gate is not measured
+// Judges a report by each rule, and returns the gates in the order of the rules.
+//   report  JSON text of schema limber-report/1; if it is not JSON, no gate is measured
 template <class Json, std::size_t N>
 std::vector<QualityGate> judged(const GateRule<Json> (&rules)[N], const std::string& report,
                                 const QualityLimits& limits) {
@@ -119,7 +119,7 @@ std::vector<QualityGate> judged(const GateRule<Json> (&rules)[N], const std::str
   return gates;
 }
 
-// Returns the row with the largest value of figure(row), or nullptr where no row has a value.
+// Returns the row of a JSON array with the largest figure(row); nullptr: no row has a figure.
 template <class Json, class Figure>
 const Json* worst_row(const Json& rows, const Figure& figure) {
   const Json* worst = nullptr;

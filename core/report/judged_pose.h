@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The inputs by which a posed volume is judged: the volume at rest, the posed volume, the displacement between them,
-// the rig, and the motions of the rig's bones in the pose. The inputs contain neither weights nor the program's own
-// split of bone tissue into bones, so that the judgement does not depend on these.
+// The inputs from which a posed volume is judged: the volume at rest, the posed volume, the displacement between them,
+// the rig, and the motions of the rig's bones in the pose. They contain neither weights nor the bones into which this
+// program splits bone tissue, so that errors in these are found and not repeated.
 #pragma once
 
 #include <span>
@@ -18,14 +18,14 @@ struct JudgedPose {
   const LabelVolume& rest;
   const LabelVolume& posed;                   // has the same labels as `rest`
   const TissueTable& tissues;                 // the tissues of both volumes
-  std::span<const glm::vec3> displacement{};  // #posed voxels; posed minus rest position, mm; empty where unknown
-  const Armature* armature = nullptr;         // nullptr where there is no rig
-  std::vector<RigidTransform> asked;          // #bones; transforms from rest to posed as the pose requests
-  std::vector<RigidTransform>
-      applied;  // #bones; the transforms used: they differ from `asked` if joints were fitted or a solve ended early
+  std::span<const glm::vec3> displacement{};  // posed minus rest position of each posed voxel, mm; empty: unknown
+  const Armature* armature = nullptr;         // nullptr: no rig
+  std::vector<RigidTransform> asked;          // #bones: motions from rest to the pose that the user requested
+  // #bones: motions that were used. They differ from `asked` if the rig's joints were fitted or a solve ended early.
+  std::vector<RigidTransform> applied;
 
-  // Return the position of a posed voxel, and the rest position of its tissue, in world mm. rest_place() needs
-  // `displacement`.
+  // posed_place() returns the position of a posed voxel, rest_place() the position of its tissue at rest; world, mm.
+  // rest_place() needs `displacement`.
   glm::dvec3 posed_place(const glm::ivec3& voxel) const { return world_from_voxel(posed.grid) * glm::dvec3(voxel); }
   glm::dvec3 rest_place(const glm::ivec3& voxel) const {
     return posed_place(voxel) - glm::dvec3(displacement[posed.grid.index(voxel)]);
@@ -33,10 +33,10 @@ struct JudgedPose {
   bool knows_field() const { return !displacement.empty(); }
 };
 
-// The position where a fault is worst.
+// The position at which a fault of the posed volume is worst.
 struct WorstPlace {
   std::int64_t voxels = 0;  // number of voxels of the fault's largest connected component
-  glm::dvec3 place{0};      // a voxel in the middle of that component, world, mm
+  glm::dvec3 place{0};      // position of a voxel in the middle of the component, world, mm
   std::string near;         // name of the nearest posed rig bone; empty without a rig
 };
 

@@ -13,11 +13,12 @@
 namespace limber {
 
 namespace {
-constexpr double kSameVoxel = 0.01;  // difference of two voxel volumes, as a fraction, up to which they count as equal
-constexpr int kSmallest = 50;        // number of voxels of the smallest connected component that counts
+constexpr double kSameVoxel = 0.01;  // largest relative difference of two voxel volumes that count as equal
+constexpr int kSmallest = 50;        // size in voxels of the smallest connected component that counts
 constexpr int kLabels = std::numeric_limits<Label>::max() + 1;
 
-// Union-find over connected runs of voxels. The root of each set holds the set's number of voxels and its label.
+// Union-find over voxel runs: each set holds connected runs. The root of a set holds the set's number of voxels and its
+// label.
 class Components {
  public:
   int add(Label label) {
@@ -63,10 +64,11 @@ struct Run {
 // The runs of one slice, row by row.
 struct Slice {
   std::vector<Run> runs;
-  std::vector<int> first;  // index of each row's first run, #rows + 1
+  std::vector<int> first;  // #rows + 1: index of each row's first run
 };
 
-// Returns the first x at or after `begin` whose label is not `label`, or `size`. Compares four labels at a time.
+// Returns the first x, from `begin` on, whose label is not `label`; `size`: there is none. Compares four labels at
+// once.
 int end_of_run(const Label* row, int begin, int size, Label label) {
   const std::uint64_t four = std::uint64_t{label} * 0x0001000100010001u;
   int x = begin;
@@ -78,7 +80,7 @@ int end_of_run(const Label* row, int begin, int size, Label label) {
   return x;
 }
 
-// Steps through the runs of a neighbouring row while the runs of the current row are added.
+// A neighbouring row of the current row. Its runs are stepped through while those of the current row are added.
 class Neighbour {
  public:
   Neighbour(const Slice& slice, int row, bool diagonal)
@@ -125,7 +127,7 @@ void add_row(const LabelVolume& volume, int y, int z, const Slice& below, Slice&
   }
 }
 
-// Counts the slice's tissue voxels that have a face towards air, by label, into `surface`.
+// Adds to `surface`, by label, the numbers of tissue voxels in a slice that share a face with air.
 void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::vector<std::int64_t>& surface) {
   const glm::ivec3 size = volume.grid.size;
   const std::vector<Label> air(size.x, 0);
@@ -155,9 +157,9 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
-// Returns how many more components of kSmallest voxels or more `after` has than `before`. Components count as connected
-// across small gaps: posing a body at another angle in its grid may part it by a voxel where it is thin, and by a slice
-// where a thick slice bridged a gap at rest. Neither is a tear.
+// Returns the number of large components of a label (kSmallest voxels or more) minus `before`, but at least 0.
+// Components count as connected across small gaps, which are no tears: in another position on the grid, a thin part may
+// have a gap of one voxel, and a gap that one thick slice bridged at rest may appear.
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;
@@ -191,7 +193,7 @@ LabelCensus take_census(const LabelVolume& volume, std::int64_t smallest) {
   for (int z = 0; z < size.z; ++z) {
     slice.runs.clear();
     slice.first.assign(size.y + 1, 0);
-    // Neighbour keeps pointers to the runs of this slice, so the vector must not reallocate.
+    // The class Neighbour has pointers to the runs of this slice, so their vector must not reallocate.
     slice.runs.reserve(std::int64_t{size.x} * size.y);
     for (int y = 0; y < size.y; ++y) {
       slice.first[y] = static_cast<int>(slice.runs.size());

@@ -15,11 +15,11 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kFewest = 30;  // number of voxels that are needed to measure a limb's direction
-constexpr double kShaftBegin = 0.25,
-                 kShaftEnd = 0.75;     // fractions of a bone's axis between which its shaft lies, away from the joints
+constexpr std::size_t kFewest = 30;  // least number of voxels from which a limb's direction is measured
+// Begin and end of a bone's shaft (its middle, away from the joints), as fractions of the rig bone's length.
+constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;
 constexpr double kShaftRadius = 0.15;  // radius of the shaft, as a fraction of the rig bone's length
-constexpr double kManyAtShaft = 0.2;   // fraction of a shaft's voxels that counts as many (see keep_limb)
+constexpr double kManyAtShaft = 0.2;   // least fraction of a shaft's voxels that keep_limb() takes as the limb
 
 struct Moved {
   glm::dvec3 rest, posed;  // rest and posed position of a voxel, world, mm
@@ -27,16 +27,16 @@ struct Moved {
 using MovedVoxels = std::vector<Moved>;
 
 struct BoneVoxel {
-  std::int32_t at_rest;  // index of the voxel in the bone graph
+  std::int32_t at_rest;  // index in the bone graph of the voxel at rest; -1: no graph
   Moved moved;
 };
 
-// The bone graph of the rest volume, and for each tissue voxel its index in this graph. The graph is costly, so it is
-// built only where labels name bones.
+// The graph of bone voxels of the rest volume, and the index of each tissue voxel in it. The graph is costly, so it is
+// built only if labels name bones.
 struct RestBone {
   TissueVoxels tissue;
   BoneGraph graph;
-  std::vector<std::int32_t> in_graph;  // #tissue; -1: the voxel is not bone
+  std::vector<std::int32_t> in_graph;  // #tissue: index in the graph; -1: the voxel is not bone
 
   RestBone(const LabelVolume& rest, const std::vector<TissueKind>& kinds)
       : tissue(rest),
@@ -46,7 +46,8 @@ struct RestBone {
   }
 };
 
-// Returns the posed bone voxels that have the same label as their tissue at rest, in the order of the posed grid.
+// Returns the posed bone voxels, in the order of the posed grid. Leaves out voxels whose label differs from the label
+// at their rest position.
 //   bone  nullptr: the voxels get no index in the bone graph
 std::vector<BoneVoxel> posed_bone_voxels(const JudgedPose& pose, const RestBone* bone,
                                          const std::vector<TissueKind>& kinds) {
@@ -85,7 +86,8 @@ RigidTransform best_motion(const MovedVoxels& voxels) {
   return best_rigid_motion(rest, posed);
 }
 
-// Returns which of the allowed rig bones takes most of the voxels to their posed positions, within a tolerance in mm.
+// Returns the allowed rig bone whose motion brings the largest number of voxels to their posed positions.
+//   within  largest distance from the posed position, mm
 int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const std::vector<RigidTransform>& motions,
               double within) {
   int best = allowed.front();
@@ -99,7 +101,7 @@ int best_bone(const MovedVoxels& voxels, const std::vector<int>& allowed, const 
   return best;
 }
 
-// Returns the rig bone whose motion takes the voxel nearest to its posed position.
+// Returns the rig bone that a voxel follows: the bone whose motion moves it nearest to its posed position.
 std::size_t followed_bone(const Moved& one, const std::vector<RigidTransform>& motions) {
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -114,7 +116,9 @@ std::size_t followed_bone(const MovedVoxels& voxels, const std::vector<RigidTran
   return static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 
-// Judges one bone of the body, that is, the voxels of one label on one side, by the rig bones that its name allows.
+// Judges one bone of the body (the voxels of a label on one side of the body) by the motions of the rig bones that its
+// name allows.
+//   single  true: the label names one bone, which must move rigidly
 WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose,
                 double within) {
   WholeBone bone;
@@ -132,8 +136,8 @@ WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool
   return bone;
 }
 
-// Returns whether a motion moves a bone. A bone may move without turning, such as a shank that hangs below a raised
-// thigh.
+// Returns true if a motion turns or shifts a bone. A bone may move without turning, such as a shank that hangs down
+// from a raised thigh.
 bool moves(const RigidTransform& motion) {
   return motion.rotation != glm::dquat(1, 0, 0, 0) || motion.translation != glm::dvec3(0);
 }
@@ -155,7 +159,8 @@ LimbDirection direction_of(int bone, const MovedVoxels& voxels, bool by_name, co
   return limb;
 }
 
-// Returns whether a point is near the middle of the rig bone's axis, and nearer to this axis than to any other bone's.
+// Returns true if a point is at a rig bone's shaft: close to the middle of the bone's axis, and nearer to this axis
+// than to the axis of any other bone.
 bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
   const Bone& own = armature.bones[bone];
   const glm::dvec3 axis = own.tail - own.head;
@@ -169,9 +174,9 @@ bool is_at_shaft(const Armature& armature, int bone, const glm::dvec3& p) {
                      [&](const Bone& other) { return distance_to_bone(other, p) >= away; });
 }
 
-// Removes voxels of other bones from those at a limb's shaft, such as voxels of ribs below a collarbone. Keeps the
-// voxels that follow the limb's rig bone if there are many of them. Otherwise keeps the voxels that follow the rig bone
-// that most of them follow.
+// Removes other bones' voxels, such as those of ribs below a collarbone, from the voxels at a limb's shaft. Keeps the
+// voxels that follow the limb's rig bone if they are at least the fraction kManyAtShaft. Otherwise keeps the voxels
+// that follow the most followed rig bone.
 void keep_limb(int bone, const std::vector<RigidTransform>& motions, MovedVoxels& shaft) {
   const auto follows = [&](std::size_t b) {
     return [&motions, b](const Moved& one) { return followed_bone(one, motions) == b; };
@@ -199,8 +204,8 @@ std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::ve
   return limbs;
 }
 
-// Judges each bone that a label names, on each side of the body. Adds its voxels to those of the rig bone that it
-// belongs to.
+// Judges each bone that a label names, on each side of the body. Adds its voxels to `of_rig_bone` at the rig bone that
+// it belongs to.
 std::vector<WholeBone> judge_named(const JudgedPose& pose, const std::map<Label, LabelBones>& labels,
                                    const RestBone& rest, const std::vector<BoneVoxel>& bone,
                                    std::vector<MovedVoxels>& of_rig_bone) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Measures how the body's bones moved in a posed volume, from the displacement of their voxels. It measures whether
-// each bone that a label names stayed whole and followed the rig bone that it belongs to, and how far each limb's
-// direction is from the requested one. It uses neither weights nor the program's own split of bone tissue into bones.
+// Measures how the body's bones moved in a posed volume, from the displacement of their voxels: whether each bone that
+// a label names stayed whole and followed the rig bone that it belongs to, and how far each limb's direction is from
+// the requested one. It uses neither weights nor the bones into which this program splits bone tissue, so that errors
+// in these are found.
 #pragma once
 
 #include <string>
@@ -19,17 +20,18 @@ struct LimbDirection {
   double direction_degrees = 0;    // angle between the requested and the measured direction of the bone
   double orientation_degrees = 0;  // angle between the requested and the measured rotation
   std::int64_t voxels = 0;         // number of bone voxels that were measured
-  bool by_name = false;  // true: measured on bones with names; false: on bone tissue around the middle of its axis
+  bool by_name = false;  // true: measured on bones that labels name; false: on bone tissue at the axis' middle
 };
 
 struct PosedBones {
   std::vector<WholeBone> whole;      // sorted by label, then side; labels that name no bone are left out
-  std::vector<LimbDirection> limbs;  // in the rig's order; bones with fewer than 30 voxels are left out
+  std::vector<LimbDirection> limbs;  // in the order of the rig's bones; those with fewer than 30 voxels are left out
 };
 
-// Measures a pose, which must have the displacement and the rig. A voxel is wrong where each rig bone that its label
-// may follow would take it further than the longest voxel edge from its posed position. residual_mm is the largest
-// distance of a voxel of the bone from its position under the best rigid motion of all these voxels.
+// Measures a pose, which must have the displacement and the rig. A voxel counts as wrong if none of the rig bones that
+// its label may follow moves it to within a voxel edge (the longest) of its posed position. For a bone's residual_mm,
+// the rigid motion that fits all its voxels best is found; the residual is the largest distance of a voxel from the
+// position to which this motion moves it.
 PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map = {});
 
 }  // namespace limber

@@ -98,12 +98,12 @@ QualityGate gate_of_limits() {
   return gate;
 }
 
-// The figures of the joints by which the gate `limits` is judged. They come from a report or from a rig and a pose.
+// The figures by which the gate `limits` (joint limits) is judged. They come from a report, or from a rig and a pose.
 struct LimitFigures {
   bool turned = true;              // false: the report names no turned joint
   int limited = 0, unlimited = 0;  // number of joints with limits and without
-  double excess_degrees = 0;       // excess of the joint that is furthest beyond its limits
-  std::string bone;                // bone of the joint that is furthest beyond its limits
+  double excess_degrees = 0;       // degrees beyond its limits of the joint that exceeds them most
+  std::string bone;                // name of the bone of that joint
 };
 
 void decide_limits(QualityGate& gate, const LimitFigures& figures, const QualityLimits& limits) {

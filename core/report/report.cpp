@@ -19,11 +19,11 @@ namespace limber {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// Returns a value of a volume file as an integer for JSON. These values are whole numbers of up to 2^53.
+// Returns a label's value in files as an integer for JSON. Such values are whole numbers of at most 2^53.
 Json whole(double value) { return static_cast<std::int64_t>(value); }
 
-// Returns how many rest voxels of the label lost their position in the posed volume to other tissue, or 0 where this
-// was not counted.
+// Returns the number of voxels that a label lost to other tissue where regions of the body overlap; 0 if it was not
+// counted.
 std::int64_t overlap_of(const Report& report, Label label) {
   return report.deform && !report.deform->overlap_by_label.empty() ? report.deform->overlap_by_label[label] : 0;
 }
@@ -40,7 +40,7 @@ Json tissue_rows(const Report& report) {
              {"mm3_after", tissue.mm3_after},
              {"mass_before_g", tissue.mass_before},
              {"mass_after_g", tissue.mass_after}};
-    // A tissue that was absent before posing has no change in percent.
+    // For a tissue that was absent before posing, a change in percent makes no sense.
     if (tissue.voxels_before) {
       row["volume_change_percent"] = tissue.volume_change_percent;
       row["mass_change_percent"] = tissue.mass_change_percent;
@@ -92,7 +92,7 @@ Json settled_of(const SettledFlesh::Report& settled) {
           {"largest_shift_mm", settled.largest_shift_mm}};
 }
 
-// Returns the value that stands for the label in files, or the label itself where no tissue was measured.
+// Returns the label's value in the user's files as text; the label itself if the report has no tissues.
 std::string key_of(const Report& report, Label label) {
   if (report.metrics)
     for (const TissueChange& tissue : report.metrics->tissues)
@@ -223,7 +223,7 @@ Json gate_of(const QualityGate& gate) {
   return row;
 }
 
-// Adds to the JSON what was measured of the pose itself: bones, limbs, exposure, air and bands.
+// Adds the measures of the posed body to the JSON: bones, limbs, exposed tissue, enclosed air and bands.
 void add_body(const Report& report, Json& json) {
   if (report.doubts) json["doubts"] = *report.doubts;
   if (report.whole_body) json["whole_body"] = *report.whole_body;
@@ -260,7 +260,7 @@ Json seconds_of(const StageSeconds& seconds) {
   return row;
 }
 
-// Formats one line of a table as printf does, with room for any length.
+// Returns one line of a table, formatted as by printf, of any length.
 [[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
   std::va_list values, again;
   va_start(values, format);
@@ -357,7 +357,7 @@ InputFile describe_input(const Path& path) { return {path.string(), sha256_of_fi
 double peak_memory_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux counts in units of 1024 bytes
+  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux gives ru_maxrss in units of 1024 bytes
 }
 
 std::string to_json(const Report& report) {
@@ -391,7 +391,7 @@ std::string to_json(const Report& report) {
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   for (const QualityGate& gate : report.gates) json["gates"].push_back(gate_of(gate));
-  // Bytes that are not UTF-8, for example in a name, are replaced, so that the report does not fail.
+  // Replaces bytes that are not UTF-8, for example in a name, since dump() would throw otherwise.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The report on a posed volume (schema limber-report/1): the settings, the input files, how long each stage took, and
-// what changed. A figure that was not measured is left out, never written as zero.
+// The report on a posed volume (JSON of schema limber-report/1): the settings, the input files, the time of each stage,
+// and what the pose changed. A figure that was not measured is left out, never written as zero.
 #pragma once
 
 #include <chrono>
@@ -41,10 +41,10 @@ struct StageSeconds {
 // A joint that a pose turns, named by its bone.
 struct TurnedJoint {
   std::string bone;
-  double degrees = 0;  // angle from the rest pose, relative to the parent
-  glm::dvec3 axis{0};  // unit vector of the rotation axis in world space, with the parent posed
-  glm::dvec3 head{0}, tail{0}, parent_head{0};  // positions of the posed bone and its parent, world, mm
-  std::optional<double> excess_degrees;         // angle beyond the bone's limits; empty without limits
+  double degrees = 0;                           // angle of the bone's rotation from rest, relative to its parent
+  glm::dvec3 axis{0};                           // unit vector of the rotation axis in the pose, world
+  glm::dvec3 head{0}, tail{0}, parent_head{0};  // posed positions of the bone and of its parent's head, world, mm
+  std::optional<double> excess_degrees;         // degrees beyond the bone's limits, 0: within; empty: no limits
 };
 // Returns the turned joints in the order of the rig's bones.
 std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose);
@@ -54,34 +54,34 @@ struct Report {
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;
-  std::optional<std::vector<GlidedJoint>> glide;  // joints whose bones would overlap; empty where joints do not glide
+  std::optional<std::vector<GlidedJoint>> glide;  // joints whose bones would overlap; none: joints do not glide
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::optional<std::vector<std::string>> doubts;  // why inputs may not match (input_doubts.h); empty: unchecked
-  std::optional<bool> whole_body;                  // true: the rig has legs, and arms or a head; empty without a rig
+  std::optional<std::vector<std::string>> doubts;  // why inputs may not match (input_doubts.h); none: unchecked
+  std::optional<bool> whole_body;                  // true: the rig has legs, and arms or a head; none: no rig
   PosedBones posed_bones;
   std::optional<Exposure> exposure;
-  std::optional<WorstPlace> air_pocket;  // the largest air pocket, where the pose enclosed air
+  std::optional<WorstPlace> air_pocket;  // the largest pocket of air that the pose encloses; none: no such air
   std::optional<std::vector<Band>> bands;
-  std::vector<double> dice;  // coefficient of each label (dice.h); empty: not measured
+  std::vector<double> dice;  // Dice's coefficient of each label (dice.h); empty: not measured
   std::optional<DeformReport> deform;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;
 };
 
-// Measures the pose itself. Measures exposure, bones, limbs and bands where the displacement (and the rig) are known,
-// and the largest air pocket where `report.metrics` says that air was enclosed. Also stores whether the rig is that of
-// a whole body.
+// Measures the posed body and stores the results in `report`. Exposed tissue is measured if the displacement is known;
+// bones, limbs and bands if there is a rig too; the largest air pocket if `report.metrics` says that air was enclosed.
+// Also stores whether the rig is that of a whole body.
 void measure_body(const JudgedPose& pose, const BoneMap& map, Report& report);
 // Judges the figures of the report and stores the gates in report.gates (quality_gates.h).
 void judge(Report& report);
-// Returns the sentences of the gates that failed and that make a command with --strict fail.
+// Returns the sentence of each gate that failed and for which a command with --strict fails.
 std::vector<std::string> failed_gates(const Report& report);
 
 std::string to_json(const Report& report);
 void write_report(const Report& report, const Path& path);
-// Returns the seconds that the method itself took, from a report's JSON text. Computing weights, reading files and
-// writing the report are not included. Returns 0 where the report has no times.
+// Returns the seconds that the posing method took, from the JSON text of a report; 0: the report has no times. The time
+// for computing weights, reading files and writing the report is not included.
 double method_seconds(const std::string& report);
 // Prints the report as a table that fits a terminal of 100 columns.
 void print_report(std::ostream& out, const Report& report);

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Returns an object of the report, or an empty object where the report lacks it.
+// Returns the report's object with this key; an empty object if there is none.
 Json part(const Json& report, const char* key) {
   return report.is_object() && report.contains(key) && report[key].is_object() ? report[key] : Json::object();
 }

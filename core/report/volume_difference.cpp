@@ -8,7 +8,7 @@
 namespace limber {
 
 DifferingSide differing(const LabelVolume& volume, const TissueVoxels& tissue, const LabelVolume& from) {
-  constexpr std::int64_t kGrain = 64;  // number of bricks that one task of parallel_for takes
+  constexpr std::int64_t kGrain = 64;  // number of bricks (cubes of 8^3 voxels) per task of parallel_for
   const AffineTransform to_world = world_from_voxel(volume.grid), to_voxel = voxel_from_world(from.grid);
   DifferingSide side;
   side.voxels.resize(static_cast<std::size_t>(tissue.size()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds where two volumes of one body differ: the centre of each tissue voxel of one volume is looked up in the other.
-// The volumes may have different grids; where the grids are aligned, the lookup is exact.
+// Finds where two volumes of one body differ: for each tissue voxel of one volume, the label of the other volume at the
+// voxel's centre is read. The volumes may have different grids; if these are aligned, the comparison is exact.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ struct DifferingSide {
     std::int64_t both() const { return other_tissue + air; }
     bool operator==(const Count&) const = default;
   };
-  std::vector<Differs> voxels;    // #tissue voxels of this volume, in the order of TissueVoxels
-  std::map<Label, Count> counts;  // for each label of this volume that has voxels that differ
+  std::vector<Differs> voxels;    // one value per tissue voxel of this volume, in the order of TissueVoxels
+  std::map<Label, Count> counts;  // number of differing voxels, by label of this volume
   Count total;
 
   bool operator==(const DifferingSide&) const = default;

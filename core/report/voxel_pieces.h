@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the connected components (pieces) of a list of voxels, such as the voxels that a measure found faulty. The list
-// should be short compared with its grid.
+// Finds the connected components (pieces) of a list of voxels, such as the voxels that a measure found to be wrong. It
+// is meant for lists that are short compared with the number of the grid's voxels.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 namespace limber {
 
 // Returns the connected components of the voxels, where voxels that meet by a face, an edge or a corner are connected
-// (26-connected). The largest component comes first; of equally large ones the first in the list. Each component is a
-// list of ascending indices into `voxels`.
+// (26-connected). The largest component comes first; equally large ones are in the order of their first voxels. Each
+// component is a list of ascending indices into `voxels`.
 //   voxels  indices into the grid, ascending and distinct
-//   reach   steps along each axis within which voxels are connected: 2 also connects across a gap of one voxel
+//   reach   largest offset between two connected voxels, along each axis: 2 connects across a gap of one voxel
 std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::vector<std::int64_t>& voxels,
                                                  const glm::ivec3& reach = glm::ivec3(1));
 

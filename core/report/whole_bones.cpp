@@ -13,7 +13,8 @@
 namespace limber {
 
 namespace {
-constexpr double kAstray = 1e-3;  // fraction of a bone's voxels that may be wrong by rounding at its border
+// Largest fraction of a bone's voxels that may follow a wrong rig bone: so many may be due to rounding at its border.
+constexpr double kAstray = 1e-3;
 
 // Returns for each voxel of the bone graph the bone with the largest weight, as an index into the bones of `weights`.
 std::vector<int> followed_bones(const BoneGraph& graph, const TissueVoxels& tissue, const SkinWeights& weights) {
@@ -31,7 +32,7 @@ std::vector<int> followed_bones(const BoneGraph& graph, const TissueVoxels& tiss
 
 double residual_of(const std::vector<std::int32_t>& voxels, const BoneGraph& graph, const AffineTransform& to_world,
                    const std::vector<int>& followed, const std::vector<RigidTransform>& posed_from_rest) {
-  // If one motion moves all the voxels, the residual is 0.
+  // If all voxels follow one rig bone, they move rigidly and the residual is 0.
   const bool is_one =
       std::all_of(voxels.begin(), voxels.end(), [&](std::int32_t i) { return followed[i] == followed[voxels[0]]; });
   if (is_one) return 0;
@@ -78,7 +79,7 @@ std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels
   const BoneGraph graph = gather_bone(volume, tissue, kinds);
   const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
   const std::vector<int> followed = followed_bones(graph, tissue, weights);
-  std::vector<int> in_rig;  // rig bone of each bone of the weights; -1: the rig lacks it
+  std::vector<int> in_rig;  // index in the rig of each bone of the weights; -1: the rig lacks the bone
   for (const std::string& name : weights.bones()) {
     const auto found =
         std::find_if(armature.bones.begin(), armature.bones.end(), [&](const Bone& bone) { return bone.name == name; });

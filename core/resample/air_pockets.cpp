@@ -17,11 +17,11 @@ namespace limber {
 namespace {
 
 struct AirRun {
-  int begin, end;  // x of the first voxel, and x past the last voxel
+  int begin, end;  // x of the run's first voxel, and of the voxel after its last
 };
 
-// Finds the runs of air voxels along x that have tissue at both ends, and joins runs that share a voxel face. All other
-// air of a row reaches the border of the grid.
+// Finds the runs of air voxels along x that have tissue at both ends, and joins runs that share a voxel face. Air
+// without tissue at both ends reaches the border of the grid along x, so it is not enclosed.
 class AirRuns {
  public:
   explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
@@ -55,8 +55,8 @@ class AirRuns {
 
  private:
   struct Row {
-    std::int64_t first;            // index of the row's first run
-    int tissue_begin, tissue_end;  // x range [begin, end) of all tissue; grid size and 0 in a row without tissue
+    std::int64_t first;            // index in runs_ of the row's first air run
+    int tissue_begin, tissue_end;  // x range [begin, end) of the row's tissue; (grid size, 0): none
   };
 
   std::int64_t row(int y, int z) const { return y + std::int64_t{size_.y} * z; }
@@ -114,8 +114,8 @@ class AirRuns {
   std::vector<bool> is_open_;
 };
 
-// Returns the volume at rest, in voxels, of the hollow that a posed air pocket comes from: the total of all rest
-// pockets that touch the rest points of the posed pocket's walls.
+// Returns the number of rest voxels in the hollow that a posed air pocket comes from. This is the sum over those air
+// pockets of the body at rest that touch the rest positions of the posed pocket's walls.
 std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest,
                           const std::vector<AirPocket>& rest_pockets,
                           const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
@@ -140,15 +140,15 @@ bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
                      [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
 }
 
-// Returns the label that fills a voxel at a pocket's border: the most common flesh at most two voxels away, or the most
-// common soft tissue right beside the voxel where there is no such flesh.
+// Returns the label that fills an air voxel at a pocket's border: the flesh that is most common within two voxels. If
+// there is no flesh, the label is the soft tissue that is most common among the 26 neighbours.
 Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet& flesh, const LabelSet& soft) {
   for (int reach : {1, 2})
     if (const Label found = most_common_around(posed, v, reach, flesh)) return found;
   return most_common_around(posed, v, 1, soft);
 }
 
-// Returns the label of the skin that covers more than half of a pocket's wall faces; 0 where no skin does.
+// Returns the label of the skin on more than half of the voxel faces around an air pocket; 0: there is no such skin.
 Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSet& flesh, const LabelSet& soft) {
   std::map<Label, std::int64_t> faces;
   std::int64_t walls = 0;

@@ -14,25 +14,26 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the passes over the tissues of a bone. They end earlier once no price changes.
+// Upper limit on the passes over a bone's tissues, each of which computes all prices again. Passes end earlier if no
+// price changes.
 constexpr int kSweeps = 16;
-// Upper limit on the price that is added to a tissue's membership. A tissue that needs a higher price has hardly any
-// voxels near its border, and stays a little too small.
+// Upper limit on a tissue's price (the number added to its memberships), in either direction. A tissue that needs a
+// higher price has hardly any voxels near its border, and stays a little too small.
 constexpr float kMostPrice = 0.2f;
 // Upper limit on the number of tissues that compete for one voxel: those with the largest memberships.
 constexpr int kAsked = 3;
-// Largest noise that is added to memberships. Without noise, all voxels along a flat border have equal memberships, and
-// would change their tissue at once.
+// Upper limit on the random number that is added to each membership. Without it, all voxels along a flat border would
+// have equal memberships and change their tissue together, so a tissue could not gain just some of them.
 constexpr float kDither = 1e-3f;
 
 using Counts = std::map<Label, std::int64_t>;
 
-// A voxel near the border of its tissue, with the tissues that may get it.
+// A voxel near the border of its tissue, and the tissues that may take it.
 struct Contested {
   std::int64_t at;  // index in the posed volume
   std::array<Label, kAsked> label;
-  std::array<float, kAsked> membership;  // largest first
-  int count;                             // number of tissues; 0: the voxel is not contested
+  std::array<float, kAsked> membership;  // membership of each tissue of `label`, descending
+  int count;                             // number of tissues in `label`; 0: the voxel keeps its tissue
 };
 
 struct Bone {
@@ -43,7 +44,7 @@ struct Bone {
 };
 using Bones = std::map<Label, Bone>;
 
-// Calls body(voxel, number of its rig bone) for every bone voxel of a slice.
+// Calls body(voxel, number) for every voxel of bone tissue in a slice; the number is 1 + the index of its rig bone.
 template <class Body>
 void for_each_in_slice(const LabelVolume& bones, int z, const RowSet* rows, const Body& body) {
   const glm::ivec3 size = bones.grid.size;
@@ -69,7 +70,7 @@ float noise(std::uint64_t seed) {
   return static_cast<float>(seed >> 40) / (1 << 24);
 }
 
-// Returns the tissues that may get a voxel, with their memberships. The count is 0 where the voxel keeps its tissue.
+// Returns the tissues that may take a voxel, with their memberships. The count is 0 if the voxel keeps its tissue.
 Contested contested(const LabelSampler::Memberships& found, Label own) {
   Contested voxel{0, {}, {}, 0};
   for (int i = 0; i < found.count; ++i) {
@@ -91,7 +92,7 @@ Contested contested(const LabelSampler::Memberships& found, Label own) {
   return voxel;
 }
 
-// Adds the voxels of one slice to the counts and lists of their rig bones.
+// Adds the bone voxels of one slice to the counts and the contested voxels of the rig bones to which they belong.
 void read_slice(const LabelVolume& posed, const LabelVolume& posed_bones, int z, const RowSet* rows,
                 const LabelSampler& sampler, const LabelSet& is_bone, const RestPoint& rest_point, Bones& bones) {
   for_each_in_slice(posed_bones, z, rows, [&](const glm::ivec3& v, Label number) {
@@ -118,7 +119,8 @@ void add(Bones&& slice, Bones& bones) {
   }
 }
 
-// Returns the tissue with the largest sum of membership and price for a voxel; on a tie, the voxel's tissue `own`.
+// Returns the tissue that gets a voxel: the one with the largest sum of membership and price. If two sums are equal,
+// the voxel's present tissue `own` is preferred.
 Label highest(const Contested& voxel, const std::map<Label, float>& price, Label own) {
   Label best = 0;
   float most = -INFINITY;
@@ -129,10 +131,10 @@ Label highest(const Contested& voxel, const std::map<Label, float>& price, Label
   return best;
 }
 
-// Returns the price (the value added to a tissue's memberships) at which the tissue gets `wanted` of the bone's
-// contested voxels, which are those near a border.
+// Returns the price (the number added to a tissue's memberships) at which the tissue gets `wanted` of the bone's
+// contested voxels (voxels near a border between tissues).
 float price_of(Label label, std::int64_t wanted, const Bone& bone) {
-  std::vector<float> least;  // for each voxel that the tissue may get, the lowest price at which it gets the voxel
+  std::vector<float> least;  // lowest price at which the tissue gets each voxel that it may take
   for (const Contested& voxel : bone.contested) {
     float own = -INFINITY, others = -INFINITY;
     for (int i = 0; i < voxel.count; ++i)
@@ -152,7 +154,8 @@ std::int64_t total(const Counts& counts) {
                          [](std::int64_t sum, const auto& count) { return sum + count.second; });
 }
 
-// Returns the number of posed voxels that each tissue of a bone should have: its share of the bone at rest.
+// Returns the number of posed voxels that each tissue of a bone should have, so that its share of the bone's voxels is
+// as at rest.
 Counts wanted(const Bone& bone) {
   const double scale = double(total(bone.posed)) / double(total(bone.at_rest));
   Counts wanted;

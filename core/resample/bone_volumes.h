@@ -3,10 +3,11 @@
 // grid does: a layer of one voxel, as spongy bone often is, loses up to a twentieth of its voxels to the thicker layers
 // beside it.
 //
-// Each tissue of a rig bone gets a price that is added to its membership (label_sampler.h), and every voxel goes to the
-// tissue with the largest sum. The prices are chosen so that each tissue keeps the share of the bone's voxels that it
-// has at rest [Jacobs, Merkurjev & Esedoglu, Auction dynamics: a volume constrained MBO scheme, J. Comput. Phys. 2018].
-// So the voxels that change their tissue are those nearest to a border, and none changes where the volumes are right.
+// At each voxel every tissue has a membership, the interpolated share of its label there (label_sampler.h). Each tissue
+// of a rig bone gets a price, a number that is added to its memberships, and a voxel goes to the tissue with the
+// largest sum. The prices are chosen so that each tissue keeps the share of the bone's voxels that it has at rest
+// [Jacobs, Merkurjev & Esedoglu, Auction dynamics: a volume constrained MBO scheme, J. Comput. Phys. 2018]. So only
+// voxels near a border change their tissue, and none changes in a bone whose volumes are right.
 #pragma once
 
 #include "core/resample/preserve_connectivity.h"
@@ -14,7 +15,7 @@
 namespace limber {
 
 // Moves voxels of bone tissue to another tissue of the same rig bone until the volumes are as at rest.
-//   posed        labels of bones as read at `rest_point`; changed
+//   posed        posed labels; those of bone voxels are changed
 //   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere
 //   rest_bones   like posed_bones, for the rest volume        soft  tissues that are not bone, by label
 //   returns      the number of changed voxels

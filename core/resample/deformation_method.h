@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The methods by which a pose moves tissue, as one table: every blend (deform/blend_rule.h), then finite elements.
-// Commands, job files, studies, the guide and the editor's lists of methods read it.
+// The table of the methods by which a pose moves tissue: every blend, that is a rule of skinning
+// (deform/blend_rule.h), then finite elements. Commands, job files, studies, the guide and the editor read this table.
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ namespace limber {
 enum class Blend;  // of deform/skinning.h
 
 struct DeformationMethod {
-  std::string word;            // on the command line and in files: "dqs"
-  std::string label;           // in lists and columns: "DQ"
-  std::string name;            // in a study: "Dual quaternions"
-  std::string summary;         // explanation that follows the word in --help
-  std::string description;     // a full sentence, for a tooltip
+  std::string word;            // id on the command line and in files: "dqs"
+  std::string label;           // short name in lists and table columns: "DQ"
+  std::string name;            // full name in a study: "Dual quaternions"
+  std::string summary;         // short explanation of the method, shown after its word in --help
+  std::string description;     // description of the method for a tooltip, a full sentence
   std::optional<Blend> blend;  // none: finite elements
 };
 
@@ -26,7 +26,7 @@ inline constexpr std::string_view kFiniteElements = "fem";
 
 // Returns all methods. The first one is the default.
 std::span<const DeformationMethod> deformation_methods();
-// Returns the method with this word; null where there is none.
+// Returns the method whose `word` (its name on the command line) this is; null: there is none.
 const DeformationMethod* find_method(std::string_view word);
 
 // The methods that a command accepts: all of them, or only the blends (skinning), since previews cannot draw finite

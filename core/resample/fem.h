@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Settings and reports of posing by finite elements. The tissue that the pose bends is meshed (core/mesh), the bones
 // are moved to the pose in steps, and the flesh takes the shape of least energy (core/fem). Tissue that does not bend
-// moves rigidly with its bones. The mesh then carries its voxels (deform/posed_tets.h).
+// moves rigidly with its bones. At the end, the voxels inside each tet move with the tet (deform/posed_tets.h).
 //
 // A pose may be out of reach, because bone meets bone or flesh would have to be pressed to nothing. Then the result is
 // the last pose that was reached on the way from rest, and SolveReport says so.
@@ -27,8 +27,8 @@ enum class FemQuality { Draft, Normal, Fine };
 
 struct Fem {
   bool contact = false;                     // true: skin is pushed apart instead of passing through skin
-  FemQuality quality = FemQuality::Normal;  // tets across the thinnest bent limb: 8, 12, or 24 around joints
-  std::optional<double> spacing_mm;         // edge length of all tets, instead of the quality's
+  FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
+  std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
   Mesher mesher = Mesher::lattice;
   std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
   std::function<void(const SolveStep&)> on_step;    // called after every iteration
@@ -37,7 +37,7 @@ struct Fem {
 // Size and quality of the tet mesh, at rest and posed.
 struct MeshReport {
   std::int64_t tets = 0, nodes = 0;
-  std::int64_t inverted = 0;                       // tets with det F <= 0 at the end of any step
+  std::int64_t inverted = 0;                       // inverted tets (det F <= 0), summed over the ends of all steps
   double min_det_f = 1;                            // smallest det F of all soft tets in the result
   std::int64_t joint_tets = 0;                     // soft tets between two bones, not counted in min_det_f
   double share_below_fifth = 0;                    // share of the soft tets with det F below 0.2, [0, 1]
@@ -45,19 +45,19 @@ struct MeshReport {
   // Number of nodes of the mesh's surface whose distance from another part of the surface is below 1.5 times the
   // contact distance. They are also counted where contact is off.
   std::int64_t contact_nodes = 0;
-  std::optional<double> min_gap_mm, median_gap_mm;  // smallest and median width of the air gap at contact_nodes
-  std::map<Label, double> volume_change_percent;    // volume change of the tets that hold the label's voxels, by label
+  std::optional<double> min_gap_mm, median_gap_mm;  // smallest and median air gap in front of the contact nodes
+  std::map<Label, double> volume_change_percent;    // volume change of each label, by the tets that hold its voxels
   std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends, by label
-  std::string fallback;                             // the mesher's warning when it used a fallback; empty: none
+  std::string fallback;  // tells the user that larger tets or another mesher were used; empty: as requested
 };
 
 struct SolveReport {
   bool converged = false;
   double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
-  std::string blocked_by;  // what blocks the pose; empty where the solve converged
+  std::string blocked_by;  // tells the user what blocks the pose; empty if the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
-  int analyses = 0;        // symbolic analyses of the matrix's sparsity pattern, which contact changes
-  double residual_mm = 0;  // longest displacement of a node that the last iteration proposed, mm
+  int analyses = 0;        // number of analyses of the matrix's sparsity pattern; contact changes the pattern
+  double residual_mm = 0;  // longest motion of a node in the last Newton step, mm
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
   // are written at their exact positions.
   double bone_drift_mm = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Meshes the tissue that a pose bends and solves for its posed shape. This is the stage of posing by finite elements
-// that comes before any voxel is written (resample.h).
+// Meshes the tissue that a pose bends and solves for the mesh's posed shape. The posed voxels are written afterwards
+// (resample.h).
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ struct FemShape {
   FemSeconds cpu;  // CPU time of each stage of the solve
 };
 
-// Returns the solved shape of the tissue that the pose bends; null where the pose bends nothing.
+// Returns the solved shape of the tissue that the pose bends; null: the pose bends nothing.
 //   weights  rigid in bone tissue: each bone voxel follows one rig bone alone
 //   throws Error when the tissue cannot be meshed or memory does not suffice
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
@@ -41,7 +41,7 @@ class FemSequence {
               const LabelSet& is_bone, const SkinWeights& weights, const Armature& armature, std::vector<Pose> poses,
               Fem fem, Progress& progress = no_progress());
 
-  // Returns the shape of the next pose; null where no pose of the sequence bends anything.
+  // Solves the next pose of the sequence and returns its shape; null: no pose of the sequence bends anything.
   std::shared_ptr<const FemShape> next(Progress& progress = no_progress());
 
  private:
@@ -51,8 +51,8 @@ class FemSequence {
   std::vector<Pose> poses_;
   Fem fem_;
   double size_ = 1;                         // thickness of the thinnest bent limb, relative to an adult's elbow (1)
-  double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets, mm
-  std::vector<FemModel::Waiting> waiting_;  // nodes held for a while; `until` counts along the way through all poses
+  double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets around joints, mm
+  std::vector<FemModel::Waiting> waiting_;  // nodes that a bone moves at first; `until` is a position on the whole path
   std::size_t solved_ = 0;                  // number of poses solved so far
   FemShape last_;                           // the shape solved last; at rest before the first solve
 };

@@ -2,9 +2,9 @@
 // Writes and reads two files by which another process can watch a finite element solve:
 //   NAME.mesh  the tets at rest, written once
 //   NAME.step  the positions of nodes and bones after the newest iteration, and at the end their final positions
-// Each step replaces the one before by a rename, so that a reader always sees a whole step and the disk holds only one.
-// Positions are single precision: 0.1 um on a body. Only the program version that wrote a file can read it; the files
-// are not meant for storage.
+// Each new .step file replaces the previous one by a rename, so that a reader always sees a whole file. Positions have
+// single precision, about 0.1 um on a body. Only the program version that wrote a file can read it; the files are not
+// meant for storage.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ struct FemMesh {
 struct FemStep {
   double reached = 0;                   // share of the way from rest to the pose, [0, 1]
   int iteration = 0;                    // iterations so far
-  double residual_mm = 0;               // longest displacement of a node that this iteration proposed
+  double residual_mm = 0;               // longest motion of a node in this iteration's Newton step
   std::vector<RigidTransform> motions;  // posed-from-rest motion of each bone of the weights
   Eigen::MatrixX3d V;                   // #V node positions, world, mm
 };
@@ -47,8 +47,8 @@ FemMesh fem_mesh_of(const TissueModel& model);
 
 std::string encode(const FemMesh& mesh);
 std::string encode(const FemStep& step);
-// Decode the bytes of a file. Both functions throw Error when the bytes are not a file of this kind or contradict each
-// other.
+// Decode the bytes of a .mesh or a .step file. Both functions throw Error if the bytes are not such a file or
+// contradict each other.
 //   where  name of the file, for messages
 FemMesh decode_fem_mesh(const std::string& bytes, const std::string& where);
 FemStep decode_fem_step(const std::string& bytes, const std::string& where);

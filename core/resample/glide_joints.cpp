@@ -14,7 +14,7 @@ namespace limber {
 
 namespace {
 
-// Rotation per step, radians. It is so small that two bones approach each other by a voxel or two at most.
+// Largest rotation per step, radians. In so small a step two bones approach each other by at most a voxel or two.
 constexpr double kStep = 10 * std::numbers::pi / 180;
 constexpr int kMargin = 2;  // width of the border around a bone in its distance field, voxels
 
@@ -22,7 +22,7 @@ struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
 
   void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // true for NaN as well
+  bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // also true if a coordinate is NaN
   bool contains(const glm::dvec3& p) const {
     return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
   }
@@ -37,7 +37,7 @@ AffineTransform back(const AffineTransform& rigid) {
 // The bone tissue that belongs to one rig bone.
 struct BoneTissue {
   std::vector<glm::ivec3> voxels;
-  Box box;  // holds the centres of the voxels; mm along the grid's axes
+  Box box;  // box around the centres of the voxels, mm along the grid's axes
 };
 
 // Returns the bone tissue of every rig bone.
@@ -76,8 +76,8 @@ double angle_of(const glm::dquat& turn) {
 
 // A joint of the rig that the pose bends.
 struct Joint {
-  int bone, against;                 // the rig bone that may be shifted, and its ancestor with bone tissue
-  std::vector<RigidTransform> path;  // motions of `bone` relative to `against`, one per step; the last is the full pose
+  int bone, against;                 // the rig bone that may be shifted; its nearest ancestor with bone tissue
+  std::vector<RigidTransform> path;  // motion of `bone` relative to `against` after each step; the last: in the pose
   double most_mm;                    // upper limit on the length of the shift
   int below = 0;                     // number of bent joints above this one in the rig's hierarchy
 };
@@ -117,8 +117,8 @@ class BentJoints {
     return std::min(length(bone), length(against));
   }
 
-  // Returns the motions of `bone` relative to `against`, one per step; empty where no joint between the two bones
-  // turns.
+  // Returns the motion of `bone` relative to `against` after each step from rest to the pose; empty: no joint between
+  // the two bones turns.
   std::vector<RigidTransform> path_of(int bone, int against) const {
     double angle = 0;
     for (int b = bone; b != against; b = armature_.bones[b].parent) angle += angle_of(pose_.rotation[b]);
@@ -136,8 +136,7 @@ class BentJoints {
   const Pose& pose_;
 };
 
-// Returns the box around the rest positions of those voxels of a bone that at least one of the motions takes into
-// `box`.
+// Returns a box around the rest positions of some voxels of a bone: those that at least one motion moves into `box`.
 Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineTransform>& motions,
                const glm::dvec3& spacing) {
   Box around;
@@ -155,8 +154,8 @@ VoxelBox voxels_around(const Box& box, const glm::dvec3& spacing) {
   return {low - kMargin, high - low + 1 + 2 * kMargin};
 }
 
-// Returns the shortest shift that separates the two bones of a joint, along the grid's axes in the frame of the fixed
-// bone.
+// Returns the shortest shift of joint.bone that separates it from joint.against. The shift's components are along the
+// grid's axes, as if joint.against did not move.
 LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid,
                     const ShiftBound& bound) {
   const glm::dmat3 to_grid = glm::inverse(grid.direction);
@@ -169,7 +168,7 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
   std::vector<AffineTransform> way_back;
   for (const AffineTransform& motion : path) way_back.push_back(back(motion));
-  // Boxes around the voxels of each bone that the other bone can reach. Each box narrows the next one.
+  // Boxes around the voxels of each bone that the other bone can reach. Each box makes the next box smaller.
   const double reach = bound.most_mm + glm::length(grid.spacing);
   const Box first = taken_into(turning.box.grown(reach), fixed, way_back, grid.spacing);
   const Box near_turning = taken_into(first.grown(reach), turning, path, grid.spacing);
@@ -182,16 +181,17 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);
 }
 
-// Returns for each bone the sum of its own shift and the shifts of its ancestors.
+// Returns, for each bone, the sum of its own shift and the shifts of its ancestors, by which the bone's tissue is
+// moved.
 std::vector<glm::dvec3> carried_by(std::vector<glm::dvec3> shifts, const Armature& armature) {
   for (std::size_t b = 0; b < shifts.size(); ++b)
     if (const int parent = armature.bones[b].parent; parent >= 0) shifts[b] += shifts[parent];
   return shifts;
 }
 
-// Returns the shift of a joint; none where its bones do not overlap.
+// Returns the shift of a joint; none: the joint's two bones do not overlap.
 //   motions  posed-from-rest motion of each bone
-//   carried  for each bone the sum of its own and its ancestors' shifts; final for all bones above the joint
+//   carried  #bones: sum of the bone's own shift and its ancestors' shifts; must be final for the bones above the joint
 std::optional<GlidedJoint> glide_joint(const Joint& joint, const Armature& armature,
                                        const std::vector<BoneTissue>& tissue, const Grid& grid,
                                        const std::vector<RigidTransform>& motions,
@@ -228,7 +228,7 @@ GlidedPose glide_joints(const LabelVolume& volume, const TissueVoxels& tissue, c
   const std::vector<BoneTissue> bones = gather(volume, tissue, is_bone, weights, armature);
   const std::vector<Joint> joints = BentJoints(armature, pose, bones, settings).joints;
   const std::vector<RigidTransform> motions = posed_from_rest(armature, glided.pose);
-  // One shift per bone; along the world axes of the posed body, mm.
+  // #bones: the shift of each bone, mm, along the world axes.
   std::vector<glm::dvec3> shifts(armature.bones.size(), glm::dvec3(0));
   std::vector<std::optional<GlidedJoint>> found(joints.size());
   bool any = true;

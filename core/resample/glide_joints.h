@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lets joints glide. A pose rotates every bone exactly as asked; where the two bones of a joint would then overlap, the
-// rotated bone and all its descendants are shifted by the smallest translation that separates them. A rig's joint is
-// one fixed axis or centre, but real joints roll, glide and open, and the axes of rigs are some millimetres off. Axes
-// are not changed here: fitting them is an edit of the rig (core/autorig/joint_axis_fit.h).
+// Lets joints glide. A pose rotates every bone exactly as asked. If the two bones of a joint would then overlap, the
+// rotated bone and all its descendants are shifted by the shortest translation that separates the two bones. The reason
+// is that a rig's joint turns about a fixed axis or centre, while real joints roll, glide and open, and that the axes
+// of rigs are some millimetres off. Axes are not changed here: to fit them is an edit of the rig
+// (core/autorig/joint_axis_fit.h).
 //
 // A joint lies between a rig bone with bone tissue and its nearest ancestor with bone tissue. The weights say which
 // tissue belongs to which rig bone. A shift does not change the angles of other joints, so the shift of each joint is
@@ -28,7 +29,7 @@ namespace limber {
 struct GlideSettings {
   // Upper limit on the shift of a joint, as a share of the length of the shorter of its two rig bones.
   double most_share = 0.05;
-  // Upper limit on the shift of a joint, mm. Where it is set, it replaces most_share.
+  // Upper limit on the shift of a joint, mm; it replaces most_share. None: most_share is the limit.
   std::optional<double> most_mm;
   // Upper limit on the length of the sum of a bone's own shift and the shifts of all its ancestors, mm; none: no limit.
   std::optional<double> whole_mm;
@@ -36,8 +37,8 @@ struct GlideSettings {
 
 // A joint whose bones overlap when the pose rotates them, and the shift found for it.
 struct GlidedJoint {
-  std::string bone, against;  // the rig bone that is shifted, and the one that it would overlap
-  glm::dvec3 shift{0};        // world axes of the posed body, mm
+  std::string bone, against;  // the rig bone that is shifted; the rig bone that it would overlap
+  glm::dvec3 shift{0};        // shift of the bone along the world axes, mm
   double most_mm = 0;         // upper limit on the length of the shift
   bool free = true;           // true: with the shift the bones overlap by half a voxel at most
   double depth_before = 0;    // deepest overlap beyond half a voxel without the shift, mm
@@ -45,8 +46,8 @@ struct GlidedJoint {
 };
 
 struct GlidedPose {
-  Pose pose;                        // the given pose with the shifts; without shifts where nothing overlaps
-  std::vector<GlidedJoint> joints;  // in the rig's order
+  Pose pose;                        // the given pose and the shifts that separate its joints
+  std::vector<GlidedJoint> joints;  // the joints whose bones would overlap, in the order of the rig's bones
 };
 
 // Returns the pose with the shifts that separate the bones of its joints.

@@ -7,14 +7,16 @@ namespace limber {
 
 namespace {
 
-constexpr double kTowardsMiddle = 1.75;  // smallest ratio of depths that means a move towards the limb's axis
+// If a move to a deeper point multiplies the depth by at least this number, it was a move towards the limb's axis.
+constexpr double kTowardsMiddle = 1.75;
 
 struct DeepVoxel {
   glm::ivec3 voxel{0};
-  double depth = 0;  // mm
+  double depth = 0;  // distance to the nearest air, mm
 };
 
-// Returns the deepest voxel whose centre is within `radius` mm of a point; of equally deep ones the first in x, y, z.
+// Returns the deepest voxel (furthest from air) whose centre is within `radius` mm of a point. If several voxels are
+// equally deep, returns the first of them in the order of the volume.
 DeepVoxel deepest_within(const TissueDepth& depth, const Grid& grid, const glm::dvec3& centre, double radius) {
   const glm::dvec3 reach = radius / grid.spacing;
   const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(centre - reach)), glm::ivec3(0)),
@@ -42,8 +44,9 @@ std::optional<double> limb_thickness(const TissueDepth& depth, const Grid& grid,
     if (radius > furthest) return std::nullopt;
     deepest = deepest_within(depth, grid, place, radius);
   }
-  // Off the limb's axis the deepest point of the ball is twice as deep as its centre. On the axis it is hardly deeper,
-  // and further balls would move along the limb to where it is thicker.
+  // Moves to the deepest point of the ball around the current point that just touches air. If the current point is off
+  // the limb's axis, the new one is about twice as deep. If it is on the axis, the new one is hardly deeper, and
+  // further moves would go along the limb to where the limb is thicker.
   for (double before = 0; deepest.depth > kTowardsMiddle * before;) {
     before = deepest.depth;
     deepest = deepest_within(depth, grid, glm::dvec3(deepest.voxel), deepest.depth);

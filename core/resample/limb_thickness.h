@@ -10,9 +10,9 @@
 
 namespace limber {
 
-// Returns the diameter, mm, of the largest ball inside the tissue whose centre is near the joint, at most as far from
-// it as the joint is deep. A joint off the limb's axis, or in the air beside the limb, is first moved towards the axis.
-// Returns nothing if the nearest tissue is further away than a quarter of the grid's longest edge.
+// Returns the diameter in mm of the largest ball inside the tissue whose centre is close to the joint: closer than the
+// joint is to air. A joint off the limb's axis, or in the air beside the limb, is first moved towards the axis. Returns
+// nothing if the nearest tissue is further away than a quarter of the grid's longest edge.
 //   joint  world, mm
 std::optional<double> limb_thickness(const TissueDepth& depth, const Grid& grid, const glm::dvec3& joint);
 

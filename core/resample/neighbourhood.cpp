@@ -9,12 +9,12 @@ namespace limber {
 
 namespace {
 
-constexpr int kReach = 8;  // distance around a rest point within which its tissue is searched, voxels
+constexpr int kReach = 8;  // radius within which nearest_voxel() searches, voxels
 
-// The 3^3 voxels around a voxel are stored as 27 bits, x fastest; bit 13 is the central voxel itself.
+// A set of voxels in the 3^3 cube around a voxel is stored as 27 bits, x fastest; bit 13 is the central voxel.
 constexpr unsigned kCentre = 1u << 13;
 
-// Returns for each of the 3^3 voxels a bit mask of the voxel itself and of those of the 3^3 that are 26-adjacent to it.
+// Returns, for each voxel of the 3^3 cube, the bit mask of the cube's voxels that are equal or 26-adjacent to it.
 const std::array<unsigned, 27>& beside() {
   static const std::array<unsigned, 27> all = [] {
     std::array<unsigned, 27> places{};
@@ -39,8 +39,8 @@ bool bits_hang_together(unsigned places) {
   return places && reached == places;
 }
 
-// Returns for each of the 3^3 voxels a bit mask of those of the 3^3 that share a face with it. The corners and the
-// centre have an empty mask and are in no mask.
+// Returns, for each voxel of the 3^3 cube, the bit mask of the cube's voxels that share a face with it. The cube's
+// corners and centre have an empty mask and are in no mask.
 const std::array<unsigned, 27>& at_faces() {
   static const std::array<unsigned, 27> all = [] {
     const auto from_middle = [](int k) { return std::abs(k % 3 - 1) + std::abs(k / 3 % 3 - 1) + std::abs(k / 9 - 1); };
@@ -58,8 +58,9 @@ const std::array<unsigned, 27>& at_faces() {
 
 constexpr unsigned kFaces = 1u << 4 | 1u << 10 | 1u << 12 | 1u << 14 | 1u << 16 | 1u << 22;
 
-// Returns whether at least one face neighbour of the central voxel is marked, and all marked face neighbours are
-// 6-connected by marked voxels that share a face or an edge with the central voxel.
+// Returns true if at least one face neighbour of the cube's central voxel is marked, and if paths of marked voxels join
+// all marked face neighbours. Steps of a path go through faces, over voxels that share a face or an edge with the
+// central voxel.
 bool faces_hang_together(unsigned places) {
   const unsigned faces = places & kFaces;
   unsigned reached = faces & -faces;
@@ -113,7 +114,7 @@ std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, 
   const double least = std::min({spacing.x, spacing.y, spacing.z});
   double nearest = INFINITY;  // squared distance, mm^2
   glm::ivec3 found(0);
-  // Shell number n holds the voxels n steps from the centre. Each is at least n - 0.5 voxels away from the point.
+  // Shell n holds the voxels n steps from the central voxel. Each of them is at least n - 0.5 voxels away from `point`.
   for (int shell = 0; shell <= kReach && least * (shell - 0.5) < std::sqrt(nearest); ++shell)
     for (int z = -shell; z <= shell; ++z)
       for (int y = -shell; y <= shell; ++y) {

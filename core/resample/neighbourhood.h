@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// Smallest connected component that counts, in voxels. Smaller ones appear and disappear by resampling alone.
+// Smallest connected component that counts, in voxels. Smaller components appear and disappear by resampling alone.
 constexpr std::int64_t kSmallestPart = 50;
 
 // Returns the rest point that the pose moves to a given tissue voxel of the posed volume. Both are in voxel
@@ -29,8 +29,8 @@ inline glm::ivec3 voxel_at(const Grid& grid, std::int64_t at) {
   return {int(at % grid.size.x), int(at / grid.size.x % grid.size.y), int(at / grid.size.x / grid.size.y)};
 }
 
-// Returns the index in components.runs of the run that holds a voxel. Where no run does, it is the index of the next
-// run.
+// Returns the index in components.runs of the voxel run (along x) that contains voxel v. If no run does, returns the
+// index of the next run.
 std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v);
 
 // Returns the index of the connected component that a tissue voxel belongs to.
@@ -38,43 +38,44 @@ inline int component_at(const Components& components, const LabelVolume& volume,
   return components.runs[run_at(components, volume, v)].component;
 }
 
-// Returns the voxel of `label` nearest in mm to a point in voxel coordinates; none when there is none within 8 voxels.
+// Returns the voxel with `label` that is nearest (in mm) to a point in voxel coordinates. Returns nothing if there is
+// no such voxel within 8 voxels.
 std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, const glm::dvec3& point);
 
-// Returns the connected component of `label` nearest to a point in voxel coordinates; -1 when there is none within 8
-// voxels.
+// Returns the connected component of `label` that is nearest to a point in voxel coordinates; -1: there is none within
+// 8 voxels.
 int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point);
 
-// Returns whether the marked neighbours of a voxel are 26-connected without the voxel itself; false when none is
+// Returns true if the marked neighbours of a voxel are 26-connected without the voxel itself, and at least one is
 // marked.
-//   marked  the 3^3 voxels around it, x fastest; the middle one is ignored
+//   marked  the 3^3 voxels around the voxel, x fastest; the entry of the voxel itself is ignored
 bool is_connected_26(const std::array<bool, 27>& marked);
 
-// Returns whether a tissue can lose the voxel without coming apart there: the neighbours with the same label are
-// 26-connected without the voxel.
+// Returns true if the voxel's tissue can lose the voxel without coming apart there: the neighbours that have the same
+// label are 26-connected without the voxel.
 bool is_simple_point(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Returns whether a tissue can gain the voxel without joining two of its components or closing a loop: some neighbours
-// of the voxel have the label, and these neighbours are 26-connected.
+// Returns true if the tissue `label` can gain the voxel without joining two of its components or closing a loop: at
+// least one neighbour of the voxel has the label, and all neighbours with the label are 26-connected.
 bool can_join(const LabelVolume& volume, const glm::ivec3& voxel, Label label);
 
-// Returns whether a voxel can change between air and tissue while the body's components, holes and cavities stay as
-// they are: whether it is a simple point, for 26-connected tissue and 6-connected air [Bertrand & Malandain, Pattern
+// Returns true if a voxel can change from air to tissue or back without a change of the body's components, holes and
+// cavities: it is a simple point, for 26-connected tissue and 6-connected air [Bertrand & Malandain, Pattern
 // Recognition Letters 15, 1994].
 bool air_can_change(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Returns whether all 26 neighbours have the same label as the voxel.
+// Returns true if all 26 neighbours have the same label as the voxel.
 bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Returns whether a tissue can lose a voxel inside the body: is_simple_point holds, and neither the voxel nor any of
-// its 26 neighbours is air or outside the grid.
+// Returns true if the voxel's tissue can lose the voxel and the voxel is inside the body: is_simple_point() is true,
+// and neither the voxel nor any of its 26 neighbours is air or outside the grid.
 bool can_spare_inside(const LabelVolume& volume, const glm::ivec3& voxel);
 
-// Returns a pseudo-random number for a voxel's index, the same on every call. Equally good voxels are sorted by it, so
-// that the first of them do not all lie on one side of the body.
+// Returns a pseudo-random number for a voxel index, always the same for the same index. Lists of equally good voxels
+// are sorted by it, so that their first entries do not all lie on one side of the body.
 std::uint64_t shuffled(std::uint64_t at);
 
-// Returns whether one of a voxel's six face neighbours is air or outside the grid.
+// Returns true if at least one of a voxel's six face neighbours is air or outside the grid.
 bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel);
 
 }  // namespace limber

@@ -12,10 +12,10 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the layers of voxels that one round adds to an organ or takes from it.
+// Upper limit on the layers of voxels that one pass adds to an organ's surface or removes from it.
 constexpr int kLayers = 6;
-// Connected components with fewer voxels keep their size: a change could take them across 50 voxels, and only
-// components of at least 50 voxels are counted.
+// Connected components with fewer voxels than this are not changed. Otherwise a component could fall below 50 voxels,
+// or reach them, and so change the number of counted components: only those of 50 voxels or more count.
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;
 // Number of passes over all organs. An organ that gave voxels in the first pass may be too small afterwards.
 constexpr int kRounds = 2;
@@ -38,7 +38,7 @@ class Organs {
   }
 
   std::map<Label, std::int64_t> run() {
-    std::vector<std::pair<double, Label>> order;  // organs by relative change of volume, the largest first
+    std::vector<std::pair<double, Label>> order;  // (-relative error of the volume, organ), the largest error first
     for (const auto& [label, voxels] : wanted_)
       if (off(label) != 0) order.emplace_back(-std::abs(double(off(label))) / double(voxels), label);
     std::sort(order.begin(), order.end());
@@ -65,8 +65,8 @@ class Organs {
 
   std::int64_t least(Label label) const { return std::llround(std::ceil(double(wanted_.at(label)) * (1 - kMostOff))); }
   std::int64_t most(Label label) const { return std::llround(std::floor(double(wanted_.at(label)) * (1 + kMostOff))); }
-  // Returns the number of voxels that an organ lacks to reach its allowed range; negative: the number of surplus
-  // voxels.
+  // Returns the number of voxels by which an organ is below its allowed range of volumes; negative: above it; 0:
+  // within.
   std::int64_t off(Label label) const {
     return has_[label] < least(label)  ? least(label) - has_[label]
            : has_[label] > most(label) ? most(label) - has_[label]
@@ -85,8 +85,8 @@ class Organs {
       }
   }
 
-  // Returns whether `is` holds for the label of at least one face neighbour of voxel v. The pointer `at` points to v's
-  // own label. Voxels outside the grid are air.
+  // Returns true if is(label) is true for at least one face neighbour of voxel v. Voxels outside the grid are air.
+  //   at  pointer to the label of v in posed_
   template <class Is>
   bool has_beside(const glm::ivec3& v, const Label* at, const Is& is) const {
     const glm::ivec3 size = posed_.grid.size;
@@ -101,8 +101,8 @@ class Organs {
   bool can_give(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] > least(label); }
   bool can_take(Label label) const { return is_flesh(label) && wanted_.contains(label) && has_[label] < most(label); }
 
-  // Adds or removes one layer of voxels at an organ's surface, or as much of the layer as the organ needs. Returns
-  // false where no voxel could change.
+  // Adds one layer of voxels to an organ's surface or removes one, but not more voxels than the organ needs. Returns
+  // false if no voxel could change.
   bool move_surface(Label label) {
     const bool grows = off(label) > 0;
     std::vector<Candidate> surface = surface_of(label, grows);
@@ -137,8 +137,8 @@ class Organs {
     return surface;
   }
 
-  // Returns the tissue that voxel v is given to when `from` loses it: the most common one among the face neighbours
-  // that may grow; 0 where none may.
+  // Returns the tissue that takes voxel v if the tissue `from` loses it: of the face neighbours' tissues that may grow,
+  // the most common; 0: none may grow.
   Label taker(const glm::ivec3& v, Label from) const {
     std::map<Label, int> count;
     for (const glm::ivec3& step : kFaceNeighbours)
@@ -180,11 +180,11 @@ class Organs {
   LabelVolume& posed_;
   const std::map<Label, std::int64_t>& wanted_;
   const LabelSet &soft_, &skin_;
-  // Connected components of the initial volume. Their sizes are kept up to date, their voxel runs are not.
+  // Connected components: their sizes are kept up to date, but their voxel runs are those of the initial volume.
   Components parts_;
-  std::unordered_map<std::int64_t, int> part_of_changed_;  // component of each changed voxel, by voxel index
+  std::unordered_map<std::int64_t, int> part_of_changed_;  // current component of each changed voxel, by voxel index
   std::vector<std::int64_t> has_;                          // number of voxels, by label
-  std::vector<Box> box_;                                   // box around all voxels of the tissue, by label
+  std::vector<Box> box_;                                   // box around all voxels of each tissue, by label
 };
 
 }  // namespace

@@ -10,10 +10,12 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the number of output voxels, as a multiple of the input's. Arms raised from the sides to the sky need
-// some ten times the input's; more than the limit means a broken rig or pose.
+// Upper limit on the number of output voxels, as a multiple of the number of input voxels. Arms that are raised from
+// the sides to above the head need some ten times as many voxels. A pose beyond the limit means that the rig or the
+// pose is broken.
 constexpr std::int64_t kLargestGrowth = 24;
-constexpr std::int64_t kAlwaysAllowed = std::int64_t{1} << 27;  // number of output voxels that is allowed for any input
+// Number of output voxels that is always allowed, however small the input is.
+constexpr std::int64_t kAlwaysAllowed = std::int64_t{1} << 27;
 
 VoxelRange united(const VoxelRange& a, const VoxelRange& b) {
   if (a.empty()) return b;
@@ -26,7 +28,7 @@ VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones, co
   for (std::int64_t brick = 0; brick < std::ssize(lattice.tissue().bricks()); ++brick) {
     if (tets && tets->shares(brick)) continue;
     const auto& box = lattice.bounds(brick);
-    // Rounds like the rasterizer: a thin sliver between two voxel centres still gets the nearer one.
+    // Rounds as the rasterizer does: a sliver of tissue that lies between two voxel centres gets the nearer voxel.
     const VoxelRange voxels{(box.low + (kFixedOne - 1)) >> 16, box.high >> 16};
     range = united(range, {glm::min(voxels.low, voxels.high), glm::max(voxels.low, voxels.high)});
   }
@@ -37,7 +39,7 @@ VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones, co
 VoxelRange rest_tissue(const TissueVoxels& tissue) {
   VoxelRange range;
   for (const TissueVoxels::Brick& brick : tissue.bricks()) {
-    std::uint64_t columns = 0;  // bit x + 8 y: at least one slice has tissue at (x, y)
+    std::uint64_t columns = 0;  // bit x + 8 y: 1 if the brick has tissue at (x, y) in at least one slice
     int lowest = TissueVoxels::kBrick, highest = 0;
     for (int z = 0; z < TissueVoxels::kBrick; ++z) {
       if (!brick.mask[z]) continue;
@@ -45,7 +47,7 @@ VoxelRange rest_tissue(const TissueVoxels& tissue) {
       lowest = std::min(lowest, z);
       highest = z;
     }
-    unsigned row = 0;  // bit x: at least one row has tissue at x
+    unsigned row = 0;  // bit x: 1 if the brick has tissue at x in at least one row
     for (int y = 0; y < TissueVoxels::kBrick; ++y) row |= columns >> (8 * y) & 0xff;
     range =
         united(range, {brick.corner + glm::ivec3(std::countr_zero(row), std::countr_zero(columns) / 8, lowest),

@@ -11,7 +11,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kRounds = 4;  // passes over voxels in contact; in the first, only the larger component gives voxels
+// Number of passes over the voxels at which two components touch. In the first pass only the larger component gives
+// voxels to another tissue, then both do.
+constexpr int kRounds = 4;
 
 std::map<Label, int> large_parts(const Components& components, const LabelSet& soft) {
   std::vector<Label> label(components.voxels.size());
@@ -46,7 +48,7 @@ class Parting {
   std::int64_t part(Label label) {
     find_fused(label);
     std::int64_t changed = 0;
-    // Giving a voxel to another tissue only removes contacts, so voxels without contact are not examined again.
+    // A voxel that is given to another tissue can only end contacts, so voxels without contact are not examined again.
     std::vector<glm::ivec3> touching = std::move(fused_);
     for (int round = 0; round < kRounds && !touching.empty(); ++round) {
       std::vector<glm::ivec3> still;
@@ -62,7 +64,8 @@ class Parting {
     return changed;
   }
 
-  // Finds the voxels of those posed components in which several large rest components (50 voxels or more) have fused.
+  // Finds the posed components in which several large components of the body at rest (50 voxels or more) have fused,
+  // and lists their voxels in fused_.
   void find_fused(Label label) {
     first_of_run_.assign(of_posed_.runs.size(), -1);
     part_of_.clear();
@@ -89,8 +92,9 @@ class Parting {
       if (sources[component].size() > 1) fused_.push_back(v);
   }
 
-  // Finds the large rest component (50 voxels or more) that each voxel of a run comes from. Where two voxels at most
-  // four apart come from the same component, the voxels between them are assumed to come from it too.
+  // Finds the large component at rest (50 voxels or more) that each voxel of a run along x comes from. Only every
+  // fourth voxel is looked up. If two of these come from the same component, so do the voxels between them, by
+  // assumption.
   void find_sources(const glm::ivec3& first, int count, Label label, int* parts) const {
     constexpr int kStep = 4;
     for (int done = -1; done < count - 1;) {
@@ -107,9 +111,9 @@ class Parting {
     return part >= 0 && of_rest_.voxels[part] >= kSmallestPart ? part : -1;
   }
 
-  // Returns the large rest component that a voxel of the current label comes from, -1 when there is none.
+  // Returns the large component at rest (50 voxels or more) that a voxel of the current label comes from; -1: none.
   int part_of(const glm::ivec3& v) const {
-    // Callers ask for voxels along rows, so the run found last is remembered for each of 16 neighbouring rows.
+    // Successive calls ask for neighbouring voxels, so the voxel run found last is stored for each of 16 adjacent rows.
     const std::int64_t row = v.y + std::int64_t{posed_.grid.size.y} * v.z;
     LastRun& last = last_runs_[(v.y & 3) + 4 * (v.z & 3)];
     if (last.row != row || of_posed_.runs[last.run].begin > v.x || of_posed_.runs[last.run].end <= v.x) {
@@ -122,8 +126,8 @@ class Parting {
     return part_of_[first_of_run_[run] + v.x - of_posed_.runs[run].begin];
   }
 
-  // Returns the rest component that a neighbour of voxel v comes from, if it differs from v's own; -1 where all
-  // neighbours come from v's own rest component.
+  // Returns the component at rest of a neighbour of voxel v that comes from another component than v; -1: there is no
+  // such neighbour.
   int touched_part(Label label, const glm::ivec3& v) const {
     const int own = part_of(v);
     for (const glm::ivec3& step : neighbours()) {
@@ -161,7 +165,7 @@ class Parting {
     return false;
   }
 
-  // Returns whether the neighbours of voxel v that come from the same rest component as v are connected without v.
+  // Returns true if voxel v is not needed to connect its neighbours that come from the same component at rest.
   bool part_can_spare(const glm::ivec3& v, Label label) const {
     const int own = part_of(v);
     std::array<bool, 27> same{};
@@ -172,8 +176,8 @@ class Parting {
     return is_connected_26(same);
   }
 
-  // Returns the posed component of `tissue` that touches voxel v; -1 when there is none or there are two large ones (50
-  // voxels or more). A small component beside a large one is ignored.
+  // Returns the posed component of `tissue` that touches voxel v; -1: none does, or two large ones (50 voxels or more)
+  // do. If a large and a small component touch v, returns the large one.
   int only_component(const glm::ivec3& v, Label tissue) const {
     int found = -1;
     for (const glm::ivec3& step : neighbours()) {
@@ -197,14 +201,14 @@ class Parting {
     std::int64_t row = -1, run = 0;
   };
   mutable std::array<LastRun, 16> last_runs_;
-  // Index in part_of_ of each run's first voxel; -1 for runs that do not belong to a large component of the current
-  // label.
+  // Index in part_of_ of the first voxel of each run (voxels in a row along x); -1: the run is not in a large component
+  // of the current label.
   std::vector<std::int64_t> first_of_run_;
-  // Rest component of each voxel of the runs that have an index in first_of_run_; -1: none.
+  // Component at rest of each voxel of the runs that have an index in first_of_run_; -1: none.
   std::vector<int> part_of_;
-  // Voxels of posed components in which several large rest components have fused.
+  // Voxels of the posed components in which several large components of the body at rest have fused.
   std::vector<glm::ivec3> fused_;
-  // Component of each voxel that was given to another tissue, by voxel index.
+  // New component of each voxel that was given to another tissue, by voxel index.
   std::unordered_map<std::int64_t, int> given_;
 };
 

@@ -10,10 +10,10 @@
 namespace limber {
 
 namespace {
-constexpr double kBesideMesh = 10;  // distance from the mesh within which points move with it, mm
+constexpr double kBesideMesh = 10;  // largest distance from the mesh at which a point moves with it, mm
 
-// Returns the posed positions of the points that the mesh moves; none for other points, such as those in unmeshed
-// tissue.
+// Returns, for each point, the position to which the mesh moves it; none: the mesh does not move the point, for example
+// because the point is in tissue that is not meshed.
 std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const TissueVoxels& tissue,
                                                const FemShape& shape, std::span<const glm::dvec3> points) {
   const AffineTransform to_voxel = voxel_from_world(volume.grid), to_world = world_from_voxel(volume.grid);

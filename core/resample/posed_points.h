@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves points of a body to a pose in the same way as resample() moves the tissue around them. Points in bone move
-// rigidly with their bone. With finite elements, points in the mesh move with their tet, and points up to 10 mm beside
-// the mesh move with the nearest point of its border and keep their distance from it. All other points move by the
-// blend of the weights around them (skin/weight_at.h). A point outside the body follows the nearest tissue.
+// Moves points of a body to a pose, each point as resample() moves the tissue around it. Points in bone move rigidly
+// with their bone. With finite elements, points inside the mesh move with their tet. Points up to 10 mm outside the
+// mesh move with the nearest point of its border and keep their distance from the border. All other points are skinned
+// by the weights around them (skin/weight_at.h). A point outside the body follows the nearest tissue.
 #pragma once
 
 #include <span>

@@ -48,7 +48,7 @@ std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& 
   const auto is_open_air = [&](const glm::ivec3& v) {
     return posed.grid.contains(v) && posed.at(v) == 0 && !enclosed.contains(posed.grid.index(v));
   };
-  // Everything beyond the border of the grid counts as open air.
+  // Returns true if a face neighbour of voxel v is air that the body does not enclose, or is outside the grid.
   const auto touches_open_air = [&](const glm::ivec3& v) {
     return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
                        [&](const glm::ivec3& step) { return !posed.grid.contains(v + step) || is_open_air(v + step); });

@@ -25,17 +25,17 @@ namespace limber {
 
 namespace {
 
-constexpr glm::ivec3 kTile = RestPoints::kTile;  // tile size, output voxels: 3 MB of inverse map per thread
-constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points: 48 MB
-constexpr int kReach = 8;          // search radius for soft tissue where a joint opens between bones, voxels
-constexpr double kMostSure = 0.8;  // a voxel keeps its label where its tissue's membership leads by more, [0, 1]
-// Smallest tissue that is tested against the mass limit, voxels: resampling alone changes smaller ones by more.
+constexpr glm::ivec3 kTile = RestPoints::kTile;  // size of a tile, output voxels; its inverse map takes 3 MB
+constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points (48 MB)
+constexpr int kReach = 8;          // largest distance from a rest point at which a missing label is searched, voxels
+constexpr double kMostSure = 0.8;  // a voxel whose tissue's membership leads by more keeps its label, [0, 1]
+// Smallest tissue in voxels that the mass limit applies to: resampling alone changes smaller tissues by more.
 constexpr std::int64_t kJudged = 5000;
 
-// The counts and voxel lists of one tile.
+// What write() finds in one tile of the posed volume: its counts, and the voxels that may need repair.
 struct TileCounts {
   VoxelRange range;
-  RowSet row_used, row_has_bone;  // one entry per row of the range
+  RowSet row_used, row_has_bone;  // one entry per row (along x) of the range
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
@@ -53,14 +53,14 @@ struct TileCounts {
   }
 };
 
-// The soft tissue of one tile: numbers of voxels, and possible changes of labels at its borders.
+// The soft tissue of one tile: the number of its voxels, and the label changes that are possible at its borders.
 struct SoftBorders {
-  std::map<Label, std::int64_t> by_cell;  // number of posed voxels that come from a rest voxel of the tissue
+  std::map<Label, std::int64_t> by_cell;  // number of posed voxels that come from each tissue, by label
   std::vector<BorderMove> moves;
 };
 
-// Returns how many rest points may be stored: 1.25 times the tissue voxels for a small body such as a limb, which the
-// pose may enlarge by a quarter; 0 for a large body.
+// Returns the number of rest points for which to reserve memory: for a small body, such as a limb, one per tissue voxel
+// and a quarter more, since a pose may enlarge it; for a large body none.
 std::int64_t room_for_rest(const TissueVoxels& tissue) {
   const std::int64_t room = tissue.size() + tissue.size() / 4;
   return room <= kMostRest ? room : 0;
@@ -107,8 +107,8 @@ class PosedVoxels {
         [&](const TileCounts& tile) { add(tile); });
   }
 
-  // Gives each soft tissue the volume that it has by the inverse map. Reading interpolated labels takes voxels from
-  // thin tissues and gives them to thick ones.
+  // Gives each soft tissue as many voxels as come from it by the inverse map. This is needed because interpolated
+  // labels favour thick tissues over thin ones.
   void keep_soft_volumes(Progress& progress) {
     SoftBorders borders = soft_borders(progress);
     posed_.report.mended_voxels +=
@@ -173,8 +173,8 @@ class PosedVoxels {
   }
 
  private:
-  // Writes a voxel that a rigid bone has taken from soft tissue. It gets the label of the bone's rest voxel nearest to
-  // its rest point. Where the rest point lies in another bone, this nearest voxel becomes its rest point too.
+  // Writes a voxel that a rig bone has taken from soft tissue. The voxel gets the label of the nearest bone voxel at
+  // its rest point. If the rest point lies in another bone, the nearest voxel of its own bone becomes the rest point.
   void write_bridge(const glm::ivec3& voxel, const LabelVolume& rest_bones, const glm::dvec3& rest) {
     const Label number = posed_bones_.at(voxel);
     const std::optional<glm::ivec3> own = nearest_voxel(rest_bones, number, rest);
@@ -202,7 +202,7 @@ class PosedVoxels {
       for (const auto& [at, from] : origins) posed_.jacobian[at] = posed_.jacobian[from.beside];
   }
 
-  // Calls work(range, tile) for all tiles on several threads, and add(tile) for each of them in order.
+  // Calls work(range, tile) for every tile, on several threads, then add(tile) for one tile after the other, in order.
   template <class Tile, class Work, class Add>
   void for_each_tile(Progress& progress, const char* stage, const Work& work, const Add& add) const {
     const glm::ivec3 size = output_.range.high - output_.range.low + 1, tiles = (size + kTile - 1) / kTile;
@@ -250,8 +250,8 @@ class PosedVoxels {
         }
   }
 
-  // Adds the possible changes of a voxel to air or to the soft tissue of a face neighbour. A change is possible where
-  // the voxel's membership of its own tissue leads by less than kMostSure.
+  // Adds the label changes of a voxel that are possible: to air or to the soft tissue of a face neighbour. The voxel's
+  // membership of its own tissue must exceed its membership of the new one by less than kMostSure.
   void add_moves(const glm::ivec3& voxel, Label label, const glm::dvec3& rest, std::vector<BorderMove>& moves) const {
     static const LabelSet every(65536, 1);
     const LabelSampler::Memberships found = sampler_.memberships(rest, every);
@@ -290,7 +290,7 @@ class PosedVoxels {
     return soft;
   }
 
-  // Returns the volume of a rest voxel as a number of output voxels.
+  // Returns the number of output voxels that have the volume of one rest voxel.
   double output_per_rest() const {
     const glm::dvec3& ratio = lattice_.output().ratio;
     return ratio.x * ratio.y * ratio.z;
@@ -316,8 +316,8 @@ class PosedVoxels {
     if (mends_) rest_points_.keep(map);
   }
 
-  // Fills the inverse map of a range of voxels. Returns false where no tissue reaches the range and no grey values are
-  // asked for.
+  // Fills the inverse map of a range of voxels. Returns false without filling it if the range has no tissue and no grey
+  // values are wanted.
   bool fill(InverseMap& map, const VoxelRange& range) const {
     std::vector<std::int64_t> bricks, pieces;
     for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
@@ -357,7 +357,7 @@ class PosedVoxels {
       }
   }
 
-  // Writes one voxel and returns whether it is bone.
+  // Writes one voxel. Returns true if it is bone.
   bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
     const Label label = label_of(map, i);
     posed_.volume.voxels[at] = label;
@@ -374,7 +374,7 @@ class PosedVoxels {
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
   }
 
-  // Returns whether a voxel may touch air: one of its face neighbours is air or lies in another tile.
+  // Returns true if a voxel may touch air: one of its face neighbours is air, or is in another tile and so unknown.
   static bool may_touch_air(const InverseMap& map, std::int64_t i, const glm::ivec3& v) {
     const glm::ivec3 size = map.range.high - map.range.low + 1;
     std::int64_t stride = 1;
@@ -434,8 +434,8 @@ class PosedVoxels {
 
   float moved_grey(const glm::dvec3& rest) const { return (*grey_)(world_from_rest_ * rest); }
 
-  // Returns the grey value of a voxel of air: the input's value there where it is air at rest too; the lowest value of
-  // the input where the body moved away.
+  // Returns the grey value of an air voxel: the input's value at the same position if there is air at rest, else (the
+  // body has moved away) the lowest value of the input.
   float still_grey(const glm::ivec3& v) const {
     const glm::dvec3 rest = lattice_.output().to_rest(glm::dvec3(v)), world = world_from_rest_ * rest;
     return sampler_.nearest(rest) == 0 && grey_->covers(world) ? (*grey_)(world) : outside_;
@@ -474,11 +474,11 @@ class PosedVoxels {
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;          // soft tissues without skin
-  RestPoints rest_points_;  // rest points of the inverse map, before any repair
+  RestPoints rest_points_;  // rest points of the posed voxels as they are before any repair
   std::vector<UnderSkin> under_skin_;
   std::vector<InnerSkin> inner_skin_;
-  RowSet rows_, bone_rows_;  // rows of the output that hold tissue; those that hold bone tissue
-  LabelVolume posed_bones_;  // for each posed voxel of bone tissue 1 + the index of its rig bone, 0 elsewhere
+  RowSet rows_, bone_rows_;  // 1 for each row of the output that has tissue, that has bone tissue
+  LabelVolume posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
   LabelSampler sampler_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;

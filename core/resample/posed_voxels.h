@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes the voxels of a posed body from its inverse map. Labels are read tile by tile from the rest volume, then
-// repaired where the grid or a stretch tears connected tissue (preserve_connectivity.h, bone_volumes.h), and on request
-// brought back to the tissues' rest volumes (tissue_volumes.h).
+// Writes the voxels of a posed body. Its inverse map, which gives each posed voxel its position at rest, is computed
+// tile by tile, and labels are read from the rest volume there. Then labels are repaired where rotation on the grid or
+// stretch tears connected tissue or changes the volumes of bones (preserve_connectivity.h, bone_volumes.h). On request,
+// soft tissues get their rest volumes (tissue_volumes.h).
 #pragma once
 
 #include <vector>
@@ -28,7 +29,7 @@ struct LabelSets {
   }
 };
 
-// All that write_voxels reads: a body and its deformation.
+// The input of write_voxels(): a body and its deformation.
 struct PosedBody {
   const LabelVolume& volume;  // at rest
   const TissueTable& tissues;
@@ -36,7 +37,7 @@ struct PosedBody {
   const PosedLattice& lattice;
   const RigidBones& bones;
   const PosedTets* tets;     // nullptr: posed without finite elements
-  const TissueDepth* depth;  // at rest, mm; nullptr where no regions of the body can overlap
+  const TissueDepth* depth;  // depth below air at rest, mm; nullptr: no regions of the body can overlap
   const OutputGrid& output;
   bool mends;  // true: repairs tears and lost volumes
 };

@@ -18,15 +18,17 @@ namespace {
 
 // Upper limit on the voxels of a bridge between two components. A longer bridge would invent anatomy.
 constexpr int kLongestBridge = 4;
-// Upper limit on the voxels of a bridge whose voxels all come from beside the tissue at rest.
+// Upper limit on the voxels of a bridge that follows the tissue's trace: all its voxels come from positions inside or
+// beside the tissue at rest.
 constexpr int kLongestTrace = 64;
-// Upper limit on the rest points computed for bridges of more than kLongestBridge voxels, since each takes time.
+// Upper limit on the rest points (positions at rest) that are computed to find long bridges, since each takes time.
 constexpr std::size_t kTraced = 20000;
-// Upper limit on the bridges tried for one component. Each avoids voxels that failed before.
+// Upper limit on the bridges that are tried for one component. Each new bridge avoids the voxels that could not be
+// taken before.
 constexpr int kAttempts = 32;
-// Smallest posed component that is filled up again to 50 voxels; in voxels.
+// Least size, in voxels, of a posed component that is filled up to 50 voxels.
 constexpr int kSmallestKept = kSmallestPart / 2;
-// Number of voxels of a component for which the rest point is looked up.
+// Number of voxels of a posed component whose rest points are computed to find where the component comes from.
 constexpr int kSamples = 4;
 
 struct Part {
@@ -48,7 +50,7 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
 
 class Mending {
  public:
-  // `posed` and `tissue` may be the same volume.
+  //   tissue  the posed tissues, from which voxels may be taken; may be the same volume as `posed`
   Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest,
           const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
       : posed_(posed),
@@ -82,8 +84,8 @@ class Mending {
     int other = -1;  // component at the other end of the bridge
   };
 
-  // Joins large components of a tissue that has `too_many` more of them than at rest. Returns how many are still too
-  // many.
+  // Joins components of a tissue that has `too_many` more large components (50 voxels or more) than at rest. Returns
+  // the excess that is left.
   std::int64_t preserve_connectivity(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     find_stretches(label);
     const std::vector<bool> is_torn = torn(label, parts);
@@ -95,8 +97,8 @@ class Mending {
     return too_many;
   }
 
-  // Joins a component to another one of its tissue. Returns false where no bridge between them is possible.
-  //   along_trace  see shortest_bridge
+  // Joins a component to another component of its tissue by a bridge of voxels. Returns false if no bridge is possible.
+  //   along_trace  as for shortest_bridge()
   bool bridge_from(Label label, int part, bool along_trace) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const std::optional<Bridge> bridge = shortest_bridge(label, part, along_trace);
@@ -106,7 +108,7 @@ class Mending {
     return false;
   }
 
-  // Returns for each posed component whether another one comes from the same component at rest.
+  // Returns, for each posed component, true if another posed component comes from the same component at rest.
   std::vector<bool> torn(Label label, const std::vector<Part>& parts) const {
     std::map<int, std::vector<size_t>> of_rest_part;
     for (size_t i = 0; i < parts.size(); ++i)
@@ -117,7 +119,7 @@ class Mending {
     return torn;
   }
 
-  // Returns the rest components that a few sampled voxels of a posed component come from.
+  // Returns the components at rest from which a posed component comes, as far as kSamples of its voxels tell.
   std::set<int> sources(Label label, int part) const {
     const auto& stretches = stretches_.at(part);
     std::set<int> from;
@@ -128,8 +130,8 @@ class Mending {
     return from;
   }
 
-  // Shrinks components of bone tissue below 50 voxels again whose rest component is smaller than 50: resampling alone
-  // gave them a few voxels more.
+  // Shrinks components of bone tissue to below 50 voxels if they have fewer than 50 at rest. Resampling alone gave such
+  // components a few voxels.
   void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
       const auto from = sources(label, parts[i].component);
@@ -140,8 +142,8 @@ class Mending {
     }
   }
 
-  // Gives voxels of a component to other bone tissue until it has fewer than 50, first those that touch the other
-  // tissue most. Returns false when no voxel is left to give.
+  // Gives voxels of a component to other bone tissue until the component has fewer than 50 voxels. Begins with the
+  // voxels that touch the other tissue most. Returns false if no voxel can be given.
   bool pare(Label label, int part) {
     const std::vector<glm::ivec3> voxels = voxels_of(part);
     while (of_posed_.voxels[part] >= kSmallestPart) {
@@ -163,7 +165,7 @@ class Mending {
     return true;
   }
 
-  // Returns the component of `tissue` that touches voxel v; -1 when there is none or there are several.
+  // Returns the component of `tissue` that touches voxel v; -1: none or several do.
   int only_component(const glm::ivec3& v, Label tissue) const {
     int found = -1;
     for (const glm::ivec3& step : neighbours()) {
@@ -175,7 +177,7 @@ class Mending {
     return found;
   }
 
-  // Fills up components that lost a few voxels to the grid and fell below 50 voxels.
+  // Fills up to 50 voxels those components that have 50 or more at rest and lost a few of them by resampling.
   void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
     find_stretches(label);
     std::set<int> found;
@@ -197,8 +199,8 @@ class Mending {
     }
   }
 
-  // Takes voxels into a component until it has 50, first those that touch it most. Returns false when no voxel is left
-  // to take.
+  // Adds voxels of other tissue to a component until the component has 50. Begins with the voxels that touch the
+  // component most. Returns false if no voxel can be taken.
   bool fill_up(Label label, int part) {
     std::vector<glm::ivec3> voxels = voxels_of(part);
     while (of_posed_.voxels[part] < kSmallestPart) {
@@ -240,14 +242,15 @@ class Mending {
     return taken != taken_.end() ? taken->second : component_at(of_posed_, posed_, v);
   }
 
-  // Returns the shortest bridge from a component to another large component of its tissue, by breadth-first search that
-  // starts at the whole component. Each layer of the search is one more voxel of bridge; crossing small components of
-  // the tissue costs nothing.
-  //   along_trace  allows a longer bridge if all its voxels come from beside the tissue at rest: there the pose has
-  //                stretched a thin sheet so that it falls between the voxel centres
+  // Returns the bridge with the fewest voxels from a component to another large component of its tissue. The search is
+  // breadth-first and starts at all voxels of the component. Each layer of it adds one voxel to the bridge; voxels of
+  // small components of the tissue cost nothing.
+  //   along_trace  true: allows a longer bridge, whose voxels all come from positions inside or beside the tissue at
+  //                rest. This repairs a thin sheet that the pose has stretched so far that it misses voxel centres
   std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
-    // The predecessor of each visited voxel outside the component, also of voxels that cannot be taken.
+    // Predecessor of each visited voxel outside the component, by voxel index. Voxels that cannot be taken have one
+    // too.
     std::unordered_map<std::int64_t, std::int64_t> came_from;
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
@@ -294,7 +297,7 @@ class Mending {
     int begin, end, y, z;
   };
 
-  // Collects the voxel runs of those components of a label that have 25 voxels or more.
+  // Fills stretches_: the voxel runs (along x) of each component of a label that has 25 voxels or more.
   void find_stretches(Label label) {
     stretches_.clear();
     const int height = posed_.grid.size.y;
@@ -314,8 +317,8 @@ class Mending {
     return voxels;
   }
 
-  // Returns whether a tissue may take a voxel. Soft tissue takes voxels from soft tissue, bone tissue from bone tissue,
-  // and whole bones from soft tissue.
+  // Returns true if a tissue may take a voxel. Soft tissue may take voxels of soft tissue, and bone tissue those of
+  // bone tissue. If whole rig bones are repaired (mend_bones), they may take voxels of soft tissue.
   bool can_take(const glm::ivec3& v, Label taker) const {
     const Label label = tissue_.at(v);
     const bool may_give = label && (in_tissue_ ? soft_[label] == soft_[taker] : soft_[label] != 0);
@@ -340,12 +343,14 @@ class Mending {
     return rest_part(label, voxel_at(posed_.grid, start)) == rest_part(label, end);
   }
 
-  // Returns the component at rest nearest to the rest point of a posed voxel, -1 when there is none within 8 voxels.
+  // Returns the component at rest of `label` that is nearest to the rest point of a posed voxel; -1: there is none
+  // within 8 voxels.
   int rest_part(Label label, const glm::ivec3& posed_voxel) const {
     return nearest_component(of_rest_, rest_, label, rest_point_(posed_voxel));
   }
 
-  // Returns whether voxel v touches a third large component of the label, which it would join as well.
+  // Returns true if voxel v touches a large component of the label other than `part` and `other`, which v would join to
+  // them.
   bool joins_another(const glm::ivec3& v, Label label, int part, int other) const {
     return std::any_of(neighbours().begin(), neighbours().end(), [&](const glm::ivec3& step) {
       if (posed_.at_or_air(v + step) != label) return false;
@@ -354,7 +359,7 @@ class Mending {
     });
   }
 
-  // Takes all voxels of a bridge into the tissue. Changes nothing and returns false when they cannot all be taken.
+  // Gives all voxels of a bridge to the tissue. Changes nothing and returns false if one of them cannot be taken.
   bool build(const Bridge& bridge, Label label, int part) {
     std::vector<std::pair<glm::ivec3, Label>> changed;
     for (const glm::ivec3& v : bridge.voxels) {
@@ -378,17 +383,17 @@ class Mending {
   LabelVolume& posed_;
   const LabelVolume &rest_, &tissue_;
   const LabelSet& soft_;
-  // Whether `posed` and `tissue` are the same volume. Otherwise `posed` holds whole rig bones.
+  // True: posed_ and tissue_ are the same volume of tissue labels. False: the labels in posed_ are rig bones.
   const bool in_tissue_;
   const RestPoint& rest_point_;
-  Components of_posed_;  // voxel runs before the first bridge; the sizes are kept up to date
+  Components of_posed_;  // the voxel runs are those before any change, the sizes are kept up to date
   const Components& of_rest_;
   std::map<int, std::vector<Stretch>> stretches_;  // voxel runs of the current label, by component
   std::vector<int> joined_;  // index of the component that each component was joined to, or its own index
-  std::unordered_map<std::int64_t, int> taken_;  // component of each taken voxel, by voxel index
+  std::unordered_map<std::int64_t, int> taken_;  // new component of each taken voxel, by voxel index
   std::vector<glm::ivec3> bridges_;
-  // Rest voxel of each posed voxel that was tried for a long bridge, by voxel index. Once more than kTraced voxels were
-  // tried, further entries are empty.
+  // Voxel at rest from which each posed voxel tried for a long bridge comes, by voxel index. Empty for all voxels that
+  // were tried after the first kTraced ones.
   std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;
   // Voxels that bridges of the current component may not take.
   std::unordered_set<std::int64_t> barred_;
@@ -403,7 +408,8 @@ std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, 
   const std::int64_t parted = part_bones(posed, connected_components(posed, bone_rows.posed, &asked), rest,
                                          connected_components(rest, bone_rows.rest, &asked), soft, rest_point);
   Components of_posed = connected_components(posed, rows.posed);
-  // A soft tissue with one large component is not torn, so only soft tissues with several are examined.
+  // A soft tissue with one large component is not torn. So rest components are computed only for soft tissues with
+  // several large components, and for all bone tissues.
   for (const auto& [label, parts] : large_parts(of_posed)) asked[label] |= parts.size() > 1;
   const Components of_rest = connected_components(rest, rows.rest, &asked);
   return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());

@@ -25,8 +25,8 @@ class Seconds {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// Returns the blend of a method. With finite elements, tissue outside the mesh moves rigidly, for which every blend
-// gives the same result.
+// Returns the method's blend (rule of skinning). For finite elements it returns linear blending: tissue outside the
+// mesh moves rigidly, so every blend gives the same result.
 Blend blend_of(const Method& method) {
   const Blend* blend = std::get_if<Blend>(&method);
   return blend ? *blend : Blend::Linear;
@@ -36,19 +36,19 @@ bool settles_flesh(const Method& method) {
   return std::holds_alternative<Blend>(method) && rule_of(std::get<Blend>(method)).settles_flesh;
 }
 
-// Returns whether two regions of the body may overlap in a voxel. They cannot where all bones have the same motion.
+// Returns true if regions of the body may overlap in the pose. They cannot if all bones have the same motion.
 bool can_fold(const std::vector<RigidTransform>& motions) {
   return std::any_of(motions.begin(), motions.end(), [&](const RigidTransform& m) {
     return m.rotation != motions[0].rotation || m.translation != motions[0].translation;
   });
 }
 
-// Counts the tissue voxels of bricks (blocks of 8^3 voxels) that reach beyond the output grid.
+// Returns the number of tissue voxels in bricks (cubes of 8^3 voxels) whose posed shape reaches beyond the output grid.
 std::int64_t count_dropped(const PosedLattice& lattice, const PosedTets* tets, const VoxelRange& range) {
   const FixedPoint low = range.low * kFixedOne - kFixedOne / 2, high = range.high * kFixedOne + kFixedOne / 2;
   std::int64_t dropped = 0;
   for (std::int64_t b = 0; b < std::ssize(lattice.tissue().bricks()); ++b) {
-    if (tets && tets->shares(b)) continue;  // output_grid has made room for all tets
+    if (tets && tets->shares(b)) continue;  // output_grid() has made the grid large enough for all tets
     const auto& box = lattice.bounds(b);
     if (glm::any(glm::lessThan(box.low, low - kFixedOne)) || glm::any(glm::greaterThan(box.high, high + kFixedOne)))
       dropped += lattice.tissue().bricks()[b].count();
@@ -63,7 +63,8 @@ void tell(const FemShape& shape, DeformReport& report) {
   report.seconds_solve = shape.seconds_solve;
 }
 
-// A body with rigid bones, and all data of it that do not depend on the pose.
+// A body whose weights are rigid in bone tissue (each bone voxel follows one rig bone), with the data that are the same
+// for all poses.
 struct RigidBody {
   const LabelVolume& volume;
   const TissueTable& tissues;
@@ -84,8 +85,8 @@ struct RigidBody {
   }
 };
 
-// Returns the posed volume of one pose.
-//   shape  the solved shape of finite elements, or null
+// Returns the volume of the body in one pose.
+//   shape  the mesh that finite elements have solved for the pose; null: skinning
 Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
                     const Method& method, const ResampleSettings& settings, Progress& progress) {
   const Seconds seconds;

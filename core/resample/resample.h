@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Turns a pose into a posed label volume; the one entry for all methods. A deformation is a set of cells with rest and
-// posed vertices (deform/lattice, and by finite elements deform/posed_tets). The cells are rasterized to the inverse
-// map (deform/inverse_map), and labels are read through it from the rest volume. So there are no holes to fill, and the
-// rest pose gives back the input bit for bit. Every method paints bones rigidly.
+// Computes the label volume of a body in a pose, by any method. The method moves the vertices of cells: of the voxels
+// (deform/lattice), and with finite elements of the tets (deform/posed_tets). The posed cells are rasterized to the
+// inverse map, which gives each posed voxel its position at rest (deform/inverse_map), and labels are read from the
+// rest volume at these positions. So there are no holes to fill, and the rest pose gives back the input bit for bit.
+// Bones move rigidly with every method.
 #pragma once
 
 #include <functional>
@@ -26,54 +27,57 @@ namespace limber {
 using Method = std::variant<Blend, Fem>;
 
 struct ResampleSettings {
-  // true: reads labels from the nearest rest voxel, without repairs; false: by the largest interpolated membership.
+  // true: a posed voxel gets the label of the nearest rest voxel, and nothing is repaired. false: it gets the label
+  // whose interpolated share (membership) is largest.
   bool nearest = false;
   // true: gives soft tissues their rest volumes by moving borders (tissue_volumes.h); not with `nearest`.
   bool mass_exact = false;
-  // With mass_exact, Error is thrown when a soft tissue would have to change by more, %.
+  // Upper limit on the volume change, in %, by which mass_exact corrects a soft tissue; beyond it, Error is thrown.
   double mass_limit_percent = 3;
-  std::optional<double> spacing;     // mm, isotropic output spacing; none keeps the input's
-  bool displacement = false;         // also return the displacement field
-  bool jacobian = false;             // also return det of the Jacobian of the map from rest to the pose
-  bool overlap = false;              // also return the voxels in which regions of the body overlap
+  std::optional<double> spacing;  // output spacing along all axes, mm; none: as the input
+  bool displacement = false;      // true: Posed::displacement is filled
+  bool jacobian = false;          // true: Posed::jacobian is filled (det of the Jacobian of the map from rest to pose)
+  bool overlap = false;           // true: Posed::overlap is filled (voxels in which regions of the body overlap)
   const GreyVolume* grey = nullptr;  // grey values to move together with the labels; nullptr: none
-  // Faces across which tissue is not connected. Null: all touching tissue is connected.
+  // Voxel faces at which limbs touch without being connected. Null: all tissue that touches is connected.
   std::shared_ptr<const Seams> seams;
 };
 
-// Report of the correction that gave soft tissues their rest volumes (mass_exact).
+// Report of the correction that mass_exact has made, to give soft tissues their volumes at rest.
 struct MassExactReport {
   struct Tissue {
-    // Numbers of posed voxels: wanted, before the correction, and after it.
+    // Number of the tissue's posed voxels: wanted, before the correction, and after it.
     std::int64_t wanted = 0, before = 0, after = 0;
   };
   std::map<Label, Tissue> tissues;
   std::int64_t changed_voxels = 0;
 };
 
-// Counts and times of one resampling. Metrics that need only the two volumes are computed by compare().
+// Counts and times of one call of resample(). Metrics that need only the rest volume and the posed volume are computed
+// by compare().
 struct DeformReport {
   std::int64_t tissue_voxels = 0;
-  std::int64_t dropped_voxels = 0;       // tissue voxels whose image lies outside the output grid
-  std::int64_t new_hole_voxels = 0;      // posed voxels inside the image of a tissue cell that carry no label
-  std::int64_t overlap_voxels = 0;       // posed voxels in which cells overlap that are no neighbours at rest
+  std::int64_t dropped_voxels = 0;       // tissue voxels whose posed position is outside the output grid
+  std::int64_t new_hole_voxels = 0;      // posed voxels inside a posed tissue cell that have no label
+  std::int64_t overlap_voxels = 0;       // posed voxels in which posed cells overlap that are not neighbours at rest
   std::int64_t bone_overlap_voxels = 0;  // posed voxels in which bone tissue of two rig bones overlaps
   // Number of voxels that were moved to another tissue to repair skin, connected components (preserve_connectivity.h)
   // and volumes.
   std::int64_t mended_voxels = 0;
-  std::int64_t new_skin_voxels = 0;    // voxels made skin because a seam or a stretch exposed flesh or bone
+  std::int64_t new_skin_voxels = 0;    // voxels that became skin because the pose exposed flesh or bone to air
   std::int64_t filled_air_voxels = 0;  // air voxels filled in hollows that the pose closed or made larger
-  // Size 65536, by label: number of overlapping voxels that the label lost to another tissue.
+  // Number of voxels that each label lost to another tissue where tissues overlap; 65536 values, by label.
   std::vector<std::int64_t> overlap_by_label;
   struct BoneResidual {
     std::string name;
-    // Largest distance of a posed bone voxel from the position to which the bone's motion takes its rest point.
+    // Largest distance between a posed bone voxel and the position to which the bone's motion moves its rest point, mm.
     double rigid_residual_mm = 0;
     std::int64_t voxels = 0;  // posed voxels of bone tissue of this rig bone
   };
   std::vector<BoneResidual> bones;              // rig bones with posed bone tissue
-  std::optional<SettledFlesh::Report> settled;  // only with mixed blending, and only where something bends
-  // Voxels that organs gained (positive) or lost (negative) to keep their volume (organ_volumes.h).
+  std::optional<SettledFlesh::Report> settled;  // only with mixed blending; none: the pose bends nothing
+  // Number of voxels that each organ gained (positive) or lost (negative) to keep its volume (organ_volumes.h), by
+  // label.
   std::map<Label, std::int64_t> kept_organs;
   std::optional<MassExactReport> mass_exact;
   std::optional<MeshReport> mesh;                     // only with finite elements, and only where something bends
@@ -87,10 +91,10 @@ struct Posed {
   DeformReport report;
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
   ZeroedVector<float> jacobian;          // on the output grid; zero in air
-  // On the output grid. 1: tissue overlaps in the voxel, 2: bone tissue of two bones overlaps.
+  // Overlap in each voxel of the output grid: 0: none, 1: tissue overlaps, 2: bone tissue of two bones overlaps.
   ZeroedVector<Label> overlap;
   GreyVolume grey;
-  // Only with finite elements, and only where something bends (fem_shape.h).
+  // The mesh that finite elements have solved (fem_shape.h); null: skinning, or the pose bends nothing.
   std::shared_ptr<const FemShape> shape;
 };
 
@@ -101,9 +105,9 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
                const SkinWeights& weights, const Pose& pose, const Method& method,
                const ResampleSettings& settings = {}, Progress& progress = no_progress());
 
-// Resamples a sequence of poses, such as the frames of a motion, and calls on_posed with the index and the result of
-// each. Finite elements mesh once for all poses and start each solve from the shape that the solve before it reached
-// (fem_shape.h), even where that shape falls short of its pose.
+// Computes the posed volume of each pose of a sequence, such as the frames of a motion, and calls on_posed(index,
+// volume) for each. Finite elements mesh once for all poses. Each solve starts from the shape that the previous solve
+// reached (fem_shape.h), also if that shape is short of its pose.
 void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                        const SkinWeights& weights, const std::vector<Pose>& poses, const Method& method,
                        const ResampleSettings& settings,

@@ -13,14 +13,14 @@ namespace limber {
 
 namespace {
 
-// Edge of a block, voxels. A caller that asks for many points soon asks for the points beside them too.
+// Edge of a block of voxels whose rest points are computed at once. Callers mostly ask for many points close together.
 constexpr int kBlock = 8;
-// Number of points of a block that are traced singly. After them the whole block is traced.
+// Number of rest points of a block that are computed one by one. The next request computes the whole block.
 constexpr int kMany = 3;
 
 static_assert(RestPoints::kTile.x <= 64, "a row's tissue is the bits of one word");
 
-// Returns 64 bits of which bit x says whether the map's voxel at first + x is covered; count is at most 64.
+// Returns a word whose bit x is 1 if the map's voxel at index first + x has tissue, for x below `count` (at most 64).
 std::uint64_t covered_bits(const InverseMap& map, std::int64_t first, std::int64_t count) {
   std::array<std::uint8_t, 64> covered{};
   for (std::int64_t x = 0; x < count; ++x) covered[x] = map.is_covered(first + x);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the rest point of every voxel of a posed volume. The inverse map is computed and dropped tile by tile, so its
-// rest points are stored as far as there is room. The others are computed again when they are asked for.
+// Finds the rest point (position at rest) of every voxel of a posed volume. The inverse map, which contains rest
+// points, is computed and deleted tile by tile. Rest points of tiles are stored as far as the room suffices. Others are
+// computed again on request.
 #pragma once
 
 #include <atomic>
@@ -19,7 +20,7 @@ class RestPoints {
   // Sets `map` to the inverse map of a range of voxels of the output lattice.
   using Trace = std::function<void(InverseMap& map, const VoxelRange& range)>;
 
-  // Largest size of the tiles that are given to keep(), voxels. Tiles at the upper ends of the grid may be smaller.
+  // Size in voxels of the tiles given to keep(). Tiles at the upper ends of the grid may be smaller.
   static constexpr glm::ivec3 kTile{64, 64, 32};
 
   //   output  voxels of the posed volume on the output lattice
@@ -39,8 +40,8 @@ class RestPoints {
     std::int64_t first = 0;
   };
   struct Block {
-    int asked = 0;                // number of points asked for so far
-    std::vector<glm::vec3> rest;  // all points of the block, x fastest; empty until many were asked for
+    int asked = 0;                // number of the block's points requested so far
+    std::vector<glm::vec3> rest;  // rest points of the block, x fastest; empty until more than kMany were requested
   };
 
   std::int64_t tile_at(const glm::ivec3& voxel) const;
@@ -55,7 +56,7 @@ class RestPoints {
   std::atomic<std::int64_t> used_ = 0;
   std::unique_ptr<glm::vec3[]> points_;
   std::vector<std::vector<Row>> tiles_;             // rows of each tile, y fastest; empty: the tile is not stored
-  std::unordered_map<std::int64_t, Block> blocks_;  // traced blocks, by the index of their lowest voxel
+  std::unordered_map<std::int64_t, Block> blocks_;  // blocks with requested points, by the index of their lowest voxel
 };
 
 }  // namespace limber

@@ -10,16 +10,17 @@ namespace limber {
 
 namespace {
 
-// Depth below air of the deepest voxel that touches a thin skin from below, voxels.
+// Upper limit on the depth below air, in voxels, at which tissue can touch the underside of thin skin.
 constexpr double kSkinReach = 3;
-// Distance within which skin is searched, voxels.
+// Largest distance, in voxels, at which skin is searched to cover a bare voxel.
 constexpr int kFurthestSkin = 8;
-// Ratio of largest to smallest voxel spacing above which a volume counts as coarse slices.
+// A volume counts as coarse slices if its largest voxel spacing is more than this many times its smallest.
 constexpr double kCoarse = 2;
-// Skin counts as closed when the surface has more than this many skin voxels per bare voxel.
+// Skin counts as closed if the body's surface has more than this many skin voxels per voxel of bare flesh.
 constexpr int kClosed = 9;
 
-// Returns the voxel of a rest point. Rest points lie in tissue, so truncation suffices; std::floor would be a call.
+// Returns the voxel that contains a rest point. Rounds by truncation, which is faster than std::floor and suffices
+// since rest points are in tissue, so not far below 0.
 glm::ivec3 voxel_of(const glm::dvec3& rest_point) { return glm::ivec3(rest_point + 1.5) - 1; }
 
 }  // namespace
@@ -64,8 +65,8 @@ bool SkinAtRest::is_bare(const glm::ivec3& voxel) const {
   return label && soft_[label] && !skin_[label] && touches_air(volume_, voxel) && touches_outside(voxel);
 }
 
-// Returns whether a voxel lies deep below the outside air. Unlike in TissueDepth, air that the body encloses does not
-// count.
+// Returns true if a voxel is deep below the outside air. Air that the body encloses does not count (in TissueDepth it
+// does).
 bool SkinAtRest::is_deep(const glm::ivec3& voxel) const {
   if (depth_.at_voxel(voxel) > deep_) return true;
   if (enclosed_air_.empty()) return false;
@@ -112,7 +113,8 @@ Label SkinAtRest::skin_over(const glm::dvec3& rest_point) const {
 
 std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, const LabelSet& skin) {
   std::int64_t covered = 0;
-  // Skin spreads from existing skin layer by layer. Where no voxel lies beside skin, skin is searched further away.
+  // Bare voxels beside skin become skin, layer by layer. If no bare voxel is beside skin, skin is searched further
+  // away.
   for (int reach = 1; reach <= kFurthestSkin && !bare.empty();) {
     std::vector<glm::ivec3> left;
     std::vector<std::pair<glm::ivec3, Label>> layer;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Determines where the surface of a body at rest is skin, and which tissue must stay covered in a pose. Skin is often
-// one voxel thick: a stretch opens it, and the two sides of a seam have none. Tissue that is covered at rest must be
-// covered when posed.
+// Determines where the surface of a body at rest is skin, and which tissue must stay covered in a pose: tissue that is
+// covered at rest. In a pose such tissue may come to lie bare, since stretch opens skin that is one voxel thick, and
+// since there is no skin at a seam (sheet of voxel faces where two limbs touch at rest).
 //
 // In a volume of coarse slices, each slice has skin around it, but the steps between slices have none. When such a body
 // is rotated, its surface would need far more skin than there is. So it counts as having open skin: its flesh may lie
@@ -24,14 +24,14 @@ class SkinAtRest {
   SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft,
              const LabelSet& skin);
 
-  // Returns whether soft tissue from this rest point is covered at rest and must not lie bare when posed.
+  // Returns true if the soft tissue at a rest point is covered at rest, so that it must not lie bare when posed.
   bool was_covered(const glm::dvec3& rest_point) const;
   bool was_at_seam(const glm::dvec3& rest_point) const;
-  // Returns whether bone from this rest point must get skin over it when it lies bare: bone at a seam, right under
-  // closed skin, or deep inside.
+  // Returns true if the bone at a rest point must get skin over it when it lies bare in a pose: it is at a seam, right
+  // under closed skin, or deep inside the body.
   bool was_bone_covered(const glm::dvec3& rest_point) const;
-  // Returns the label of the skin that touches the voxel of a rest point; 0 where no skin does, or where the voxel
-  // touches air or lies too deep.
+  // Returns the label of the skin that touches the voxel at a rest point; 0: no skin does, or the voxel is deep or
+  // itself touches air.
   Label skin_over(const glm::dvec3& rest_point) const;
 
  private:
@@ -45,7 +45,7 @@ class SkinAtRest {
   const TissueDepth& depth_;
   const LabelSet &soft_, &skin_;
   std::unordered_set<std::int64_t> enclosed_air_;
-  // Depths below air, mm: skin is looked for down to skin_reach_, and tissue below deep_ counts as deep.
+  // Depths below air, mm: tissue deeper than skin_reach_ does not touch skin; tissue deeper than deep_ counts as deep.
   double skin_reach_, deep_;
   bool is_closed_;
 };

@@ -13,12 +13,13 @@ namespace limber {
 
 namespace {
 
-// Cost that is added to every move, so that a path over few tissues is preferred to one over many.
+// Cost that is added to the cost of every move (change of a voxel's label), so that paths over few tissues are
+// preferred.
 constexpr double kEach = 0.1;
-// Connected components with fewer voxels keep their size: a change could take them across 50 voxels, and only
-// components of at least 50 voxels are counted.
+// Connected components with fewer voxels than this are not changed. Otherwise a component could fall below 50 voxels,
+// or reach them, and so change the number of counted components: only those of 50 voxels or more count.
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;
-// Upper limit on the rounds. Each round tries again the moves that were not possible before.
+// Upper limit on the rounds. Each round tries again the moves that were not possible in the previous one.
 constexpr int kRounds = 8;
 const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
@@ -83,7 +84,7 @@ class Exchange {
     for (int round = 0; round < kRounds && (moved || new_layer); ++round) {
       if (new_layer && missing_.at(0) < 0) add_air();
       moved = exchange();
-      // Another layer of air is added only when no move of the layer before is left.
+      // Offers a further layer of air voxels only after no move into the previous layer is possible any more.
       new_layer = !moved && !new_layer;
       if (new_layer) std::erase_if(borders_, [](const auto& border) { return border.first.first == 0; });
     }
@@ -100,7 +101,7 @@ class Exchange {
   using Changes = std::vector<Change>;
   using Way = std::vector<Label>;
 
-  // Makes every possible move, along the cheapest paths first. Returns false where none is possible.
+  // Makes every possible move, along the cheapest paths first. Returns false if no move was possible.
   bool exchange() {
     for (auto& [_, border] : borders_)
       std::sort(border.moves.begin(), border.moves.end(), [](const BorderMove& a, const BorderMove& b) {
@@ -115,8 +116,8 @@ class Exchange {
     return moved;
   }
 
-  // Returns the cheapest path from a tissue with surplus voxels to a tissue that lacks voxels, by the algorithm of
-  // Bellman and Ford: the graph has only a dozen nodes.
+  // Returns the cheapest path from a tissue with surplus voxels to a tissue that lacks voxels; none: there is no path.
+  // Uses the algorithm of Bellman and Ford, since the graph has only about a dozen nodes (tissues).
   std::optional<Way> cheapest_way() {
     struct Step {
       double cost;
@@ -158,7 +159,8 @@ class Exchange {
   std::optional<float> next_cost(Border& border) {
     for (; border.next < border.moves.size(); ++border.next) {
       const BorderMove& move = border.moves[border.next];
-      if (move.to != 0 && posed_.voxels[move.at] != move.from) continue;  // the voxel has another label by now
+      // Skips the move if an earlier one has changed the voxel's label.
+      if (move.to != 0 && posed_.voxels[move.at] != move.from) continue;
       if (!changes(move).empty()) return move.cost;
       border.refused.push_back(move);
     }
@@ -169,7 +171,7 @@ class Exchange {
     bool moved = false;
     for (size_t i = 0; i + 1 < way.size(); ++i) {
       Border& border = borders_.at({way[i], way[i + 1]});
-      // An earlier move of the path prevents this one. The voxels moved so far stay in this tissue.
+      // Ends the path early if an earlier move on it has made the next one impossible. This tissue keeps the voxel.
       if (!next_cost(border)) break;
       const BorderMove move = border.moves[border.next++];
       for (const Change& change : changes(move)) make(change);
@@ -204,12 +206,12 @@ class Exchange {
     return std::nullopt;
   }
 
-  // Returns whether a tissue may grow into air or shrink from it. On a body with skin only skin may: bare flesh is a
-  // cut surface or a nail there, and stays as it is.
+  // Returns true if voxels of a tissue may change from air or to air. On a body with skin only skin may do this: flesh
+  // that touches air there is a cut surface or a nail, and stays as it is.
   bool may_meet_air(Label label) const { return has_skin_ ? skin_[label] != 0 : label && soft_[label]; }
 
-  // Returns the label changes that a move needs; none where they would tear or join a tissue, open the skin or enclose
-  // air.
+  // Returns the label changes that a move consists of. The list is empty if the move is not possible, because it would
+  // tear or join a tissue, open the skin or enclose air.
   Changes changes(const BorderMove& move) {
     const glm::ivec3 v = voxel_at(posed_.grid, move.at);
     if (move.from == 0) return grow(v, move.to);
@@ -217,7 +219,8 @@ class Exchange {
     return may_change(v, move.to) ? Changes{{move.at, move.to}} : Changes{};
   }
 
-  // Returns whether a voxel may change from one soft tissue to another. At air, skin stays skin and flesh stays flesh.
+  // Returns true if a voxel may change from its soft tissue to another. Where the voxel touches air, skin stays skin
+  // and flesh stays flesh.
   bool may_change(const glm::ivec3& v, Label to) const {
     const Label from = posed_.at(v);
     return !(touches_air(posed_, v) && skin_[from] != skin_[to]) && may_lose(v) && may_gain(v, to);
@@ -231,8 +234,8 @@ class Exchange {
     return can_join(posed_, v, label) && parts_.voxels[*part_beside(v, label)] >= kFrozen;
   }
 
-  // Returns the changes by which the tissue `gain` grows by one voxel and air voxel v is filled. Where skin lies
-  // between them, v becomes skin, and the skin voxel under v becomes `gain`.
+  // Returns the changes by which the tissue `gain` grows by one voxel and air voxel v is filled. If skin lies between v
+  // and `gain`, v becomes skin, and the skin voxel under v becomes `gain`. The list is empty if this is not possible.
   Changes grow(const glm::ivec3& v, Label gain) {
     if (!air_can_change(posed_, v)) return {};
     for (const glm::ivec3& step : kFaces) {
@@ -249,8 +252,8 @@ class Exchange {
     return {};
   }
 
-  // Returns the changes by which the tissue `loss` shrinks by one voxel and voxel v becomes air. Where v is skin over
-  // `loss`, the one voxel that it covers becomes skin.
+  // Returns the changes by which the tissue `loss` shrinks by one voxel and voxel v becomes air. If v is skin over
+  // `loss`, the voxel of `loss` under v becomes skin. The list is empty if this is not possible.
   Changes shrink(const glm::ivec3& v, Label loss) {
     const Label own = posed_.at(v);
     if (!may_meet_air(own) || !touches_air(posed_, v) || !air_can_change(posed_, v) || !may_lose(v)) return {};
@@ -262,18 +265,19 @@ class Exchange {
     posed_.at(v) = 0;
     const bool fits = may_lose(laid_bare[0]) && may_gain(laid_bare[0], own);
     posed_.at(v) = own;
-    // The covered voxel changes first, since it joins the component of the skin voxel, which becomes air afterwards.
+    // The voxel under the skin voxel changes first: it joins the skin voxel's component, and that voxel then becomes
+    // air.
     return fits ? Changes{{posed_.grid.index(laid_bare[0]), own}, {posed_.grid.index(v), 0}} : Changes{};
   }
 
   LabelVolume& posed_;
   const LabelSet &soft_, &skin_;
   bool has_skin_ = false;
-  // Connected components of the initial volume. Their sizes are kept up to date, their voxel runs are not.
+  // Connected components: their sizes are kept up to date, but their voxel runs are those of the initial volume.
   Components parts_;
-  std::unordered_map<std::int64_t, int> part_of_changed_;  // component of each changed voxel, by voxel index
-  std::map<Label, std::int64_t> missing_;  // voxels that each tissue lacks; air takes or gives the difference
-  std::map<std::pair<Label, Label>, Border> borders_;  // by the pair of giving and taking tissue
+  std::unordered_map<std::int64_t, int> part_of_changed_;  // current component of each changed voxel, by voxel index
+  std::map<Label, std::int64_t> missing_;  // voxels that each tissue lacks; the entry of air (0) balances the sum
+  std::map<std::pair<Label, Label>, Border> borders_;  // by (tissue that loses a voxel, tissue that gains it)
   std::int64_t changed_ = 0;
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives soft tissues their wanted volumes by moving the borders between them. It changes as few voxels as possible, and
-// takes those first whose tissue is least certain. Reading labels on a rotated grid takes voxels from layers and cords
-// of one voxel, and blending loses tissue where a joint folds. Bones are never changed.
+// Gives soft tissues their wanted volumes by moving the borders between them. Volumes are wrong because labels read on
+// a rotated grid make layers and cords of one voxel thinner, and because skinning loses tissue where a joint folds. As
+// few voxels as possible are changed, first those whose tissue is least certain. Bones are never changed.
 //
 // Tissues with too many voxels are the sources of a flow, tissues with too few its sinks, and the borders between
 // tissues its edges. Each unit of flow changes the label of one voxel, and the cheapest path comes first (successive
 // shortest paths, as in [Ahuja, Magnanti & Orlin, Network Flows, 1993, 9.7], without undoing earlier paths). Air is a
-// source or sink of any size: a body that is too small grows, and one that is too large shrinks. Skin keeps its
-// thickness: the tissue under it grows, and the skin moves outwards.
+// source or sink without limit: a body that is too small grows into air, and one that is too large shrinks. Skin keeps
+// its thickness: when the tissue under the skin grows, the skin moves outwards.
 //
 // No connected component of a tissue (26-connected) is torn, joined to another, created or lost, no air is enclosed,
 // and no skin is opened. Components smaller than 100 voxels keep their size, so that the number of components of 50
@@ -21,20 +21,20 @@
 
 namespace limber {
 
-// A voxel at a border that may change its label.
+// A possible move: a change of the label of one voxel at a border between tissues.
 struct BorderMove {
   std::int64_t at;  // index in the posed volume
-  Label from, to;   // soft tissues, or air
+  Label from, to;   // the voxel's label before and after the move: soft tissue or air (0)
   float cost;       // membership of `from` minus membership of `to`, [0, 1]
 };
 
 struct TissueVolumes {
   std::int64_t changed = 0;               // number of label changes
-  std::map<Label, std::int64_t> missing;  // wanted minus present voxels, of each tissue that missed its wanted volume
+  std::map<Label, std::int64_t> missing;  // wanted minus present voxels, for each tissue that has not its wanted volume
 };
 
 // Moves the borders of soft tissues until they have the wanted volumes.
-//   posed   voxels of soft tissue change; voxels of air too, where the wanted total differs from the present one
+//   posed   changed: labels of soft tissue and, if the wanted total differs from the present total, of air
 //   wanted  number of voxels of each soft tissue; tissues without an entry keep their number
 //   moves   possible moves between soft tissues and from soft tissue to air; moves from air are found here
 TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted,

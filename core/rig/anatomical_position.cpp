@@ -8,8 +8,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kTells = 0.3;  // least length of a unit direction, seen along the hinge's axis, to read an angle
-constexpr double kAskew = std::numbers::pi / 6;  // oblique bones up to this angle count as straight, radians
+// An angle about a hinge is read only if the unit direction of each bone has at least this component across the hinge's
+// axis; a bone along the axis shows no angle.
+constexpr double kTells = 0.3;
+constexpr double kAskew = std::numbers::pi / 6;  // bend of toes, foot, neck or head that counts as straight, radians
 
 glm::dvec3 direction(const Bone& bone) {
   const glm::dvec3 along = bone.tail - bone.head;
@@ -17,8 +19,8 @@ glm::dvec3 direction(const Bone& bone) {
   return length > 0 ? along / length : glm::dvec3(0);
 }
 
-// Returns whether a bone is in line with its parent in the anatomical position. A bone without a role counts as in line
-// if it begins at its parent's tail.
+// Returns true if a bone is in line with its parent in the anatomical position. For a bone whose name tells no body
+// part this is assumed if its head is near its parent's tail.
 bool straightens(const Armature& armature, int bone, const std::optional<JointRole>& role) {
   if (!role) {
     const Bone& b = armature.bones[bone];
@@ -30,7 +32,7 @@ bool straightens(const Armature& armature, int bone, const std::optional<JointRo
     case BodyPart::Shank:
     case BodyPart::Hand:
     case BodyPart::Toes: return true;
-    // A metacarpal is not in line with the hand: the thumb's sticks out, and the others spread.
+    // Metacarpals are not in line with the hand: that of the thumb points to the side, and those of the fingers spread.
     case BodyPart::Thumb: return role->index > 1;
     case BodyPart::Index:
     case BodyPart::Middle:
@@ -44,15 +46,15 @@ bool runs_askew(BodyPart part) {
   return part == BodyPart::Toes || part == BodyPart::Foot || part == BodyPart::Neck || part == BodyPart::Head;
 }
 
-// Returns the rotation vector of the shortest rotation from one unit direction to another; zero if these are opposite,
-// since the shortest rotation is not unique then.
+// Returns the rotation vector of the shortest rotation from one unit direction to another. Returns zero for opposite
+// directions, which have no unique shortest rotation.
 glm::dvec3 shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
   const double sine = glm::length(axis);
   return sine > 1e-9 ? axis * (std::atan2(sine, glm::dot(from, to)) / sine) : glm::dvec3(0);
 }
 
-// Returns the unit direction of the spine, upwards; zero if the rig has no spine.
+// Returns the upward unit direction of the spine. Returns zero if the rig has no spine.
 glm::dvec3 trunk(const Armature& armature) {
   const auto roles = roles_of(armature);
   glm::dvec3 up(0);

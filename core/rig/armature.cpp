@@ -13,9 +13,9 @@ namespace limber {
 namespace {
 constexpr int kMostBones = 4096;
 
-// Largest coordinate of a position. Further away, rounding would exceed a millimetre.
+// Upper limit of the coordinates of a position, mm (1000 km). No body is larger.
 constexpr double kFarthestMm = 1e9;
-// Returns whether a position is finite and within the largest coordinate; false also for NaN.
+// Returns true if the coordinates of a position are within kFarthestMm. Returns false for NaN.
 bool near_enough(const glm::dvec3& v) {
   return std::abs(v.x) <= kFarthestMm && std::abs(v.y) <= kFarthestMm && std::abs(v.z) <= kFarthestMm;
 }
@@ -98,8 +98,8 @@ glm::dmat3 rest_axes(const Bone& bone) {
   const double length = glm::length(along);
   const glm::dvec3 y = length > 0 ? along / length : glm::dvec3(0, 1, 0);
 
-  // The axes follow the shortest rotation from +y to the bone [Blender, vec_roll_to_mat3], or half a turn about z if
-  // the bone points along -y.
+  // Without roll, the bone's axes are the world's axes rotated by the shortest rotation from +y to the bone [Blender,
+  // vec_roll_to_mat3]. For a bone along -y this is half a turn about z.
   glm::dmat3 axes(1);
   const double theta = 1 + y.y;
   if (theta > 1e-9) {
@@ -134,7 +134,7 @@ glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const glm::dvec3 a = parent.tail - parent.head, b = bone.tail - bone.head;
   const double lengths = glm::length(a) * glm::length(b);
   const glm::dvec3 axis = glm::cross(a, b);
-  // The axis is mostly noise if the bones are bent by less than 10 degrees.
+  // If bone and parent are bent by less than 10 degrees, small errors of their positions would decide the axis.
   if (lengths == 0 || glm::length(axis) < lengths * std::sin(10 * std::numbers::pi / 180))
     throw Error("the bone is nearly straight with its parent, so its flex axis is not known", bone.name, remedy);
   return glm::normalize(axis);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A skeleton at rest: a list of bones with head and tail in the world (LPS, mm). Parents come before their children.
+// An armature (rig): a skeleton at rest, stored as a list of bones with head and tail in the world (LPS, mm). Parents
+// come before their children.
 #pragma once
 
 #include <optional>
@@ -11,15 +12,17 @@
 
 namespace limber {
 
-// The limits of a joint (at a bone's head), relative to rest. Axes are in the world at rest, angles in radians.
+// The limits of the joint at a bone's head, relative to the rest pose. Axes are in world coordinates in the rest pose,
+// angles in radians.
 struct JointLimits {
   enum class Type { Free, Fixed, Hinge, Ball };
   Type type = Type::Free;
-  // Hinge: unit rotation axis; a positive angle bends further. Ball: unit twist axis; zero: the direction of the bone.
+  // Hinge: unit rotation axis; a positive angle bends the joint further. Ball: unit twist axis; zero means the bone's
+  // direction.
   glm::dvec3 axis{0};
-  double minimum = 0, maximum = 0;              // hinge: range of the angle
-  double cone = 0;                              // ball: largest swing away from rest
-  double twist_minimum = 0, twist_maximum = 0;  // ball: range of the twist
+  double minimum = 0, maximum = 0;              // range of a hinge's angle
+  double cone = 0;                              // largest swing of a ball joint away from rest
+  double twist_minimum = 0, twist_maximum = 0;  // range of a ball joint's twist
 
   bool operator==(const JointLimits&) const = default;
 };
@@ -50,21 +53,21 @@ int require_bone(const Armature& armature, std::string_view name);
 //   where  names the file in the error's message
 void check_armature(const Armature& armature, const std::string& where);
 
-// Sorts bones so that parents come before children; keeps the order if they already do. Each `parent` is an index into
-// `bones`. Throws Error if a parent is not among them, or if a bone is its own ancestor.
+// Sorts bones so that parents come before children, and adapts their parent indices. Does not change an order that
+// already fulfils this. Throws Error if a parent is not an index into `bones`, or if a bone is its own ancestor.
 Armature parents_first(std::vector<Bone> bones, const std::string& where);
 
-// Returns the bone's own axes as in Blender: columns x, y, z, with y from head to tail and the roll applied
-// [vec_roll_to_mat3].
+// Returns the bone's own axes in the rest pose, with Blender's definition [vec_roll_to_mat3]: columns x, y, z, with y
+// from head to tail, and x and z rotated about y by the bone's roll.
 glm::dmat3 rest_axes(const Bone& bone);
 
 // Returns the roll that makes `x` (unit, perpendicular to the bone) the x axis of rest_axes(bone).
 double roll_of(const Bone& bone, const glm::dvec3& x);
 
-// Returns the unit axis about which the command-line option --flex rotates a bone: the bone's hinge axis, if it has
-// one. Otherwise it is the cross product of the directions of the parent and the bone, so that a positive angle bends
-// further. Throws Error if there is no hinge and the bone has no parent, or the angle between the two is below 10
-// degrees.
+// Returns the unit axis about which the command-line option --flex rotates a bone. It is the bone's hinge axis, or for
+// a bone without a hinge the cross product of the directions of parent and bone, so that a positive angle bends
+// further. Throws Error for a bone without a hinge that has no parent or is bent by less than 10 degrees against its
+// parent.
 glm::dvec3 flex_axis(const Armature& armature, int bone);
 
 // Returns the distance in mm from p to the line segment from head to tail.

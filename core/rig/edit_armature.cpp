@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouching = 1e-4;  // in mm: largest distance of a connected bone's head from its parent's tail
+constexpr double kTouching = 1e-4;  // mm; a bone is connected if its head is this near to its parent's tail
 
 std::vector<bool> marked(const Armature& armature, const std::vector<int>& bones) {
   std::vector<bool> marks(armature.bones.size(), false);
@@ -40,7 +40,8 @@ glm::dquat shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::normalize(glm::dquat(1 + cosine, axis.x, axis.y, axis.z));
 }
 
-// Rotates the bone's own axes and those of its limits along with its direction, which has changed since `before`.
+// Rotates the bone's own axes, and the axis of its joint limits, by the rotation of its direction.
+//   before  the bone before its direction changed
 void turn_along(Bone& bone, const Bone& before) {
   const glm::dvec3 from = before.tail - before.head, to = bone.tail - bone.head;
   if (glm::length(glm::cross(from, to)) <= 1e-12 * glm::length(from) * glm::length(to) && glm::dot(from, to) > 0)
@@ -50,7 +51,7 @@ void turn_along(Bone& bone, const Bone& before) {
   if (bone.limits.axis != glm::dvec3(0)) bone.limits.axis = glm::normalize(turn * bone.limits.axis);
 }
 
-// Returns the nearest ancestor that is not marked; -1: none.
+// Returns the index of the bone's nearest ancestor that is not marked. Returns -1 if there is none.
 int unmarked_above(const Armature& armature, const std::vector<bool>& marks, int bone) {
   int parent = armature.bones[bone].parent;
   while (parent >= 0 && marks[parent]) parent = armature.bones[parent].parent;
@@ -93,7 +94,7 @@ bool is_connected(const Armature& armature, int bone) {
 }
 
 std::vector<BoneEnd> joint_of(const Armature& armature, const BoneEnd& end) {
-  // Finds the bone whose tail lies at the joint.
+  // `above` is the bone whose tail is at the joint.
   const int above = end.tail ? end.bone : is_connected(armature, end.bone) ? armature.bones[end.bone].parent : -1;
   if (above < 0) return {end};
   std::vector<BoneEnd> ends = {{above, true}};
@@ -139,7 +140,7 @@ Armature with_bone(const Armature& armature, const std::string& name, int parent
 Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec3& to) {
   const Bone& bone = armature.bones.at(from.bone);
   Armature next = with_bone(armature, bone.name, from.tail ? from.bone : bone.parent, place_of(armature, from), to);
-  // Sets the roll so that the new bone's x axis is as near to the old bone's as possible.
+  // Sets the roll so that the new bone's x axis is as near as possible to the x axis of the bone that it extends.
   Bone& added = next.bones.back();
   added.roll = roll_of(added, shortest_turn(bone.tail - bone.head, added.tail - added.head) * rest_axes(bone)[0]);
   return next;
@@ -165,12 +166,12 @@ Armature without_bones(const Armature& armature, const std::vector<int>& bones) 
 Armature dissolved(const Armature& armature, const std::vector<int>& bones) {
   const std::vector<bool> marks = marked(armature, bones);
   Armature next = armature;
-  // Walks from the ends of the chains to the roots, so that through several removed bones in a row the last tail is
-  // passed on upwards.
+  // Goes from children to parents. If several bones in a row are removed, the last one's tail is thereby passed on to
+  // the bone that stays.
   for (int bone = static_cast<int>(marks.size()); bone-- > 0;) {
     if (!marks[bone] || !is_connected(armature, bone)) continue;
     const int parent = armature.bones[bone].parent;
-    // The joint stays where it is if other bones meet there too.
+    // If further bones meet at the joint between bone and parent, the parent's tail stays there.
     if (joint_of(armature, {bone, false}).size() > 2) continue;
     const Bone before = next.bones[parent];
     next.bones[parent].tail = next.bones[bone].tail;
@@ -262,7 +263,7 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
     all.at(bone).parent = parent;
     if (join == Join::KeepOffset) continue;
     const glm::dvec3 by = armature.bones.at(parent).tail - armature.bones[bone].head;
-    // Moves all descendants too.
+    // Moves the bone with all its descendants.
     std::vector<bool> goes(all.size(), false);
     goes[bone] = true;
     for (int b = 0; b < std::ssize(armature.bones); ++b) {
@@ -272,7 +273,7 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
       all[b].head += by;
       all[b].tail += by;
     }
-    // Puts the head exactly at the parent's tail, so that both are one joint.
+    // Rounding may have left the head beside the parent's tail. Sets it exactly, so that head and tail are one joint.
     all[bone].head = armature.bones[parent].tail;
   }
   return parents_first(std::move(all), "reparented rig");
@@ -303,8 +304,8 @@ Armature with_flipped_direction(const Armature& armature, const std::vector<int>
     all[bone].roll = roll_of(all[bone], axes[0]);
     all[bone].parent = -1;
   }
-  // Within a flipped chain, parents become children. If a bone has two flipped children, the first of them becomes its
-  // parent.
+  // Reverses the order of parents and children among the flipped bones. If a bone has two flipped children, the first
+  // of them becomes its parent.
   for (int bone = std::ssize(all) - 1; bone >= 0; --bone)
     if (const int parent = armature.bones[bone].parent; marks[bone] && parent >= 0 && marks[parent])
       all[parent].parent = bone;
@@ -336,7 +337,7 @@ Armature mirrored_bones(const Armature& armature, const std::vector<int>& bones)
     to = mirror_image(from, plane);
     to.name = from.name;
   }
-  // The two bones of a pair exchange their names only if both are mirrored.
+  // A mirrored bone gets the name of the other side, unless a bone that is not mirrored has this name.
   for (const int bone : bones)
     if (const auto name = mirrored_name(armature.bones[bone].name)) {
       const auto other = armature.find(*name);

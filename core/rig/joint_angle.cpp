@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kShown = 0.05;  // in degrees: half of the last digit of displayed angles
-constexpr double kAcross = 0.5;  // cosine of 60 degrees, the largest angle between a rotation's axis and the hinge's
+constexpr double kShown = 0.05;  // degrees; smaller angles are not mentioned, since texts show one decimal
+constexpr double kAcross = 0.5;  // cosine of 60 degrees, the largest angle between rotation axis and hinge axis
 
 }  // namespace
 
@@ -38,7 +38,7 @@ std::optional<JointReading> read_joint(const Bone& bone, const glm::dquat& rotat
       if (2 * along * along > 1)
         return JointReading{JointReading::Kind::Twist, parts.twist, limits.twist_minimum, limits.twist_maximum,
                             along < 0 ? -1.0 : 1.0};
-      // The range of the angle is what the swing about the other axis leaves of the cone.
+      // The cone limits the whole swing. The swing about the other axis therefore reduces the range of this angle.
       const double angle = glm::dot(parts.swing, axis), rest = glm::length(parts.swing - angle * axis);
       const double room = std::sqrt(std::max(0.0, limits.cone * limits.cone - rest * rest));
       const double zero = glm::dot(at_rest, axis);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the anatomical angle of a joint that a rotation about one axis changes, and the range that the joint's limits
-// allow. A hinge has one angle. A ball has a twist about the bone and a swing across it; the rotation's axis decides
-// which of them is read. Angles are relative to the anatomical position if `at_rest` gives the joint's angle at rest
-// (anatomical_position.h), else relative to rest. Angles are in radians; axes and rotations are as in joint_limits.h.
+// For a user who rotates a bone about an axis: finds which angle of the joint changes, its value, and the range that
+// the joint's limits allow. A hinge has one angle. A ball joint has a twist about the bone and a swing across it; the
+// axis decides which of them is read. Angles are relative to the anatomical position if the caller gives the joint's
+// angle at rest (anatomical_position.h), else relative to the rest pose. Angles are in radians; axes and rotations are
+// those of joint_limits.h.
 #pragma once
 
 #include <optional>
@@ -16,13 +17,13 @@ struct JointReading {
   enum class Kind { Flexion, Swing, Twist, Fixed };
   Kind kind = Kind::Fixed;
   double angle = 0, minimum = 0, maximum = 0;
-  double sense = 1;  // sign of the angle's change for a positive rotation about the axis: 1 or -1
+  double sense = 1;  // 1 if a positive rotation about the axis increases the angle, -1 if it decreases the angle
 };
 
 const char* name_of(JointReading::Kind kind);  // such as "Flexion"
 
-// Returns the angle that a rotation about `axis` changes. Returns nothing for a joint without limits, or if the axis is
-// too far from a hinge's.
+// Returns the angle of a joint that a rotation about `axis` changes. Returns nothing for a joint without limits, or if
+// the axis deviates by more than 60 degrees from the axis of a hinge.
 //   axis     unit axis of the rotation
 //   at_rest  turn_at_rest(), or zero for angles relative to rest
 std::optional<JointReading> read_joint(const Bone& bone, const glm::dquat& rotation, const glm::dvec3& axis,
@@ -35,8 +36,8 @@ std::string text_of(const JointReading& reading);
 // Returns the allowed range as text such as "0 to 150", with degree signs.
 std::string range_text(const JointReading& reading);
 
-// Returns text about how far a rotation exceeds the limits; empty if it does not. For a hinge, the excess of its angle
-// and the rotation across its axis are separate: "beyond 0 by 83.1, 34.5 across", with degree signs.
+// Returns text that says by how much a rotation exceeds the limits; empty if it does not. For a hinge, the text names
+// the excess of its angle and the rotation across its axis: "beyond 0 by 83.1, 34.5 across", with degree signs.
 std::string excess_text(const Bone& bone, const glm::dquat& rotation, const glm::dvec3& at_rest);
 
 }  // namespace limber

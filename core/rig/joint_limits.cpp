@@ -10,13 +10,13 @@ namespace limber {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kTolerance = 1e-9;  // in radians, so that a rotation exactly at a limit counts as within it
+constexpr double kTolerance = 1e-9;  // radians; a rotation at a limit counts as within it in spite of rounding
 
 double angle_of(const glm::dquat& q) { return 2 * std::atan2(glm::length(glm::dvec3(q.x, q.y, q.z)), std::abs(q.w)); }
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
-// Returns the angle in [minimum, maximum] that is nearest to `angle` on the circle.
+// Returns the angle in [minimum, maximum] that is nearest to `angle`, where angles that differ by full turns are equal.
 double cut(double angle, double minimum, double maximum) {
   for (double turn : {0.0, 2 * kPi, -2 * kPi})
     if (angle + turn >= minimum - kTolerance && angle + turn <= maximum + kTolerance) return angle + turn;
@@ -36,7 +36,7 @@ SwingTwist swing_twist(const glm::dquat& rotation, const glm::dvec3& axis) {
   const glm::dquat q = rotation.w < 0 ? -rotation : rotation;
   const double along = glm::dot(glm::dvec3(q.x, q.y, q.z), axis);
   SwingTwist parts;
-  // After a swing by half a turn the twist is undetermined; it is set to zero.
+  // If the swing is half a turn, the twist is not determined and stays zero.
   if (q.w * q.w + along * along > 1e-24) parts.twist = 2 * std::atan2(along, q.w);
   glm::dquat swing = rotation * glm::conjugate(glm::angleAxis(parts.twist, axis));
   if (swing.w < 0) swing = -swing;

@@ -32,17 +32,17 @@ Words words_of(std::string_view name) {
     else words.emplace_back(1, lower(c));
   }
 
-  // Words that only name the kind of skeleton or object, and not a part of the body.
+  // Words that are ignored, since they name a kind of skeleton or object and not a part of the body.
   static const std::set<std::string, std::less<>> kNoise = {"mixamorig", "bip",       "biped",     "bone",    "def",
                                                             "org",       "character", "cc",        "jnt",     "joint",
                                                             "phalange",  "phalanx",   "vertebrae", "vertebra"};
   const Words all = words;
   std::erase_if(words, [&](const std::string& word) { return kNoise.contains(word); });
   if (all.size() > 2 && all[0] == "cc" && all[1] == "base") words.erase(words.begin());
-  // VRoid's names are "J_Bip_L_Hand" or "J_Bip_C_Hips", where C means the middle.
+  // In VRoid's names ("J_Bip_L_Hand", "J_Bip_C_Hips"), J is a prefix and C means the middle: removes both.
   if (all.size() > 2 && all[0] == "j" && all[1] == "bip")
     words.erase(words.begin(), words.begin() + (words.size() > 2 && all[2] == "c" ? 2 : 1));
-  // In "Bip01" or "Character1" the number belongs to the removed word.
+  // In "Bip01" or "Character1" the number belongs to the ignored word and is removed too.
   if (all.size() > 2 && kNoise.contains(all[0]) && is_digit(all[1][0]) && !words.empty()) words.erase(words.begin());
   return words.empty() ? all : words;
 }
@@ -58,7 +58,8 @@ BodySide take_side(Words& words) {
   return BodySide::Middle;
 }
 
-// The meaning of a word in the dictionary. Words such as Shoulder, Hip and Leg are ambiguous; part_of() decides.
+// The meanings of the words in joint names. Shoulder, Hip and Leg mean different body parts in different rigs;
+// part_of() decides which.
 enum class Word {
   Pelvis,
   Root,
@@ -227,7 +228,7 @@ struct Meaning {
 };
 
 Meaning meaning_of(const std::string& name) {
-  // MakeHuman puts a helper "__UpLeg_L" before "UpLeg_L"; the helper gets no role.
+  // Names with "__" have no meaning: in MakeHuman's rigs they belong to helper joints ("__UpLeg_L" before "UpLeg_L").
   if (name.starts_with("__")) return {};
   Words words = words_of(name);
   Meaning meaning;
@@ -235,14 +236,15 @@ Meaning meaning_of(const std::string& name) {
   meaning.finger = finger_role(words, meaning.side);
   if (meaning.finger) return meaning;
 
-  // Joints named "end", "nub", "tip" and the like are ends of chains without motion of their own, and get no role.
+  // Names with "end", "nub", "tip" and similar words have no meaning: such joints mark the ends of chains and have no
+  // motion of their own.
   for (const char* leaf : {"end", "nub", "tip", "site", "effector", "eye", "jaw"})
     if (std::find(words.begin(), words.end(), leaf) != words.end()) return meaning;
   std::string joined;
   for (const std::string& word : words)
     if (!is_digit(word[0])) joined += word;
   auto found = dictionary().find(joined);
-  // In "rbuttock" or "lthigh" no separator follows the letter of the side.
+  // Names such as "rbuttock" or "lthigh" have no separator after the letter of the side.
   if (found == dictionary().end() && meaning.side == BodySide::Middle && joined.size() > 2 &&
       (joined[0] == 'l' || joined[0] == 'r')) {
     found = dictionary().find(std::string_view(joined).substr(1));
@@ -253,7 +255,7 @@ Meaning meaning_of(const std::string& name) {
       if (joined.find(trunk) != joined.npos)
         meaning.word = trunk == std::string_view("cervical") ? Word::Neck : Word::Trunk;
   if (found != dictionary().end()) meaning.word = found->second;
-  // In CMU's "LHipJoint" the word "joint" was removed as noise.
+  // CMU's "LHipJoint" is the link from the pelvis to the thigh. The word "joint" was ignored above.
   if (meaning.word == Word::Hip && name.find("HipJoint") != name.npos) meaning.word = Word::HipLink;
   return meaning;
 }
@@ -265,7 +267,7 @@ std::optional<BodyPart> part_of(Word word, const std::set<Word>& same_side) {
     case Word::Shoulder:
       if (!has_arm) return BodyPart::UpperArm;
       if (!same_side.contains(Word::Clavicle)) return BodyPart::Clavicle;
-      return std::nullopt;  // the joint only links clavicle and upper arm
+      return std::nullopt;  // "shoulder" is then the joint between clavicle and upper arm, which is no bone
     case Word::UpperArm: return BodyPart::UpperArm;
     case Word::Elbow: return BodyPart::Forearm;
     case Word::Hand: return BodyPart::Hand;
@@ -295,8 +297,8 @@ class Roles {
  public:
   explicit Roles(size_t count) : roles_(count) {}
 
-  // Gives a role to a joint. Returns false if the joint has a role or another joint has this role. Joints are given in
-  // order, so the one nearest to the root gets the role.
+  // Gives a role (body part) to a joint. Returns false if the joint has a role already or another joint has this role.
+  // Callers go from parents to children, so the joint nearest to the root gets the role.
   bool give(size_t joint, const JointRole& role) {
     if (roles_[joint] || !taken_.insert(role).second) return false;
     roles_[joint] = role;
@@ -321,8 +323,8 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
     if (meanings[j].word) words[meanings[j].side].insert(*meanings[j].word);
   }
 
-  // Assigns limbs, fingers and head. Limbs without a side count only in a rig that has no sides at all, such as that of
-  // one arm.
+  // Assigns limbs, fingers and head. A limb whose name tells no side is recognised only if no name of the rig tells a
+  // side, as in the rig of a single arm.
   Roles roles(count);
   const bool has_sides = !words[BodySide::Left].empty() || !words[BodySide::Right].empty();
   std::vector<size_t> necks;
@@ -342,7 +344,7 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
     while (!roles.give(j, {BodyPart::Neck, BodySide::Middle, index})) ++index;
   }
 
-  // The pelvis is the joint with a pelvis name, else "hip" without a side, else the root.
+  // Assigns the pelvis: the joint that is named pelvis, else one named "hip" without a side, else one named "root".
   auto give_pelvis = [&](Word word) {
     for (size_t j = 0; j < count; ++j)
       if (meanings[j].word == word && meanings[j].side == BodySide::Middle && roles.give(j, {BodyPart::Pelvis}))
@@ -351,7 +353,7 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
   };
   if (!give_pelvis(Word::Pelvis) && !give_pelvis(Word::Hip)) give_pelvis(Word::Root);
 
-  // The spine is the chain from the pelvis, or the root, up to the neck, the head or the clavicles.
+  // Assigns the spine: the chain from the pelvis, or the root, up to neck, head, clavicles or upper arms.
   int top = -1;
   for (BodyPart part : {BodyPart::Neck, BodyPart::Head, BodyPart::Clavicle, BodyPart::UpperArm})
     for (size_t j = 0; j < count && top < 0; ++j)
@@ -359,7 +361,8 @@ std::vector<std::optional<JointRole>> joint_roles(const std::vector<std::string>
   std::vector<size_t> spine;
   for (int j = top < 0 ? -1 : parents[top]; j >= 0 && !roles.of(j); j = parents[j])
     if (meanings[j].word == Word::Trunk || meanings[j].word == Word::Root || !meanings[j].word) spine.push_back(j);
-  // A root whose children are spine and pelvis (Root -> Spine, Root -> Hips) does not belong to the spine.
+  // A root joint that is the parent of both spine and pelvis (Root -> Spine, Root -> Hips) does not belong to the
+  // spine.
   while (!spine.empty() && meanings[spine.back()].word != Word::Trunk) spine.pop_back();
   for (size_t k = 0; k < spine.size(); ++k)
     roles.give(spine[k], {BodyPart::Spine, BodySide::Middle, static_cast<int>(spine.size() - 1 - k)});

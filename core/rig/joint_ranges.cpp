@@ -13,20 +13,20 @@ namespace limber {
 
 namespace {
 
-// A joint's range of motion in degrees. Hinge: the angle is in low .. high, positive in flexion. Ball: the twist is in
-// low .. high, the swing within `cone`.
+// A joint's range of motion, degrees from the anatomical position. The range low .. high is that of a hinge's angle
+// (positive in flexion) or a ball joint's twist. `cone` is the largest swing of a ball joint.
 struct Range {
   const char* joint;
   BodyPart part;
-  int index;  // JointRole::index; -1: any
+  int index;  // number of the bone within its body part (JointRole::index); -1: any number
   bool hinge;
   double low, high;
   double cone;
-  glm::dvec3 towards{0};  // hinge: direction in which flexion moves the bone
+  glm::dvec3 towards{0};  // direction in which flexion moves the bone of a hinge
 };
 
-// Angle in radians by which a limb may be bent at rest against its only direction of flexion. If it is bent further,
-// the hinge's axis has the wrong sign.
+// Largest overextension, radians, that a joint with flexion only may have at rest. A larger one shows that the hinge's
+// axis has the wrong sign.
 constexpr double kBentBack = 15 * 3.14159265358979 / 180;
 
 constexpr glm::dvec3 kFront(0, -1, 0), kBack(0, 1, 0), kDown(0, 0, -1);
@@ -61,7 +61,7 @@ std::optional<int> range_of(const JointRole& role) {
   return std::nullopt;
 }
 
-// Returns the number of bones that form the joint together and share its range.
+// Returns the number of bones that together form the joint (the vertebrae of a spine, for example) and share its range.
 int sharers(const Armature& armature, const Range& range) {
   const bool neck = range.part == BodyPart::Neck || range.part == BodyPart::Head;
   if (!neck && range.part != BodyPart::Spine) return 1;
@@ -72,8 +72,8 @@ int sharers(const Armature& armature, const Range& range) {
   return std::max(1, count);
 }
 
-// Returns whether the rig has a clavicle above the bone. The clavicle does one third of raising the arm: for every two
-// degrees at the shoulder joint, the shoulder blade turns by one.
+// Returns true if a clavicle is among the bone's ancestors. When an arm is raised, the clavicle then contributes a
+// third of the motion: for every two degrees at the shoulder joint, the shoulder blade turns by one.
 bool has_collar_bone(const Armature& armature, int bone) {
   const auto roles = roles_of(armature);
   for (int above = armature.bones[bone].parent; above >= 0; above = armature.bones[above].parent)
@@ -87,7 +87,8 @@ glm::dvec3 hinge_axis(const Armature& armature, int index, const glm::dvec3& tow
   try {
     return flex_axis(armature, index);
   } catch (const Error&) {
-    // The bone is in line with its parent, or has none.
+    // flex_axis() finds no axis if the bone is in line with its parent or has no parent. The direction of flexion then
+    // gives the axis.
     const glm::dvec3 axis = glm::cross(bone.tail - bone.head, towards);
     const double length = glm::length(axis), bone_length = glm::distance(bone.head, bone.tail);
     return length > 0.1 * bone_length ? axis / length : rest_axes(bone)[0];

@@ -16,7 +16,7 @@ bool is_separator(char c) { return c == '.' || c == '_' || c == '-' || c == ' ' 
 
 constexpr std::pair<const char*, const char*> kWords[] = {{"Left", "Right"}, {"left", "right"}, {"LEFT", "RIGHT"}};
 
-// Exchanges a side that is spelt out ("Left", "right") at the start of a word.
+// Exchanges left and right in a name in which the side is a whole word ("Left", "right").
 std::optional<std::string> by_word(const std::string& name) {
   for (const auto& [left, right] : kWords)
     for (const auto& [word, other] : {std::pair{left, right}, std::pair{right, left}})
@@ -37,8 +37,8 @@ char other_letter(char c) {
   }
 }
 
-// Exchanges a side that is one letter: between separators, or a capital at the start of the name that another capital
-// follows.
+// Exchanges left and right in a name in which the side is one letter: a letter between separators ("arm.L"), or a
+// capital before another capital at the start of the name ("LThumb").
 std::optional<std::string> by_letter(const std::string& name) {
   for (std::size_t at = name.size(); at-- > 0;) {
     const char other = other_letter(name[at]);
@@ -56,8 +56,8 @@ std::optional<std::string> by_letter(const std::string& name) {
 
 JointLimits mirrored(const JointLimits& limits, const MirrorPlane& plane) {
   JointLimits other = limits;
-  // A hinge's axis is mirrored like a rotation vector, so that its range stays the same. A ball's axis is mirrored like
-  // a direction, so that its range of twist is reversed.
+  // The axis of a hinge is mirrored as a rotation vector, so that the range of its angle stays the same. The axis of a
+  // ball joint is mirrored as a direction, so that the range of its twist changes sign.
   if (limits.type == JointLimits::Type::Hinge) other.axis = -plane.direction(limits.axis);
   if (limits.type == JointLimits::Type::Ball) {
     other.axis = plane.direction(limits.axis);
@@ -104,8 +104,8 @@ MirrorPlane mirror_plane(const Armature& armature) {
     all += (bone.head + bone.tail) / (2.0 * static_cast<double>(pairs.size()));
     if (!mirrored_name(bone.name)) sideless += (bone.head + bone.tail) / 2.0, ++without_side;
     if (pairs[b] <= static_cast<int>(b)) continue;
-    // Turns the vectors between the bones of all pairs to the same side, so that the order of a pair's bones does not
-    // matter.
+    // Adds the vector between the two bones of a pair, reversed if it points against the sum so far: the first bone of
+    // a pair may be left or right.
     const Bone& other = armature.bones[pairs[b]];
     const glm::dvec3 between = other.head + other.tail - bone.head - bone.tail;
     across += glm::dot(between, across) < 0 ? -between : between;

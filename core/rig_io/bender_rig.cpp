@@ -24,7 +24,7 @@ constexpr int kMostBones = 4096;
 
 glm::dvec3 lps_from_ras(const glm::dvec3& p) { return {-p.x, -p.y, p.z}; }
 
-// Reads a legacy VTK file word by word, and line by line where names may contain spaces.
+// Reads a legacy VTK file word by word. Where names may contain spaces, whole lines are read.
 class VtkText {
  public:
   VtkText(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
@@ -84,7 +84,7 @@ class VtkText {
   int line_ = 1;
 };
 
-// Decodes a name: VTK writes bytes that would break a line as %XX.
+// Decodes a name in a VTK file. In names, VTK writes bytes that would end a line as %XX.
 std::string decoded(std::string_view name) {
   std::string plain;
   for (size_t i = 0; i < name.size(); ++i) {
@@ -141,7 +141,7 @@ void read_lines(VtkText& in, VtkArmature& read) {
   }
 }
 
-// Reads the arrays of a FIELD. Skips those that the rest pose does not need.
+// Reads the arrays of a FIELD section. Skips arrays that only concern posing or display.
 void read_field(VtkText& in, VtkArmature& read) {
   in.word();
   const int arrays = in.count("arrays", 1000);
@@ -225,7 +225,8 @@ Armature parse_bender_vtk(const std::string& text, const std::string& where) {
 // ---- Reading .arm files.
 
 namespace {
-// A bone's own coordinate frame at its tail, RAS. Heads and tails of its children are given in this frame.
+// The coordinate frame of a bone in RAS, with the bone's tail as origin and its own axes. The file gives heads and
+// tails of the bone's children in this frame.
 struct ArmFrame {
   glm::dquat axes{1, 0, 0, 0};
   glm::dvec3 tail{0};
@@ -239,7 +240,8 @@ struct ArmReader {
   glm::dvec3 scale{1};
   bool armature_seen = false;
   std::vector<Bone> bones;
-  // The message of the first mistake. It is stored, since an exception must not pass through the C parser.
+  // The message about the first mistake in the file. It is stored and thrown later, since an exception must not pass
+  // through the C parser.
   std::string what, what_to_do;
 
   void refuse(const std::string& mistake, const std::string& remedy) {
@@ -264,7 +266,7 @@ std::array<double, 4> numbers_of(ArmReader& reader, const char* text, int count,
     while (place != end && std::isspace(static_cast<unsigned char>(*place))) ++place;
     if (i == count) break;
     const auto [stop, error] = std::from_chars(place, end, values[i]);
-    // Numbers that are too small for a double count as zero; they occur in real files.
+    // Numbers whose magnitude is too small for a double occur in real files. They are read as zero.
     const bool tiny = error == std::errc::result_out_of_range && std::abs(values[i]) < 1;
     if ((error != std::errc() && !tiny) || !std::isfinite(values[i]) || std::abs(values[i]) > 1e9) place = nullptr;
     if (!place) break;
@@ -367,7 +369,7 @@ std::string bender_vtk_text(const Armature& armature) {
 
   text += "\nCELL_DATA " + n + "\nFIELD FieldData 5\nTransforms 12 " + n + " double\n";
   for (int i = 0; i < count; ++i) text += "1 0 0 0 1 0 0 0 1 0 0 0\n";
-  // Writes a tenth of the bone's length as its radius, which is easy to see.
+  // The envelope radius only serves display. A tenth of the bone's length is easy to see.
   text += "EnvelopeRadiuses 1 " + n + " double\n";
   for (const Bone& bone : armature.bones) text += digits(0.1 * glm::length(bone.tail - bone.head)) + "\n";
   text += "Parenthood 1 " + n + " vtkIdType\n";

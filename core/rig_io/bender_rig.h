@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads and writes armatures of Bender (Kitware 2012-2014). Both formats are in RAS; x and y are negated to get LPS.
-// (Read this way, every bone end of Bender's sample arm lies in the sample's tissue; without negation, none does.)
+// Reads and writes armatures of Bender (Kitware 2012-2014), a posing tool for label volumes. Its two formats are in
+// RAS; x and y are negated to get LPS. (Read this way, every bone end of Bender's sample arm is inside the sample's
+// tissue; without negation, none is.)
 //
 //   .vtk  legacy ASCII PolyData: one line of two points (head, tail) per bone, and cell arrays Parenthood (index of the
 //         parent or -1) and Names. Transforms (12 numbers per bone), EnvelopeRadiuses and RestToPoseRotation are for

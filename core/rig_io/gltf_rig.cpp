@@ -25,7 +25,7 @@ enum class Kind { Text, Number, Whole, Yes, Numbers, Wholes, Object, Objects };
 struct Property {
   std::string_view owner, key;
   Kind kind;
-  std::string_view inner = {};  // `owner` of the properties of the objects in this value
+  std::string_view inner = {};  // type of the object or objects that are this property's value, as in `owner`
   bool required = false;
 };
 
@@ -343,7 +343,7 @@ Armature armature_of_skin(const Json& gltf, const Json& skin, const Nodes& nodes
     joints.push_back(node);
   }
 
-  // The parent of a bone is its nearest ancestor that is a joint: other nodes may lie between the two.
+  // Finds the parent bone of each node: the nearest ancestor that is a joint. Nodes between the two are not bones.
   std::vector<int> bone_above(nodes.parent.size(), -1);
   for (size_t node : nodes.order)
     if (const int parent = nodes.parent[node]; parent >= 0)
@@ -365,7 +365,8 @@ Armature armature_of_skin(const Json& gltf, const Json& skin, const Nodes& nodes
   for (size_t b = 0; b < bones.size(); ++b) {
     Bone& bone = bones[b];
     bone.tail = children[b] ? sum[b] / double(children[b]) : bone.head;
-    // A bone without children extends the line from its parent's head to its own head, by a third of that length.
+    // A bone without children continues the line from its parent's head to its own head. Its length is a third of the
+    // distance between these two heads.
     if (bone.tail == bone.head && bone.parent >= 0) bone.tail = bone.head + (bone.head - bones[bone.parent].head) / 3.0;
     if (bone.tail == bone.head) bone.tail = bone.head + glm::dvec3(0, 0, 10);
   }

@@ -19,12 +19,12 @@ namespace limber {
 
 struct GltfSummary {
   int nodes = 0, meshes = 0, skins = 0, animations = 0;
-  std::int64_t vertices = 0, triangles = 0;  // sums over all meshes; triangle lists, strips and fans count
+  std::int64_t vertices = 0, triangles = 0;  // sums over all meshes; triangles in lists, strips and fans
   Armature armature;                         // the joints of the first skin; no bones if there is no skin
   std::vector<std::string> warnings;
 };
 
-// Parses the bytes of a file. Throws Error that names the wrong property.
+// Parses the bytes of a glTF file. Throws Error if a property is wrong or missing, and names this property.
 //   is_binary  true for .glb
 //   where      names the file in error messages
 GltfSummary parse_gltf(const std::string& bytes, bool is_binary, const std::string& where);

@@ -11,7 +11,7 @@
 namespace limber {
 
 namespace {
-// Removes the first word from the line and returns it; empty at the end of the line.
+// Removes the first word from the line and returns this word. Returns an empty text if the line has no more words.
 std::string_view take_word(std::string_view& line) {
   const size_t begin = line.find_first_not_of(" \t\v\f");
   if (begin == line.npos) return line = {};
@@ -56,7 +56,7 @@ ObjSummary parse_obj_summary(const std::string& text, const std::string& where) 
       int corners = 0;
       for (std::string_view corner = take_word(line); !corner.empty(); corner = take_word(line), ++corners) {
         std::int64_t vertex = 0;
-        // Vertex numbers start at 1; negative ones count backwards from the last vertex, which is -1.
+        // The vertices of a file are numbered from 1. Negative numbers count backwards; -1 is the last vertex so far.
         if (!read_number(corner.substr(0, corner.find('/')), vertex) || vertex == 0 || vertex < -summary.vertices)
           refuse("a face has a corner that is no vertex", "correct the file");
         largest_corner = std::max(largest_corner, vertex);

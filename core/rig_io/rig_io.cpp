@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Upper limit on the size of a file, in bytes: far more than 4096 bones need.
+// Upper limit on the size of a rig file, bytes (64 MiB). A rig with 4096 bones, the largest allowed, needs far less.
 constexpr std::uint64_t kMostBytes = 64 << 20;
 
 std::string extension_of(const Path& path) {
@@ -53,14 +53,15 @@ glm::dvec3 unit_axis(const glm::dvec3& axis, const std::string& where) {
   const double length = glm::length(axis);
   if (!(length > 1e-9) || !std::isfinite(length))
     throw Error("an axis has no direction", where, "give three finite numbers, not all zero");
-  // Keeps an axis that is already a unit vector, bit for bit.
+  // Does not normalize an axis of unit length, so that a rig that was written reads back bit for bit.
   return std::abs(length - 1) < 1e-15 ? axis : axis / length;
 }
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 double radians(double degrees) { return degrees * kRadiansPerDegree; }
 
-// Returns an angle in degrees that converts back to exactly these radians, if there is such a number.
+// Converts radians to degrees. If possible, returns a number that converts back to exactly the same radians, so that a
+// rig that was written reads back unchanged.
 double degrees_of(double angle) {
   const double middle = angle / kRadiansPerDegree;
   double below = middle, above = middle;
@@ -130,7 +131,7 @@ Json json_of(const JointLimits& limits) {
 
 // ---- Bones and coordinates.
 
-// Returns the factor per axis that converts the file's coordinates to LPS mm.
+// Returns, for each axis, the factor that converts coordinates of the file to LPS mm.
 glm::dvec3 lps_mm_from_file(const Json& rig, const std::string& where) {
   auto word = [&](const char* key, const char* fallback) -> std::string {
     if (!rig.contains(key)) return fallback;

@@ -28,7 +28,7 @@ struct ArmatureFile {
   std::vector<std::string> warnings;
 };
 
-// Reads a rig in the format of the path's extension. Throws Error with the file, the line or bone, and what to do.
+// Reads a rig; the path's extension tells the format. Throws Error with the file, the line or bone, and what to do.
 ArmatureFile read_armature_file(const Path& path);
 inline Armature read_armature(const Path& path) { return read_armature_file(path).armature; }
 
@@ -36,8 +36,9 @@ inline Armature read_armature(const Path& path) { return read_armature_file(path
 //   where  names the text in error messages
 Armature parse_armature_json(const std::string& text, const std::string& where);
 
-// Writes a rig in the format of the path's extension. .json keeps everything. .vtk and .bvh keep names, parents, heads
-// and tails; .bvh stores a tail as the first child's offset or as an End Site. Throws Error for other extensions.
+// Writes a rig; the path's extension tells the format. A .json file keeps everything. Files .vtk and .bvh keep names,
+// parents, heads and tails; .bvh stores a tail as the first child's offset or as an End Site. Throws Error for other
+// extensions.
 void write_armature(const Armature& armature, const Path& path);
 // Throws Error if no rig can be written to this path.
 void check_armature_writable(const Path& path);

@@ -20,14 +20,16 @@ namespace limber {
 
 namespace {
 
-constexpr double kBandShare =
-    0.2;  // half width of the band (the tissue in which the cut may lie), as a share of the limb's first bone
+// Half width of the band (the tissue in which the cut may lie), as a share of the length of the limb's first bone.
+constexpr double kBandShare = 0.2;
 constexpr double kWidestBand = 50;     // upper limit on the half width of the band, mm
 constexpr double kNarrowestBand = 4;   // lower limit on the half width of the band, in longest voxel edges
 constexpr std::int64_t kGrain = 64;    // bricks per block of a parallel loop
 constexpr std::int64_t kNodes = 4096;  // voxels of the band per block of a parallel loop
 constexpr int kCostUnit = 1024;
-constexpr double kBridge = 0.5;  // cost of cutting a bridge (see is_bridge()) at its border; connective tissue costs 1
+// Cost of cutting through the border of a bridge (tissue between the skins of two limbs, see find_bridges()), relative
+// to connective tissue.
+constexpr double kBridge = 0.5;
 
 // Cost of cutting through the tissues of each Layer, relative to connective tissue. Skin costs as much as connective
 // tissue. Where skin is segmented only at the air, the sheet of skin between two limbs continues as connective tissue,
@@ -37,8 +39,8 @@ double cost_of(TissueKind kind) { return kCostOfLayer[static_cast<int>(layer_of(
 
 bool is_sheet(TissueKind kind) { return layer_of(kind) == Layer::Sheet; }
 
-// To which side of the cut a voxel of the band belongs: to the limb, to what the limb touches, or the cut decides
-// (Free).
+// The side of the cut on which a voxel of the band lies: with the limb, or with the part of the body that the limb
+// touches (Other). Free: the cut decides.
 enum class Side { Limb, Other, Free };
 
 // Numbers of a voxel's six edges in a CutGraph: 0, 1, 2 lead to lower x, y, z; 3, 4, 5 to higher z, y, x. Edge 5 - k is
@@ -94,7 +96,7 @@ class SeamFinder {
   struct Node {
     glm::ivec3 voxel;
     std::int64_t place;
-    float way;  // mm, length of the path through tissue to where the limbs meet
+    float way;  // length of the path through tissue to the nearest face where the limbs meet, mm
   };
 
   struct Border {
@@ -108,7 +110,8 @@ class SeamFinder {
     return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone];
   }
 
-  // Assigns every voxel to the bone nearest to it through tissue, among the bones that the tissue's name allows.
+  // Assigns every tissue voxel to the nearest bone, along paths through tissue. If the name of a tissue contains a limb
+  // ("Muscle, arms"), only bones of that limb count.
   void spread_bones() {
     bone_ = held_by_;
     std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
@@ -133,7 +136,8 @@ class SeamFinder {
         });
   }
 
-  // Returns the usual depths of tissue layers below the skin at the air, measured on the voxels of the given bones.
+  // Returns how deep fat, muscle and deeper tissue usually lie below skin at the air. Only skin voxels that belong to
+  // the given bones are measured.
   SkinLayers skin_layers(const std::vector<bool>& of_bones) {
     if (!rays_) rays_ = skin_rays(volume_, tissue_, kind_);
     return SkinLayers(*rays_, volume_.grid.spacing,
@@ -148,9 +152,9 @@ class SeamFinder {
 
   TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }
 
-  // Finds all tissue that is not a bridge: what is connected to bones without crossing skin. A bridge is tissue that
-  // skin separates from every bone. It lies between the skins of two limbs, where a segmentation that could not
-  // separate the limbs has filled the air. A volume without skin has no bridges.
+  // Finds all tissue that is not a bridge: the tissue that is connected to some bone without crossing skin. A bridge is
+  // tissue that skin separates from every bone. It lies between the skins of two limbs, where a segmentation that could
+  // not separate the limbs has filled the air. A volume without skin has no bridges.
   void find_bridges() {
     TissueSet flesh(tissue_);
     std::atomic<bool> has_skin = false;
@@ -199,8 +203,8 @@ class SeamFinder {
     return bone_[place] != kSoft && limb.may_touch[bone_[place]];
   }
 
-  // Lists the voxels that share a face with a voxel of another bone, sorted by list index. Later uses check each of
-  // them again, so the list may contain too many.
+  // Lists the voxels that share a face with a voxel of another bone, sorted by their index among the tissue voxels. The
+  // cuts change bones later, so find_band() checks each listed voxel again.
   void find_borders() {
     if (limbs_.empty()) return;
     const auto bricks = std::ssize(tissue_.bricks());
@@ -247,8 +251,8 @@ class SeamFinder {
     band_.clear();
   }
 
-  // Finds the band: the tissue near faces at which the limb meets what it may touch, in its free part (limbs.h). The
-  // cut is searched within the band.
+  // Finds the band, the tissue in which the cut is searched. It is the tissue near the voxel faces where the free part
+  // of the limb (is_free()) meets parts of the body that the limb may touch.
   void find_band(const Limb& limb) {
     std::vector<std::int32_t> open;
     for (const auto& [v, place] : borders_) {
@@ -289,8 +293,8 @@ class SeamFinder {
     }
   }
 
-  // Stores which voxels of the band are connected, and marks the ends of the band: voxels that are also connected to
-  // tissue outside of it.
+  // Stores which voxels of the band are connected. Also marks the ends of the band: voxels that are connected to tissue
+  // outside the band.
   void link_band() {
     std::array<std::int32_t, 6> none;
     none.fill(-1);
@@ -304,9 +308,9 @@ class SeamFinder {
       });
   }
 
-  // Returns for each voxel of the band its depth inside a sheet: the distance to the nearest voxel of the band outside
-  // the sheet, in shortest voxel edges; 0 outside the sheet.
-  //   is_of_sheet  returns whether a voxel of the band is in a sheet
+  // Returns how deep each voxel of the band lies inside a sheet of tissue: the distance to the nearest voxel of the
+  // band outside the sheet, in units of the shortest voxel edge. The value is 0 outside the sheet.
+  //   is_of_sheet  returns true if a voxel of the band lies in a sheet
   template <class IsOfSheet>
   std::vector<float> depth_in_sheets(const IsOfSheet& is_of_sheet) const {
     std::vector<float> depth(band_.size(), std::numeric_limits<float>::infinity());
@@ -331,9 +335,9 @@ class SeamFinder {
     return depth;
   }
 
-  // Returns the cost of cutting through each voxel of the band. The cost falls with the depth inside a sheet, so that
-  // the cut follows the sheet's middle. In a bridge it falls with the third power of the depth, because a bridge is
-  // short.
+  // Returns the cost of cutting through each voxel of the band. The cost falls with the depth inside a sheet (skin and
+  // connective tissue), so that the cut follows the sheet's middle. In a bridge (see find_bridges()) the cost falls
+  // with the third power of the depth, because a bridge is short.
   std::vector<double> costs() const {
     const std::vector<float> in_sheet =
         depth_in_sheets([&](const Node& node) { return is_sheet(kind_at(node.voxel)); });
@@ -346,14 +350,15 @@ class SeamFinder {
     return cost;
   }
 
-  // Cost of a cut that makes a voxel part of the limb's surface, or of the surface of what the limb touches.
+  // Cost of a cut that makes a voxel part of the limb's surface (of_limb), or part of the surface of the body part that
+  // the limb touches (of_other).
   struct SurfaceCost {
     double of_limb, of_other;
   };
 
-  // Returns the cost of a cut that makes v a surface voxel, where `inward` is the direction into the flesh. The cost is
-  // higher than `own_cost` when fat or muscle lies less deep below this surface than it does below skin at the air.
-  // Bone is ignored, because it lies near the skin in a hand but deep in a thigh.
+  // Returns the cost of a cut that makes v a surface voxel; the flesh lies in the direction `inward`. If fat or muscle
+  // is less deep below this surface than it usually is below skin at the air, the cost is higher than `own_cost`. The
+  // depth of bone is ignored, because bone lies near the skin in a hand but deep in a thigh.
   SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward, const SkinLayers& of_limb,
                               const SkinLayers& of_other) const {
     const int axis = inward >> 1, reach = std::max(of_limb.reach(axis), of_other.reach(axis));
@@ -373,8 +378,8 @@ class SeamFinder {
     return cost;
   }
 
-  // Sets the side of each voxel of the band: fixed for bones, for tissue whose name tells the limb and for the band's
-  // ends, Side::Free for the others.
+  // Sets the side of each voxel of the band. The side is fixed for bones, for tissue whose name contains a limb and for
+  // the ends of the band (link_band()). All other voxels are Side::Free: the cut decides.
   void find_sides(const Limb& limb) {
     const auto limb_name =
         limb_of_bone_[std::find(limb.has_bone.begin(), limb.has_bone.end(), true) - limb.has_bone.begin()];
@@ -402,7 +407,8 @@ class SeamFinder {
       for (int axis = 0; axis < 3; ++axis) {
         const int up = edge_up(axis), down = 5 - up;
         const std::int32_t m = beside_[n][up];
-        if (m < 0 || (side_[n] != Side::Free && side_[m] != Side::Free)) continue;  // both sides are fixed
+        if (m < 0 || (side_[n] != Side::Free && side_[m] != Side::Free))
+          continue;  // no cut can change the side of either voxel
         const SurfaceCost here = cost_as_surface(cost[n], band_[n].voxel, 2 * axis, of_limb, of_other);
         const SurfaceCost beyond = cost_as_surface(cost[m], band_[m].voxel, 2 * axis + 1, of_limb, of_other);
         const double unit = kCostUnit * area[axis] / smallest;
@@ -419,8 +425,8 @@ class SeamFinder {
     return min_cut(std::move(graph));
   }
 
-  // Assigns each voxel that the cut moved to the other side to the bone of a neighbour on that side. A fragment that is
-  // connected to no fixed voxel of its side goes to the other side.
+  // Gives each voxel whose side the cut has changed the bone of a neighbour on the new side. A fragment that is
+  // connected to no voxel with a fixed side (side_) on its own side goes to the other side.
   void take_sides(const Limb& limb, const std::vector<std::uint8_t>& inside) {
     std::vector<bool> settled(band_.size());
     std::vector<std::int32_t> open;
@@ -464,16 +470,16 @@ class SeamFinder {
   const Armature& armature_;
   const std::vector<Limb> limbs_;
   Seams seams_;
-  std::vector<TissueKind> kind_;                // kind of each label
-  std::vector<std::optional<LimbName>> named_;  // limb in the name of each label
+  std::vector<TissueKind> kind_;                // tissue kind of each label
+  std::vector<std::optional<LimbName>> named_;  // limb that the name of each label contains
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
-  std::vector<std::uint16_t> held_by_, bone_;  // bone of each tissue voxel; held_by_: only bone tissue
+  std::vector<std::uint16_t> held_by_, bone_;  // rig bone of each tissue voxel; held_by_: kSoft outside bone tissue
   std::vector<std::int32_t> node_of_;          // index in band_ of each tissue voxel; -1: not in the band
   std::vector<Node> band_;
   std::vector<std::array<std::int32_t, 6>> beside_;  // neighbour in band_ of each voxel of the band, by edge; -1: none
-  std::vector<bool> is_end_;                         // #band_: connected to tissue outside the band
-  std::vector<Side> side_;                           // #band_
+  std::vector<bool> is_end_;  // true for each voxel of the band that is connected to tissue outside it
+  std::vector<Side> side_;    // side of each voxel of the band
   std::vector<Border> borders_;
   bool has_skin_ = false;
   TissueSet inside_;                          // bones, and the tissue connected to them without crossing skin

@@ -4,9 +4,10 @@
 // two limbs touch, the surface between them is the cheapest cut through the tissue around. The cut is cheap along skin,
 // then through connective tissue, then through fat, and expensive through muscle and organs. Of cuts through the same
 // tissue, one with a small area and in the middle of a sheet is cheapest. On both sides of the cut, fat and muscle
-// should lie as deep as below the skin at the air of these limbs. So skin that is left of only one limb goes to the
-// limb on whose fat it lies (skin_layers.h). Tissue that skin separates from every bone is a bridge between two skins,
-// and is cut in its middle. A label that names a limb ("Muscle, arms") decides to which limb its tissue belongs.
+// should lie as deep below the cut as they lie below the skin where these limbs border on air. So if there is only one
+// layer of skin between two limbs, it goes to the limb on whose fat it lies (skin_layers.h). Tissue from which no bone
+// can be reached without crossing skin lies between the skins of two limbs; it is cut in its middle. A label that names
+// a limb ("Muscle, arms") decides to which limb its tissue belongs.
 //
 // There is no seam where a limb naturally is one with the body: along the first part of an arm, a thigh or a finger
 // (the share Limb::grown_together of its first bone). The limbs are found by the names of the rig's bones

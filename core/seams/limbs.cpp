@@ -9,9 +9,9 @@ namespace limber {
 
 namespace {
 
-// Shares of the length of a limb's first bone along which the limb is naturally one with the body
-// (Limb::grown_together). Armpit and crotch lie a quarter of the way down the bone, the web between fingers half of the
-// way.
+// Values of Limb::grown_together: the share of a limb's first bone along which the limb's flesh is continuous with the
+// body. Armpit and crotch lie a quarter of the way down the bone, the web between fingers half of the way, so the
+// shares are a little larger.
 constexpr double kLimbGrownTogether = 0.3;
 constexpr double kFingerGrownTogether = 0.6;
 
@@ -36,7 +36,7 @@ bool is_digit(BodyPart part) {
          part == BodyPart::Little;
 }
 
-// Returns whether a bone with this role lies in a finger or thumb beyond the palm.
+// Returns true if a bone with this role lies in the part of a finger or thumb that is outside the palm.
 bool is_free_digit(const JointRole& role) {
   return is_digit(role.part) && role.index >= (role.part == BodyPart::Thumb ? 2 : 1);
 }

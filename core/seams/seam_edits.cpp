@@ -9,7 +9,8 @@ namespace limber {
 
 namespace {
 
-// Offset in voxels by which blades are moved. A blade exactly through voxel centres would lie on neither side of them.
+// Offset that is added to blades, in voxels. A blade that passes exactly through voxel centres would have these voxels
+// on neither of its sides.
 constexpr glm::dvec3 kAside(1.17e-4, 2.31e-4, 3.43e-4);
 
 // Returns whether the line segment from a to b, which is parallel to a voxel axis, passes through a triangle.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits seams by hand. The user moves a knife along a stroke. The knife cuts the faces between soft voxels on its two
-// sides, so that the stroke cuts a thin sheet. A ball-shaped eraser joins all cut faces within it.
+// Edits seams by hand. The user moves a knife along a stroke, and the blade of the knife sweeps a thin sheet. Voxel
+// faces between soft voxels on the two sides of the sheet are cut. A ball-shaped eraser joins all cut faces inside the
+// ball.
 #pragma once
 
 #include "core/tissue/tissue_table.h"

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kEnd = 8;  // voxels; settle_ends() copies the bones of a face over at most this distance
+constexpr double kEnd = 8;  // largest distance over which settle_ends() copies the bones of a face, voxels
 
 const char* word_for(BodyPart part) {
   switch (part) {
@@ -53,7 +53,8 @@ struct Face {
   int lower, upper;  // bones nearest to the two voxels of the face, -1: none
 };
 
-// Returns whether a seam can lie between the face's two bones: whether one belongs to a limb that may touch the other.
+// Returns true if a seam can lie between the face's two bones: one bone belongs to a limb that may touch the other
+// bone.
 bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   if (face.lower < 0 || face.upper < 0) return false;
   return std::any_of(limbs.begin(), limbs.end(), [&](const Limb& limb) {
@@ -62,8 +63,9 @@ bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   });
 }
 
-// Corrects the bones of faces at the ends of seams. There, the bones nearest to both voxels of a face may belong to one
-// limb. Such a face gets the bones of the nearest face between bones that may touch, at most `reach` mm away.
+// Corrects the bones of faces at the ends of seams. There, the two voxels of a face may have nearest bones of one limb,
+// between which no seam can lie. This face gets the bones of the nearest face whose bones may touch, if that face is at
+// most `reach` mm away.
 void settle_ends(std::vector<Face>& faces, const std::vector<Limb>& limbs, double reach) {
   std::vector<Face> settled;
   for (const Face& face : faces)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lists for the user the parts of the body between which seams lie, such as "left hand" and "left thigh", 1204 faces.
+// Lists the pairs of body parts that seams separate, for the user: for example "left hand" and "left thigh", 1204
+// faces.
 #pragma once
 
 #include <string>
@@ -13,12 +14,12 @@
 namespace limber {
 
 struct SeamPair {
-  std::string first, second;  // parts of the body, or names of bones that are not recognized
+  std::string first, second;  // names of body parts; for a bone without a known role, the bone's name
   std::int64_t faces = 0;
-  glm::dvec3 middle{0};  // middle of the face nearest to the faces' mean position, world, mm
+  glm::dvec3 middle{0};  // centre of that face of the pair that is nearest to the mean of all its faces, world, mm
 };
 
-// Returns for each bone its part of the body, as in "left hand", or its own name when that is not recognized.
+// Returns the body part of each bone, such as "left hand". A bone whose name is not recognized keeps its own name.
 std::vector<std::string> body_parts_of(const Armature& armature);
 
 // Returns the pairs of body parts that seams separate, those with most faces first. Each of a face's two voxels belongs

@@ -11,7 +11,8 @@ namespace limber {
 
 namespace {
 
-// Grids are the same when their corners differ by at most this, mm per voxel of the longest axis.
+// Upper limit on the distance between the corners of two grids that count as equal, in mm per voxel of the longest
+// axis.
 constexpr double kSamePlace = 1e-3;
 
 // Returns for each label of the file which faces it marks as cut: the sum of 1, 2 and 4 (seams_io.h), which is the

@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kDeepest = 30;  // length of a ray, mm; tissue deeper than this tells nothing about the surface
+constexpr double kDeepest = 30;                  // length of a ray, mm; deeper tissue tells nothing about the surface
 constexpr std::int64_t kFewestRays = 200;        // with fewer rays along an axis, surprise() is 0
 constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of the rays at which surprise() is 0 and 1
 

@@ -18,8 +18,8 @@
 
 namespace limber {
 
-// The layers of tissue below the air, by depth. Sheet: skin and connective tissue. Deep: bone, organs and all other
-// kinds below muscle.
+// The layers of tissue below the air, from outside inwards. Sheet: skin and connective tissue. Fat: also unknown
+// tissue. Muscle: also vessels, blood and nerves. Deep: all other kinds, such as bone and organs.
 enum class Layer : std::uint8_t { Sheet, Fat, Muscle, Deep };
 constexpr int kLayers = 4;
 
@@ -29,8 +29,8 @@ Layer layer_of(TissueKind kind);
 struct SkinRay {
   std::int64_t place;  // index of the skin voxel in the list of tissue voxels
   std::uint8_t axis;
-  // Depth below the face at the air, in voxels, at which the ray first meets each layer or a deeper one; the ray's
-  // length when it meets none.
+  // Depth at which the ray first meets each layer or a deeper layer, in voxels below the skin face at the air. The
+  // length of the ray if it meets neither.
   std::array<std::uint16_t, kLayers> first;
 };
 
@@ -42,7 +42,8 @@ std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& ti
 
 class SkinLayers {
  public:
-  // Counts the rays for whose skin voxel (index in the tissue list) `is_of` returns true.
+  // Measures the layers on those rays for which is_of(place) returns true, where `place` is the index of the ray's skin
+  // voxel in the list of tissue voxels.
   //   spacing  voxel size of the body, mm
   template <class IsOf>
   SkinLayers(const std::vector<SkinRay>& rays, const glm::dvec3& spacing, const IsOf& is_of) : SkinLayers(spacing) {
@@ -51,13 +52,13 @@ class SkinLayers {
     finish();
   }
 
-  // Returns how unusual it is, [0, 1], that `layer` or a deeper one lies at most `steps` voxels below the air on a ray
-  // along an axis. It is 0 when half or more of the counted rays meet the layer there, and 1 when a twentieth or fewer
-  // do. Returns 0 when too few rays were counted.
+  // Returns how unusual it is, [0, 1], that `layer` or a deeper layer lies at most `steps` voxels below the air on a
+  // ray along an axis. The result is 0 if at least half of the rays meet the layer within these steps, and 1 if at most
+  // a twentieth of them do. It is 0 too if there are too few rays.
   double surprise(int axis, Layer layer, int steps) const {
     return steps < reach_[axis] ? surprise_[axis][static_cast<int>(layer)][steps] : 0;
   }
-  // Returns the depth along an axis, in voxels, from which on surprise() is 0 for every layer.
+  // Returns the depth along an axis, in voxels, from which inwards surprise() is 0 for every layer.
   int reach(int axis) const { return reach_[axis]; }
 
  private:

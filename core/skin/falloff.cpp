@@ -23,7 +23,8 @@ double cover(FalloffShape shape, double share) {
   return 0;
 }
 
-// Returns the slopes of the curve at the points, so that it is monotone between them [Fritsch & Carlson 1980].
+// Returns the slope of the falloff curve at each point. With these slopes the curve is monotone between the points
+// [Fritsch & Carlson 1980].
 std::vector<double> slopes(std::span<const glm::dvec2> points) {
   const std::size_t count = points.size();
   std::vector<double> slope(count), secant(count > 0 ? count - 1 : 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The falloff curve of a brush: its strength from the centre (1) to the rim (0), stored as a table.
+// The falloff curve of a brush: its strength as a function of the distance, from the brush centre (1) to the rim (0).
+// The curve is stored as a table.
 #pragma once
 
 #include <array>
@@ -15,9 +16,9 @@ enum class FalloffShape { Smooth, Sphere, Root, Sharp, Linear, Constant };
 class Falloff {
  public:
   Falloff(FalloffShape shape = FalloffShape::Smooth);
-  // Makes a curve through points (distance as a share of the brush radius, strength), both [0, 1], with ascending
-  // distances. It is smooth between points without overshooting [Fritsch & Carlson 1980]. It is constant before the
-  // first point and after the last. Needs at least one point.
+  // Makes a curve through points. The x of a point is a distance as a share of the brush radius, its y the strength
+  // there; both are in [0, 1], and the distances ascend. Between the points the curve is smooth and does not overshoot
+  // [Fritsch & Carlson 1980]. It is constant before the first point and behind the last. At least one point is needed.
   explicit Falloff(std::span<const glm::dvec2> points);
 
   //   share  distance from the centre as a share of the radius, [0, 1]
@@ -26,8 +27,8 @@ class Falloff {
     const int step = at < kSteps - 1 ? static_cast<int>(at) : kSteps - 1;
     return table_[step] + (at - static_cast<float>(step)) * (table_[step + 1] - table_[step]);
   }
-  // Computes the strength of the brush at many distances: `strength` times the falloff at distance * per_radius (1 and
-  // more: the rim), rounded to 1/65535.
+  // Computes the brush strength at many distances from the centre: `strength` times the falloff at distance *
+  // per_radius, in 1/65535. A product of 1 or more is treated as the rim.
   //   distance, covers  #count each
   void covers(const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) const;
   bool operator==(const Falloff&) const = default;

@@ -15,8 +15,8 @@ Influence rigid_influence(int bone) {
 }
 
 Influence quantize(const std::vector<std::pair<int, double>>& weights) {
-  // Selects the four largest weights. Of equal weights it takes the one of the bone with the lower index, so that the
-  // order of the input does not matter.
+  // Selects the four largest weights. Where two weights are equal, the bone with the lower index comes first, so that
+  // the order of the input does not matter.
   std::array<std::pair<int, double>, 4> best;
   int count = 0;
   for (const auto& candidate : weights) {

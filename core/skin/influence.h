@@ -26,8 +26,9 @@ struct Influence {
 
 Influence rigid_influence(int bone);
 
-// Returns the four largest of `weights`, rounded so that their sum is exactly kFullWeight. The input has any number of
-// weights with any sum. None may be negative, and a sum of zero throws std::logic_error.
+// Returns the influence with the four largest of `weights`, scaled and rounded so that their sum is exactly
+// kFullWeight. Any number of weights with any sum may be given. No weight may be negative. Throws std::logic_error if
+// the sum is zero.
 Influence quantize(const std::vector<std::pair<int, double>>& weights);
 
 }  // namespace limber

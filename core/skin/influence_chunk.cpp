@@ -11,7 +11,8 @@ namespace {
 
 using Bones = std::array<std::uint16_t, 4>;
 
-// Collects the different sets of bones of a brick, numbered in the order in which they first occur.
+// Collects the different sets of bones that the voxels of a brick follow. Each set gets a number, in the order in which
+// the sets first occur.
 class BoneSets {
  public:
   int place_of(const Bones& bones) {
@@ -54,7 +55,7 @@ InfluenceChunk::InfluenceChunk(std::span<const Influence> influences)
   std::memcpy(bytes.get(), sets.numbers().data(), records_);
   std::uint8_t* at = bytes.get() + records_;
   for (std::size_t i = 0; i < influences.size(); ++i) {
-    std::memcpy(at, &set[i], set_bytes_);  // the lowest byte of the index comes first
+    std::memcpy(at, &set[i], set_bytes_);  // the set's index; its lowest byte comes first
     at += set_bytes_;
     std::memcpy(at, &influences[i].weight[1], 2 * std::size_t{weights_});
     at += 2 * weights_;
@@ -68,8 +69,8 @@ InfluenceChunk::InfluenceChunk(std::size_t count, const Influence& all)
 
 namespace {
 
-// Unpacks the records of voxels. All records have the same number of bytes for the index of the bone set, and the same
-// number of weights.
+// Unpacks the stored records of a brick's voxels. In all these records the index of the bone set takes kSetBytes bytes,
+// and kWeights weights follow.
 template <int kSetBytes, int kWeights>
 struct Records {
   const std::uint8_t *sets, *first;
@@ -77,11 +78,12 @@ struct Records {
     const std::uint8_t* record = first + place * (kSetBytes + 2 * kWeights);
     std::uint16_t set = 0;
     std::memcpy(&set, record, kSetBytes);
-    // Writes each array of four numbers as one 64 bit value: if the numbers were written one by one, a following 64 bit
-    // read would stall.
+    // Copies the four bones, and the four weights, as one 64-bit value each. If the numbers were written one by one, a
+    // following 64-bit read would stall.
     std::uint64_t bones, others;
     std::memcpy(&bones, sets + set * sizeof(Bones), sizeof bones);
-    // This may read beyond the end of the record. The next line masks what does not belong to it.
+    // This copy may read beyond the end of the record. The next line sets the bytes that do not belong to the record to
+    // 0.
     std::memcpy(&others, record + kSetBytes, sizeof others);
     others &= (std::uint64_t{1} << (16 * kWeights)) - 1;
     const std::uint64_t weights =
@@ -91,8 +93,8 @@ struct Records {
   }
 };
 
-// Calls body(records) with the Records type that fits the layout. Returns false for a rare layout that has no such
-// type.
+// Calls body(records) with the instance of Records that fits this record layout. Returns false for rare layouts, for
+// which there is no instance.
 template <class Body>
 bool with_records(int set_bytes, int weights, const std::uint8_t* sets, const std::uint8_t* first, const Body& body) {
   switch (set_bytes * 4 + weights) {

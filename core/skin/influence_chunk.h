@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The influences of the voxels of one brick (8^3 voxels), packed and immutable. A brick has few different sets of
-// bones, and most voxels follow one or two bones. So each set of bones is stored once. A voxel stores the index of its
-// set and all weights but the first; the first is 1 minus the others. That takes 0 to 8 bytes per voxel instead of 16,
-// without loss.
+// The influences of the voxels of one brick (8^3 voxels), packed and immutable. The voxels of a brick follow few
+// different sets of bones, and most voxels follow one or two bones. So each set of bones is stored once. A voxel stores
+// the index of its set and all its weights except the first, which is 1 minus the others. That takes 0 to 8 bytes per
+// voxel instead of 16, without loss.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ class InfluenceChunk {
   std::size_t size() const { return count_; }
   bool empty() const { return count_ == 0; }
   Influence operator[](std::size_t i) const {
-    // This code has no branches: it reads beyond the end of the record (kBehind makes room for it), and masks the bytes
-    // that do not belong to the record.
+    // To avoid branches, this code reads beyond the end of the record (kBehind bytes make room for it) and masks the
+    // bytes that do not belong to the record.
     const std::uint8_t* at = bytes_.get() + records_ + i * stride_;
     const std::size_t set = read<std::uint16_t>(at) & ((1u << (8 * set_bytes_)) - 1);
     const std::uint64_t others = read<std::uint64_t>(at + set_bytes_) & ((std::uint64_t{1} << (16 * weights_)) - 1);
@@ -69,9 +69,9 @@ class InfluenceChunk {
   Iterator begin() const { return {this, 0}; }
   Iterator end() const { return {this, count_}; }
 
-  // Unpacks all size() influences.
+  // Unpacks the influences of all size() voxels.
   void unpack(Influence* influences) const;
-  // Unpacks the influences at the indices `places` of the brick.
+  // Unpacks the influences of some voxels. `places` lists their indices in the brick.
   void unpack(std::span<const std::uint16_t> places, Influence* influences) const;
   operator std::vector<Influence>() const {
     std::vector<Influence> influences(count_);
@@ -96,7 +96,7 @@ class InfluenceChunk {
     return number;
   }
 
-  // The sets of bones, then one record per voxel, then kBehind unused bytes.
+  // First the sets of bones, then one record for each voxel, then kBehind unused bytes.
   std::unique_ptr<const std::uint8_t[]> bytes_;
   std::uint32_t records_ = 0;  // byte offset of the first record
   std::uint16_t count_ = 0;
@@ -104,7 +104,7 @@ class InfluenceChunk {
   std::uint8_t set_bytes_ = 0, weights_ = 0, stride_ = 0;
 };
 
-// A view of a brick's influences, which may be packed or not. The influences must outlive the view.
+// A view of a brick's influences, which may be packed or unpacked. The influences must outlive the view.
 class InfluenceView {
  public:
   InfluenceView() = default;

@@ -9,8 +9,9 @@ namespace {
 
 using Target = std::array<std::pair<int, double>, 8>;
 
-// Returns the weights of one voxel after the merge. The chosen bones get their computed weights. The other bones keep
-// their old weights, scaled to the rest, or get computed ones if they had none. Unused entries have weight 0.
+// Returns the weights of one voxel after the merge. The chosen bones get their computed weights. The other bones share
+// the remaining weight in proportion to their old weights. If they had no old weight, they get their computed weights.
+// Unused entries have weight 0.
 Target target_of(const Influence& before, const Influence& computed, const BoneSet& chosen) {
   Target target{};
   int count = 0;

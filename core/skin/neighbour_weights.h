@@ -12,7 +12,7 @@ namespace limber {
 
 class WeightsAround {
  public:
-  //   chunk  a function (brick index) -> InfluenceView of this brick
+  //   chunk  a function that returns the InfluenceView of the brick with a given index
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {
     const TissueVoxels::Brick& own = tissue.bricks()[brick];
@@ -34,7 +34,7 @@ class WeightsAround {
       if (corner[axis] < 0 || corner[axis] >= tissue.grid_size()[axis]) continue;
       const int beside = tissue.brick_at(corner);
       if (beside < 0) continue;
-      // Of the neighbouring brick only the layer of voxels that touches this brick is needed.
+      // Only one layer of the neighbouring brick is needed: the voxels that touch this brick.
       const int layer = d & 1 ? 0 : kBrick - 1;
       Mask touching{};
       for (int z = 0; z < kBrick; ++z)
@@ -46,8 +46,8 @@ class WeightsAround {
     }
   }
 
-  // Finds the influences of the face neighbours (up to six) of a voxel that are tissue and not on the other side of a
-  // seam. Returns their number.
+  // Finds the influences of a voxel's face neighbours, up to six. Leaves out air and neighbours across a seam, which is
+  // a cut between touching tissue. Returns how many were found.
   //   cell  the voxel's position in the brick, [0, 7] along each axis
   int beside(const glm::ivec3& cell, std::array<Influence, 6>& found) const {
     const Influence* here = &around_[place(cell)];
@@ -68,10 +68,11 @@ class WeightsAround {
   static int place(const glm::ivec3& cell) { return cell.x + 1 + kSide * (cell.y + 1 + kSide * (cell.z + 1)); }
   static bool is_tissue(const Influence& influence) { return std::bit_cast<std::uint64_t>(influence.weight) != 0; }
 
-  // Copies the influences of the voxels in `wanted`. Their positions in the array are shifted by `shift` voxels.
+  // Copies the influences of those voxels of a brick that are in `wanted`. `shift` is the brick's offset from the
+  // middle brick, in voxels.
   void copy(const TissueVoxels::Brick& brick, const InfluenceView& influences, const glm::ivec3& shift,
             const Mask& wanted) {
-    std::size_t before = 0;  // number of tissue voxels in the slices below
+    std::size_t before = 0;  // number of tissue voxels in the brick's lower slices
     for (int z = 0; z < kBrick; ++z) {
       const std::uint64_t all = brick.mask[z];
       const bool whole = wanted[z] == all;

@@ -18,8 +18,8 @@ struct Entry {
   Part part;
 };
 
-// The weights of one voxel while they are redistributed: the up to four weights that it has, and those that an edit may
-// add.
+// The weights of one voxel while they are redistributed. There is room for the voxel's up to four weights and for
+// weights that an edit adds.
 struct Entries {
   std::array<Entry, 9> entry;
   int count = 0;
@@ -57,8 +57,8 @@ struct Entries {
     for (int i = 0; i < count; ++i) all += entry[i].part == part;
     return all;
   }
-  // Returns the index of the smallest entry of a kind (locked, painted group or other). Of equal entries it returns the
-  // last.
+  // Returns the index of the smallest entry of one kind (locked, painted group or other). If several are equally small,
+  // returns the last of them.
   int smallest(Part part) const {
     int best = -1;
     for (int i = 0; i < count; ++i)
@@ -68,8 +68,8 @@ struct Entries {
   void remove(int i) {
     for (--count; i < count; ++i) entry[i] = entry[i + 1];
   }
-  // Removes entry i. Its weight goes to the other entries of the same kind, else to the largest entry of the other
-  // unlocked kind.
+  // Removes entry i and gives its weight away. The weight goes to the entries of the same kind (painted group or other)
+  // if they have weight, else to the largest entry of the opposite kind.
   void give_up(int i) {
     const Entry gone = entry[i];
     remove(i);
@@ -99,7 +99,7 @@ Entries entries_of(const Influence& influence, const BoneSet& locked, std::span<
   return entries;
 }
 
-// Replaces the influence. The same weights in another order do not count as a change.
+// Replaces the influence and reports whether it has changed. A different order of the same weights is no change.
 WeightChange changed_to(Influence& influence, const Influence& next) {
   Influence before = influence;
   sort_influence(before);
@@ -108,15 +108,15 @@ WeightChange changed_to(Influence& influence, const Influence& next) {
   return {true, -1};
 }
 
-// Makes an array of four numbers from one 64 bit value: if they were written one by one, a following 64 bit read would
-// stall.
+// Makes an array of four numbers from one 64-bit value. If the numbers were written one by one, a following 64-bit read
+// would stall.
 std::array<std::uint16_t, 4> four(std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
   if constexpr (std::endian::native == std::endian::little)
     return std::bit_cast<std::array<std::uint16_t, 4>>(a | b << 16 | c << 32 | d << 48);
   else return std::bit_cast<std::array<std::uint16_t, 4>>(a << 48 | b << 32 | c << 16 | d);
 }
 
-// Returns an influence in which `bone` has `weight`, and `other` has the rest.
+// Returns an influence in which `bone` has the weight `weight`, and `other` has the remaining weight.
 Influence pair_of(int bone, int weight, int other) {
   const int rest = kFullWeight - weight;
   const bool first = weight > rest || (weight == rest && bone < other);
@@ -154,8 +154,8 @@ void sort_influence(Influence& influence) {
   influence.bone = four(bone(0), bone(1), bone(2), bone(3));
 }
 
-// The shares are scaled and rounded; the largest share takes the remainder. Where rounding up would exceed the total,
-// all are rounded down instead.
+// Each share is scaled and rounded, and the largest share takes the remainder. If rounding up makes the sum exceed the
+// total, all shares are rounded down instead.
 void distribute(std::span<const double> share, int total, std::span<int> out) {
   double sum = 0;
   std::size_t largest = 0;
@@ -195,7 +195,8 @@ WeightRules::WeightRules(const Armature& armature, BoneSet locked, Normalize nor
   for (std::size_t b = 0; b < count; ++b) heir_.push_back(nearest_relative(static_cast<int>(b), {}, false));
 }
 
-// Searches along the bone tree, nearest bones first. Of equally near bones the one on the parent's side comes first.
+// Searches along the bone tree, the nearest bones first. Of two equally near bones, the one on the parent's side comes
+// first.
 int WeightRules::nearest_relative(int bone, std::span<const int> group, bool locked) const {
   std::vector<int> front{bone};
   std::vector<int> from{-1};
@@ -243,8 +244,8 @@ WeightChange WeightRules::set(Influence& influence, int bone, int weight) const 
   return set(influence, std::span(&bone, 1), weight);
 }
 
-// A fast version of set() for the most frequent case: one painted bone, and no locked bones in this voxel. The result
-// is the same.
+// A fast version of set() for the most frequent case: one painted bone, and no locked bones in this voxel. Its result
+// is exactly that of set().
 WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight) const {
   if (influence.weight[2] == 0) {
     const bool first = influence.bone[0] == bone, second = influence.bone[1] == bone && influence.weight[1] != 0;
@@ -263,8 +264,8 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
       return {true, -1};
     }
   }
-  // This code has no branches, since the processor could not predict them. (simd_weights.h does the same for several
-  // voxels at once.)
+  // The code below has almost no branches, since the processor could not predict them. simd_weights.h does the same
+  // computation for several voxels at once.
   const Influence unsorted = influence;
   sort_influence(influence);
   int count = 0, found = 0;
@@ -284,7 +285,7 @@ WeightChange WeightRules::set_freely(Influence& influence, int bone, int weight)
     influence = rigid_influence(bone);
     return {true, -1};
   }
-  slot = std::min(slot, 3);  // in a voxel with four other bones, the new bone replaces the one with the smallest weight
+  slot = std::min(slot, 3);  // if the voxel has four other bones, the new bone replaces the smallest
   std::array<int, 4> shared, weights;
   int sum = 0, most = -1;
   for (int i = 0; i < 4; ++i) {
@@ -319,8 +320,8 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
             others = entries.sum(Part::Other);
   int now = std::clamp(weight, 0, room);
   if (normalize_ == Normalize::All && now > 0 && others > 0) {
-    // If the other bones did not make room, the sum would be `now` + `others`. Both are scaled so that the sum is
-    // `room`.
+    // If the other bones kept their weights, the sum would be `now` + `others`. Both are scaled so that the sum becomes
+    // `room`, the weight that unlocked bones share.
     now = static_cast<int>(std::lround(double(now) / (now + others) * room));
   }
   if (now == before) return {false, weight > room ? largest_locked(entries) : -1};
@@ -331,8 +332,8 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
     entries.add(to, room - now, Part::Other);
   } else {
     if (before == 0 && entries.count == 4) {
-      // A fifth bone replaces the one with the smallest weight among the others. If that was the only other bone, the
-      // painted bone gets all the room.
+      // The voxel has four bones already, so the painted bone replaces the unlocked bone with the smallest weight. If
+      // that was the only unlocked bone, the painted bone gets all the unlocked weight.
       entries.remove(entries.smallest(Part::Other));
       if (entries.number(Part::Other) == 0) now = room;
     }
@@ -342,7 +343,7 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   else entries.scale(Part::Group, now);
   entries.drop_empty();
   if (entries.count > 4) {
-    // The fallback bone is a fifth bone in this voxel, so the smaller of the unlocked entries is removed.
+    // With the fallback bone the voxel has five bones, so the smallest unlocked entry is removed.
     const int painted_least = entries.smallest(Part::Group), fallback_bone = entries.smallest(Part::Other);
     entries.give_up(entries.entry[fallback_bone].weight < entries.entry[painted_least].weight ? fallback_bone
                                                                                               : painted_least);
@@ -350,8 +351,8 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   return changed_to(influence, entries.influence());
 }
 
-// A fast version of blend() for a voxel without locked bones and a target that has exactly the voxel's own bones in the
-// same order. Returns false for other targets.
+// A fast version of blend() for a voxel without locked bones and a target with exactly the voxel's bones in the voxel's
+// order. Returns false in all other cases, which blend() must handle.
 bool WeightRules::blend_own(Influence& influence, std::span<const std::pair<int, double>> target, double amount) const {
   if (any_locked_ || target.size() > 4 || !(amount > 0)) return false;
   const std::size_t count = target.size();
@@ -390,8 +391,7 @@ WeightChange WeightRules::blend(Influence& influence, std::span<const std::pair<
     if (!locked_[bone]) sum += share;
   if (!(sum > 0) || !(amount > 0)) return {};
 
-  // An array on the stack is large enough for most voxels. Only a few have so many bones around them that they need a
-  // vector.
+  // An array on the stack suffices for most voxels. Only a few targets have so many bones that a vector is needed.
   std::array<std::pair<int, double>, 32> few;
   std::vector<std::pair<int, double>> many;
   std::pair<int, double>* mixed = few.data();

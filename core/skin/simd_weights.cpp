@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// The code below is written once for four and for eight voxels at a time. It processes eight if the processor has AVX2.
-// Every helper is inlined, so that it is compiled for the same processor as its caller.
+// The code below is written once, for four and for eight voxels at a time. Eight are processed if the processor has
+// AVX2. Every helper is inlined, so that it is compiled for the same processor as its caller.
 #define LIMBER_INLINE [[gnu::always_inline]] inline
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are only passed to inlined functions
 
@@ -21,12 +21,12 @@ static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::lit
 struct Four {
   using Lanes = std::int32_t __attribute__((vector_size(16)));
   using Numbers = double __attribute__((vector_size(32)));
-  // Loads four voxels, one into each row.
+  // Loads the influences of four voxels, one voxel into each row.
   LIMBER_INLINE static void load(const Influence* from, Lanes* row) { std::memcpy(row, from, 4 * sizeof *row); }
   LIMBER_INLINE static void store(const Lanes* row, Influence* to) {
     std::memcpy(static_cast<void*>(to), row, 4 * sizeof *row);
   }
-  // Transposes a matrix of 4 x 4 numbers.
+  // Transposes a matrix of 4 x 4 numbers in place.
   LIMBER_INLINE static void transpose(Lanes* row) {
     const Lanes a = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
                 b = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5);
@@ -42,7 +42,8 @@ struct Four {
 struct Eight {
   using Lanes = std::int32_t __attribute__((vector_size(32)));
   using Numbers = double __attribute__((vector_size(64)));
-  // Loads two voxels into each row: voxels i and i + 4 into row i. Each half can then be transposed by itself.
+  // Loads the influences of eight voxels: voxels i and i + 4 into row i. So each half of the rows can be transposed on
+  // its own.
   LIMBER_INLINE static void load(const Influence* from, Lanes* row) {
     for (int i = 0; i < 4; ++i) {
       Four::Lanes low, high;
@@ -72,13 +73,13 @@ struct Eight {
 };
 
 constexpr std::int32_t kLow = 0xffff, kHigh = ~kLow;
-// Keys have 2^31 subtracted, since vector comparisons are signed.
+// Vector comparisons are signed, so 2^31 is subtracted from each key to keep the order of unsigned keys.
 constexpr std::int32_t kBias = std::numeric_limits<std::int32_t>::min(),
-                       kLeast = 0x10000 ^ kBias;  // smallest key of an influence whose weight is not 0
+                       kLeast = 0x10000 ^ kBias;  // smallest key of a bone whose weight is not 0
 
-// The influences of several voxels, as four keys for each voxel. A key has the weight in its upper 16 bits and 65535 -
-// bone in its lower 16 bits. Descending keys therefore have the order of influences: by descending weight, then by
-// bone.
+// The influences of several voxels. Each voxel has four keys, one for each of its bones. The upper 16 bits of a key are
+// the weight, the lower 16 bits are 65535 - bone index. So descending keys have the order of an influence: by
+// descending weight, then by bone.
 template <class Width>
 struct Voxels {
   using Lanes = typename Width::Lanes;
@@ -106,7 +107,7 @@ struct Voxels {
   }
 
   LIMBER_INLINE Lanes weight(int i) const { return ((key[i] ^ kBias) >> 16) & kLow; }
-  // Returns, for each voxel, all bits set if influence i belongs to this bone and its weight is not 0; else 0.
+  // Returns a mask for each voxel: all bits are set if key i belongs to this bone and its weight is not 0, else none.
   LIMBER_INLINE Lanes is_of(int i, std::int32_t bone_key) const {
     return ((key[i] & kLow) == bone_key) & (key[i] >= kLeast);
   }
@@ -136,26 +137,26 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   voxels.sort();
   Lanes now;
   for (std::size_t i = 0; i < sizeof(Lanes) / 4; ++i) now[i] = weights[i];
-  Lanes own[4], rest[4], had{}, found{};  // own: all bits set at the painted bone; rest: weights of the others
+  Lanes own[4], rest[4], had{}, found{};  // own: mask of the painted bone; rest: the other bones' weights
   for (int i = 0; i < 4; ++i) {
     own[i] = voxels.is_of(i, bone_key);
     found |= own[i];
     had |= voxels.weight(i) & own[i];
   }
   const Lanes same = had == now;
-  own[3] |= ~found;  // a bone that the voxel does not have replaces the one with the smallest weight
+  own[3] |= ~found;  // a new fifth bone replaces the one with the smallest weight
   for (int i = 0; i < 4; ++i) rest[i] = voxels.weight(i) & ~own[i];
   const Lanes others = kFullWeight - now, sum = rest[0] + rest[1] + rest[2] + rest[3];
   const Numbers factor = __builtin_convertvector(others, Numbers) / __builtin_convertvector(sum - (sum == 0), Numbers);
-  // The largest of the other weights takes the remainder of rounding. It is never negative, since at most two other
-  // weights are rounded.
+  // The largest of the other weights takes the remainder of rounding. The remainder is never negative, since at most
+  // two other weights are rounded.
   Lanes made[4] = {Lanes{}, scaled<Width>(rest[1] & ~own[0], factor), scaled<Width>(rest[2], factor),
                    scaled<Width>(rest[3], factor)};
   const Lanes left = others - made[1] - made[2] - made[3];
   made[0] = left & ~own[0];
   made[1] |= left & own[0];
-  // In a voxel where the bone had all the weight, the bone is the first influence. Its fallback bone becomes the
-  // second.
+  // Where the painted bone had all the weight, it is the first influence. Its fallback bone then becomes the second
+  // influence.
   const Lanes nobody = sum == 0;
   voxels.key[1] = (voxels.key[1] & ~nobody) | (heir_key & nobody);
   for (int i = 0; i < 4; ++i) {

@@ -8,13 +8,14 @@ namespace limber {
 
 namespace {
 
-constexpr double kCell = 0.75;  // largest edge of a cell (a block of voxels), as a share of the width of the spread
-// Share of a cell's weights that one step exchanges with its neighbours, for a cell full of tissue. A larger share
-// would oscillate.
+constexpr double kCell = 0.75;  // upper limit on the edge of a cell (a block of voxels), as a share of the spread width
+// Share of its weights that a cell full of tissue exchanges with its neighbours in one step. A larger share would make
+// the weights oscillate.
 constexpr double kAtOnce = 0.5;
-// Largest share of a cell's weights that one step exchanges, for a cell that is only partly tissue.
+// Upper limit on the share of its weights that a cell exchanges in one step. Only cells that are partly air reach this
+// limit.
 constexpr float kMostAtOnce = 0.9f;
-// Smallest weight that is kept, as a share of a voxel's full weight.
+// Lower limit on a weight of the result, as a share of a voxel's full weight. Smaller weights are dropped.
 constexpr float kNothing = 1e-5f;
 
 glm::ivec3 voxel_in_brick(int cell) { return {cell & 7, cell >> 3 & 7, cell >> 6}; }
@@ -40,7 +41,8 @@ void SmoothWeights::spread(const std::vector<int>& bricks, double width,
   take_steps(width);
 }
 
-// Chooses for each axis the cell size in voxels. It is a power of two, so that no cell lies in two bricks.
+// Chooses the edge length of a cell along each axis, in voxels. It is a power of two, so that each cell lies in one
+// brick.
 void SmoothWeights::choose_cells(double width) {
   for (int axis = 0; axis < 3; ++axis) {
     edge_[axis] = 1;
@@ -63,7 +65,8 @@ void SmoothWeights::find_cells(const std::vector<int>& bricks) {
   }
 }
 
-// Marks as one cell all voxels that are connected to `voxel` within its block of `edge_` voxels.
+// Assigns voxels to the cell `cell`: all voxels of a block of `edge_` voxels that are connected to `voxel` inside the
+// block.
 void SmoothWeights::flood(const glm::ivec3& voxel, const TissueVoxels::Brick& brick, std::int32_t* cell_of,
                           std::int32_t cell) {
   const glm::ivec3 low = voxel / edge_ * edge_, high = low + edge_ - 1;
@@ -93,7 +96,7 @@ void SmoothWeights::sum_weights(const std::vector<int>& bricks, const std::funct
   std::vector<Influence> all;
   std::vector<std::int32_t> cells;
   std::array<Influence, kVoxels> influences;
-  std::vector<int> place_of;  // for each bone: its index in bones_
+  std::vector<int> place_of;  // index of each bone in bones_; -1: none
   bones_.clear();
   for (std::size_t slot = 0; slot < bricks.size(); ++slot) {
     const auto count = static_cast<std::size_t>(tissue_.bricks()[bricks[slot]].count());
@@ -178,7 +181,8 @@ void SmoothWeights::link_cells(const std::vector<int>& bricks) {
 
 void SmoothWeights::take_steps(double width) {
   const glm::dvec3 edge = glm::dvec3(edge_) * spacing_;
-  // Averaging over cells and interpolating between them spread the weights too, so the steps have to spread them less.
+  // Averaging over cells and interpolating between cells spreads the weights too. The steps only have to add the
+  // missing spread.
   glm::dvec3 spread_by_cells(0);
   for (int axis = 0; axis < 3; ++axis)
     if (edge_[axis] > 1) spread_by_cells[axis] = edge[axis] * edge[axis] / 4;
@@ -218,8 +222,8 @@ void SmoothWeights::take_steps(double width) {
   }
 }
 
-// Returns the eight cells whose centres surround a point in `cell`. A missing cell is replaced by the nearest that
-// exists.
+// Returns the eight cells whose centres surround a point of the cell `cell`. Where there is no such cell, its nearest
+// existing neighbour takes its place.
 //   towards  0 or 1 along each axis: the side of the cell's centre on which the point lies
 std::array<std::int32_t, 8> SmoothWeights::corners_around(std::int32_t cell, const glm::ivec3& towards) const {
   std::array<std::int32_t, 8> corner;
@@ -249,7 +253,7 @@ void SmoothWeights::at(int brick, int cell, WeightSum& sum) const {
     for (std::size_t b = 0; b < bones; ++b) add(b, weight_[own * bones + b]);
     return;
   }
-  // Offset of the voxel from the centre of its cell, in cells.
+  // Offset of the voxel from the centre of its cell, in cell edge lengths.
   const glm::ivec3 in = voxel_in_brick(cell) & (edge_ - 1);
   const glm::vec3 off = (glm::vec3(in) + 0.5f) / glm::vec3(edge_) - 0.5f, share = glm::abs(off);
   const auto corner = corners_around(own, {off.x > 0, off.y > 0, off.z > 0});

@@ -10,11 +10,11 @@
 namespace limber {
 
 namespace {
-// Smallest weight that is kept, in 1/65535. Smaller weights are noise of the solver.
+// Lower limit on a weight that is kept, in 1/65535. Smaller weights are noise of the solver that computes weights.
 constexpr int kLeastWeight = 7;
 
-// Scales the weights so that their sum is exactly kFullWeight. They are rounded down, and the largest takes the
-// remainder.
+// Scales the weights so that their sum is exactly kFullWeight. The weights are rounded down, and the largest one takes
+// the remainder.
 Influence normalized(Influence influence) {
   std::int64_t sum = 0;
   for (int k = 0; k < 4; ++k) sum += influence.weight[k];
@@ -41,7 +41,7 @@ BestFour::Slot& BestFour::grow_to(std::int64_t brick, std::int64_t place, int k)
 
 void BestFour::offer(std::int64_t brick, std::int64_t place, int bone, float weight) {
   const int whole = static_cast<int>(std::lround(std::clamp(weight, 0.0f, 1.0f) * kFullWeight));
-  // Of equal weights the one of the bone with the lower index comes first, so that the order of calls does not matter.
+  // Where two weights are equal, the bone with the lower index comes first, so that the order of calls does not matter.
   const auto after = [&](int k) {
     const Slot best = at(brick, place, k);
     return whole > best.weight || (whole == best.weight && bone < best.bone);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Collects the four largest weights of every tissue voxel, while the weights of one bone after the other are computed.
+// Collects the four largest weights of every tissue voxel while a solver computes the weights of one bone after
+// another.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +13,26 @@ namespace limber {
 
 class BestFour {
  public:
-  // Keeps a reference to `tissue`. Memory: 4 bytes per voxel and slot. All voxels of a brick have as many slots as the
-  // voxel with the most bones needs, at most four.
+  // Keeps a reference to `tissue`. Memory: 4 bytes per voxel and slot, where a slot holds one bone and its weight. Each
+  // brick has as many slots per voxel as its voxel with the most bones needs, at most four.
   explicit BestFour(const TissueVoxels& tissue) : tissue_(tissue), bricks_(tissue.bricks().size()) {
     for (std::size_t b = 0; b < bricks_.size(); ++b) bricks_[b].count = tissue.bricks()[b].count();
   }
 
-  // In these functions, `place` is a voxel's index in the list of tissue voxels, and `brick` is the brick that contains
-  // it. Threads may work on different bricks at the same time.
+  // In these functions, `place` is a voxel's index in the list of tissue voxels, and `brick` is the index of the brick
+  // that contains the voxel. Threads may work on different bricks at the same time.
   //
-  // offer() adds the weight [0, 1] of a bone at a voxel. It may be called once for each bone and voxel.
+  // offer() adds the weight [0, 1] of a bone at a voxel. Call it at most once for each bone and voxel.
   void offer(std::int64_t brick, std::int64_t place, int bone, float weight);
   // Makes the voxel follow `bone` with full weight, and no other bone.
   void hold(std::int64_t brick, std::int64_t place, int bone);
-  // Makes many voxels follow one bone each. `bones` (#tissue voxels) has the bone of each voxel, or `none` for a voxel
-  // that stays as it is.
+  // Makes many voxels follow one bone each. `bones` (#tissue voxels) lists the bone of each voxel; a voxel with the
+  // entry `none` does not change.
   void hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t none);
   bool covered(std::int64_t brick, std::int64_t place) const { return at(brick, place, 0).weight > 0; }
 
-  // Returns the normalized weights; every voxel must have a weight. May be called only once, since it frees the
-  // collected weights.
+  // Returns the normalized weights. Every voxel must have a weight. Call this only once, since it frees the collected
+  // weights.
   SkinWeights weights(std::vector<std::string> bone_names);
 
  private:
@@ -39,9 +40,10 @@ class BestFour {
     std::uint16_t bone = 0, weight = 0;
   };
   struct Brick {
-    int used = 0;   // number of slots: the largest number of bones of a voxel in this brick
+    int used = 0;   // slots per voxel: the largest number of bones of any voxel in this brick
     int count = 0;  // number of tissue voxels
-    // Slot 0 of all voxels, then slot 1 ...; weights descend from slot to slot and are not normalized.
+    // First slot 0 of all voxels, then slot 1 of all voxels, and so on. From slot to slot a voxel's weights descend;
+    // their sum is not normalized.
     std::vector<Slot> slots;
   };
   Slot at(std::int64_t brick, std::int64_t place, int k) const {

@@ -5,8 +5,8 @@ namespace limber {
 
 namespace {
 
-// Returns the influence with the indices of the new bones; nothing if no bone is left. The sum stays exact, and weights
-// change only where a bone was removed.
+// Returns the influence with its bone indices replaced by `to`, or nothing if none of its bones is left. The weights
+// still sum exactly, and they change only where a bone was removed.
 std::optional<Influence> carried(const Influence& influence, const std::vector<int>& to) {
   std::vector<std::pair<int, double>> weights;
   for (int i = 0; i < 4; ++i) {

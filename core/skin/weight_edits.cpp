@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr std::int64_t kBricksAtOnce = 16;
-constexpr std::int64_t kBricksOfStep = 2048;  // number of bricks between two progress updates: some ten milliseconds
+constexpr std::int64_t kBricksOfStep = 2048;  // bricks between two progress updates, some ten milliseconds of work
 
 void check(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
@@ -30,8 +30,8 @@ void check_bones(const WeightedBody& body, std::span<const int> bones) {
   if (bones.empty() || !std::all_of(bones.begin(), bones.end(), in_rig)) throw std::logic_error("no bone of the rig");
 }
 
-// Returns the unlocked bone with the most weight in the region, -1 if there is none. It is the fallback bone where no
-// relative is unlocked.
+// Returns the unlocked bone with the most weight in the region, or -1 if there is none. It serves as the fallback bone
+// where all bones connected in the bone tree are locked.
 int most_of_region(const SkinWeights& weights, const WeightedBody& body, const EditScope& scope) {
   std::vector<std::int64_t> sum(body.armature.bones.size());
   std::int64_t place = 0;
@@ -47,7 +47,7 @@ int most_of_region(const SkinWeights& weights, const WeightedBody& body, const E
   return best;
 }
 
-// Returns whether some bone has no unlocked relative that could be its fallback bone.
+// Returns true if some bone has no fallback bone: no unlocked bone of the bone tree could take over its weight.
 bool needs_nearby(const WeightedBody& body, const WeightRules& rules) {
   for (int b = 0; b < std::ssize(body.armature.bones); ++b)
     if (rules.fallback_bone(b) < 0) return true;
@@ -68,7 +68,7 @@ LabelSet bone_labels(const WeightedBody& body) {
 
 int whole(double weight) { return static_cast<int>(std::clamp(weight, 0.0, double(kFullWeight)) + 0.5); }
 
-// Counts the changed voxels, and for each locked bone the voxels that could not change because of it.
+// Counts the voxels that an edit changed, and for each locked bone the voxels whose change it prevented.
 struct Tally {
   std::int64_t changed = 0;
   std::vector<std::pair<int, std::int64_t>> blocked;
@@ -85,7 +85,7 @@ struct Tally {
   }
 };
 
-// The part of the whole progress that one edit covers, [0, 1].
+// The interval of the whole progress that one edit fills, [0, 1].
 struct Share {
   double from = 0, to = 1;
 };
@@ -249,7 +249,7 @@ WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int pa
         edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
     all = std::move(once);
   }
-  // Counts the voxels that differ from the original weights. The last pass alone counted only its own changes.
+  // Counts the voxels that differ from the original weights, since the last pass has counted only its own changes.
   all.changed = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
     if (weights.shared_chunk(b) != all.weights.shared_chunk(b))
@@ -317,8 +317,8 @@ std::optional<glm::ivec3> nearest_voxel(const Grid& grid, const glm::dvec3& at, 
   const double least_spacing = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   double best = reach * reach * (1 + 1e-9);
   std::optional<glm::ivec3> found;
-  // A voxel in shell n (the surface of the n-th cube) is at least n - 0.5 voxels away, since the centre was rounded by
-  // up to half a voxel.
+  // Shell n is the surface of the n-th cube. Its voxels are at least n - 0.5 voxels from the point, since the centre
+  // was rounded by up to half a voxel.
   for (int shell = 0; (shell - 0.5) * least_spacing <= std::sqrt(best); ++shell) {
     const glm::ivec3 low = glm::max(centre - shell, glm::ivec3(0)), high = glm::min(centre + shell, grid.size - 1);
     for (int z = low.z; z <= high.z; ++z)

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::int64_t kBricksAtOnce = 16;
 
-// Mixes two influences. A cover of 0 gives exactly the influence `below`, a cover of 1 exactly the influence `above`.
+// Mixes two influences: `cover` is the share of `above`, [0, 1]. A cover of 0 returns exactly `below`, a cover of 1
+// exactly `above`.
 Influence mixed(const Influence& below, const Influence& above, double cover) {
   if (cover <= 0 || below == above) return below;
   if (cover >= 1) return above;
@@ -35,7 +36,8 @@ void cover_with(SkinWeights::Influences& chunk, const WeightLayer& layer, std::i
   for (std::size_t i = 0; i < chunk.size(); ++i) chunk[i] = mixed(chunk[i], above[i], layer.cover(brick, i));
 }
 
-// Returns a copy of `from`, with make(brick) for each brick for which wanted(brick) is true.
+// Returns a copy of `from` in which some bricks are replaced: make(brick) returns the influences of each brick for
+// which wanted(brick) is true.
 template <class Wanted, class Make>
 SkinWeights made_from(const SkinWeights& from, const Wanted& wanted, const Make& make) {
   std::vector<SkinWeights::Influences> made(from.chunk_count());
@@ -94,7 +96,8 @@ SkinWeights composed(const WeightLayers& layers) {
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
   const std::int64_t count = layers.base->chunk_count();
   if (before.base->chunk_count() != count) throw std::logic_error("layers of another body");
-  // Returns the index of the next layer, at `from` or above, that covers something in the brick.
+  // Returns the index of the first layer, from `from` upwards, that covers any part of the brick. Returns the number of
+  // layers if none does.
   const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
     while (from < of.layers.size() &&
            (!of.layers[from]->visible || of.layers[from]->opacity == 0 || !of.layers[from]->mask[brick]))
@@ -161,7 +164,7 @@ SkinWeights canvas(const WeightLayers& layers, std::size_t index) {
 
 namespace {
 
-// A brick of a layer after painting: its weights and mask.
+// The weights and the mask of a layer in one brick, after painting.
 struct PaintedBrick {
   SkinWeights::Influences weights;
   WeightLayer::Mask mask;
@@ -196,7 +199,8 @@ WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, cons
 
 namespace {
 
-// Composes all layers in one brick, with `painted` in place of what the layer itself has there.
+// Composes all layers in one brick. The layer `index` takes part with the weights and mask of `painted` instead of its
+// own.
 SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick,
                                       const PaintedBrick& painted) {
   const WeightLayer& layer = layer_at(layers, index);
@@ -237,11 +241,11 @@ SkinWeights::Influences composed_while_masked(const WeightLayers& layers, std::s
 
 namespace {
 
-// Makes the weights that a stroke paints in place of a layer. They are made(influence, cover) for each voxel, and bone
-// 0 alone in bricks that the layer does not cover.
+// Makes the weights that a stroke paints to change a layer. Each voxel gets made(influence, cover). In bricks that the
+// layer does not cover, every voxel follows bone 0.
 template <class Made>
 SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones, const Made& made) {
-  // Chunks in which every voxel follows bone 0, by number of voxels.
+  // Chunks of voxels that all follow bone 0, by number of voxels, so that bricks of equal size share one chunk.
   std::map<std::size_t, std::shared_ptr<const SkinWeights::Chunk>> empty;
   std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
   for (std::int64_t b = 0; b < layer.weights.chunk_count(); ++b) {
@@ -259,7 +263,8 @@ SkinWeights as_painted(const WeightLayer& layer, std::vector<std::string> bones,
   return {std::move(bones), std::move(chunks)};
 }
 
-// Stores a painted brick in the layer. If the layer covers nothing in the brick any more, the mask there becomes null.
+// Stores a brick in the layer after painting. If the layer no longer covers anything in the brick, the brick's mask
+// becomes null.
 void put(WeightLayer& layer, std::int64_t brick, PaintedBrick painted) {
   const bool any =
       std::any_of(painted.mask.begin(), painted.mask.end(), [](std::uint16_t cover) { return cover != 0; });
@@ -288,13 +293,13 @@ WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const
   return layer;
 }
 
-// ---- layers as weights that a stroke can paint: bone kBelow first, then the bones of the layer
+// ---- A layer as weights that a stroke can paint: first the bone kBelow (the weights below the layer), then its bones.
 
 Armature with_below(const Armature& armature) {
   Armature more;
   more.bones.push_back({.name = "what lies below", .tail = {0, 0, 1}});
   for (Bone bone : armature.bones) {
-    bone.parent += 1;  // a root becomes a child of the bone kBelow
+    bone.parent += 1;  // the rig's root becomes a child of kBelow
     more.bones.push_back(std::move(bone));
   }
   return more;
@@ -419,8 +424,8 @@ WeightLayers merged_down(const WeightLayers& layers, std::size_t index) {
     }));
     return fewer;
   }
-  // Two layers with covers a and b, one above the other, together cover 1 - (1 - a)(1 - b). In their mix, the upper
-  // layer has the share b / (1 - (1 - a)(1 - b)).
+  // Two layers with covers a (lower) and b (upper) together cover 1 - (1 - a)(1 - b). In the merged layer, the upper
+  // layer's weights have the share b / (1 - (1 - a)(1 - b)).
   const WeightLayer& lower = *layers.layers[index - 1];
   must_be_seen(lower);
   WeightLayer both = lower;

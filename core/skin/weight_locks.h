@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The locked bones: no edit may change their weights, neither directly nor by normalization. They are stored by name,
-// so that a change of the rig loses only the locks of removed bones.
+// The locked bones. No edit may change the weights of a locked bone, neither directly nor by normalization. Bones are
+// stored by name, so that a change of the rig loses only the locks of removed bones.
 #pragma once
 
 #include <set>

@@ -18,8 +18,8 @@ using Kind = WeightProblem::Kind;
 constexpr int kMostPasses = 40;
 constexpr int kAround = 3;
 
-// Gives access to the tissue voxels and their face neighbours. A voxel is named by its index in the list of tissue
-// voxels.
+// Gives access to the tissue voxels and their face neighbours. In these functions, `place` is a voxel's index in the
+// list of tissue voxels.
 class Body {
  public:
   //   progress  updated from time to time, so that the user can cancel the search
@@ -32,7 +32,7 @@ class Body {
   }
 
   std::int64_t size() const { return std::ssize(voxel_); }
-  // Reports how much of the search is done, [0, 1].
+  // Reports that the share `done` of the search is done, [0, 1].
   void at(double done) {
     done_ = done;
     progress_.update("looking for problems", done_);
@@ -57,8 +57,8 @@ class Body {
     }
   }
 
-  // Finds the connected components of voxels with the same group number, and returns for each voxel the index of its
-  // component, -1 where `group` is negative. Components are in the order of their first voxels.
+  // Finds the connected components of voxels that have the same group number. Returns the index of each voxel's
+  // component, or -1 where `group` is negative. Components are numbered in the order of their first voxels.
   //   found  receives the voxels of each component
   std::vector<std::int32_t> pieces(const std::vector<std::int32_t>& group,
                                    std::vector<std::vector<std::int64_t>>& found) const {
@@ -81,7 +81,8 @@ class Body {
     return piece;
   }
 
-  // Returns the centre of that voxel of the list that is nearest to the mean position of all, world, mm.
+  // Returns the position of a voxel in the middle of the list, world, mm: the centre of the voxel that is nearest to
+  // the mean position of all listed voxels.
   glm::dvec3 middle(const std::vector<std::int64_t>& voxels) const {
     glm::dvec3 mean(0);
     for (const auto place : voxels) mean += glm::dvec3(voxel(place)) / double(voxels.size());
@@ -116,7 +117,7 @@ LabelSet bone_labels(const WeightedBody& body) {
   return labels;
 }
 
-// Returns half the sum of the absolute differences between the weights of two voxels, in 1/65535.
+// Returns how much the weights of two voxels differ: half the sum of the absolute differences, in 1/65535.
 int difference(const Influence& a, const Influence& b) {
   int sum = 0;
   for (int i = 0; i < 4; ++i) {
@@ -133,7 +134,7 @@ int steps_between(const Armature& armature, int a, int b) {
   for (int at = b; at >= 0; at = armature.bones[at].parent, ++steps)
     if (const auto found = std::find(line.begin(), line.end(), at); found != line.end())
       return steps + static_cast<int>(found - line.begin());
-  return std::numeric_limits<int>::max();  // no common ancestor
+  return std::numeric_limits<int>::max();  // the two bones have no common ancestor
 }
 
 // Finds connected components of tissue that contain no bone tissue and through which no bone of the rig runs.
@@ -161,8 +162,8 @@ void find_unreached(const WeightedBody& body, const Body& all, const LabelSet& b
       problems.push_back({Kind::Unreached, all.main_bone(pieces[p]), -1, all.middle(pieces[p]), std::move(pieces[p])});
 }
 
-// Finds small patches that mainly follow a bone but are separate from the rest of the tissue that follows it. Voxels of
-// problems that were already found are left out.
+// Finds islands: small patches that mainly follow a bone but are separate from the other tissue that follows this bone.
+// Voxels of problems that were found before are left out.
 void find_islands(const Body& all, const ProblemSettings& settings, std::vector<WeightProblem>& problems) {
   std::vector<std::int32_t> main(all.size());
   for (std::int64_t place = 0; place < all.size(); ++place) main[place] = all.influence(place).bone[0];
@@ -203,8 +204,8 @@ void find_far_bones(const WeightedBody& body, const Body& all, const ProblemSett
   }
 }
 
-// Returns the rig bone that each voxel of bone tissue should follow, -1 for other voxels. This is the bone that the
-// voxel follows most, except in a small patch that touches bone tissue of another rig bone: such a patch should follow
+// Returns the rig bone that each voxel of bone tissue should follow, and -1 for all other voxels. Normally this is the
+// bone that the voxel follows most. A small patch that touches bone tissue of another rig bone should instead follow
 // the rig bone with which it shares the longest border. A patch is small relative to the largest patch of its own bone.
 std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const Body& all, const LabelSet& bone,
                                                const ProblemSettings& settings) {
@@ -215,8 +216,7 @@ std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const B
   const std::vector<std::int32_t> piece = all.pieces(follows, pieces);
   std::map<int, std::size_t> largest;
   for (const auto& voxels : pieces) largest[follows[voxels[0]]] = std::max(largest[follows[voxels[0]]], voxels.size());
-  // Proceeds from the largest small patch to the smallest, so that a smaller patch joins a neighbour whose bone is
-  // already decided.
+  // Decides larger small patches first, so that a smaller patch joins a neighbour whose bone is already decided.
   std::vector<std::size_t> small;
   for (std::size_t p = 0; p < pieces.size(); ++p)
     if (double(pieces[p].size()) < settings.island_share * double(largest[follows[pieces[p][0]]])) small.push_back(p);
@@ -259,7 +259,7 @@ void find_steep(const WeightedBody& body, const Body& all, const LabelSet& bone,
     for (auto place = begin; place < end; ++place) {
       if (bone[body.volume.at(all.voxel(place))]) continue;
       all.beside(place, [&](std::int64_t next) {
-        // A difference to bone tissue does not count, since bone tissue keeps its weights.
+        // Differences to bone tissue are ignored, since bone tissue keeps its weights.
         if (!bone[body.volume.at(all.voxel(next))] && difference(all.influence(place), all.influence(next)) > steep)
           is_steep[place] = 1;
       });
@@ -329,8 +329,8 @@ TissueRegion region_of(const std::vector<std::int64_t>& voxels, std::int64_t siz
   return region;
 }
 
-// Gives all voxels of a separate piece of tissue the influence of one voxel: the tissue voxel outside the piece that is
-// nearest to its centre.
+// Gives all voxels of a separate component of tissue the influence of one voxel. This is the tissue voxel outside the
+// component that is nearest to the component's centre.
 WeightEdit attached(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
                     const EditScope& scope) {
   const TissueRegion piece = region_of(problem.voxels, body.tissue.size(), {});
@@ -352,8 +352,8 @@ WeightEdit attached(const WeightedBody& body, const SkinWeights& weights, const 
                 });
 }
 
-// Fills the patch from its rim inwards: each voxel gets the mean of those neighbours that are outside the patch or
-// already filled.
+// Fills the patch from its rim inwards. Each voxel gets the mean weights of its neighbours that are outside the patch
+// or already filled.
 WeightEdit filled_in(const WeightedBody& body, const SkinWeights& weights, const WeightProblem& problem,
                      const EditScope& scope) {
   const Body all(body, weights);

@@ -8,7 +8,8 @@
 
 namespace limber {
 
-// The body that weights belong to: references to its volume, tissue, tissue table and rig, which must outlive it.
+// The body that weights belong to. It holds references to the volume, tissue, tissue table and rig, which must outlive
+// it.
 struct WeightedBody {
   const LabelVolume& volume;
   const TissueVoxels& tissue;

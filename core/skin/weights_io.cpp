@@ -40,10 +40,10 @@ std::string text_of(const glm::ivec3& size) {
   return std::to_string(size.x) + " " + std::to_string(size.y) + " " + std::to_string(size.z);
 }
 
-// Upper limit of the seams' text in characters. A longer text is not stored with the weights.
+// Upper limit on the text that describes seams, characters. If the text is longer, the weights are stored without it.
 constexpr std::size_t kLongestSeams = 1 << 19;
 
-// Returns the index in the rig of each bone in the file.
+// Returns the rig's bone index for each bone that the file names.
 std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::string& where, const Armature& armature) {
   const auto list = nlohmann::json::parse(checked_json(names, where), nullptr, false);
   if (!list.is_array() || list.empty()) throw Error("the weights name no bones", where, kMakeAnew);
@@ -61,8 +61,8 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
   return in_rig;
 }
 
-// Converts an influence read from a file: replaces the bone indices of the file by those of the rig, and sorts by
-// descending weight. Throws Error for bones or sums that write_weights() never writes.
+// Converts an influence that was read from a file: replaces the file's bone indices by those of the rig, and sorts the
+// bones by descending weight. Throws Error for bones or sums that write_weights() never writes.
 void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, const std::string& where) {
   int sum = 0;
   for (int k = 0; k < 4; ++k) {
@@ -100,7 +100,7 @@ void require_same_grid(const Grid& grid, const LabelVolume& volume, const Path& 
         path.string(), "give the volume they were made for");
 }
 
-// Makes each tissue voxel without any weight follow the nearest bone of the rig, and adds a warning.
+// Makes every tissue voxel that has no weight yet follow the nearest bone of the rig. Adds a warning if there are any.
 void cover_the_rest(BestFour& best, const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                     const Path& path, std::vector<std::string>& warnings) {
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
@@ -141,7 +141,7 @@ WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, co
     result.warnings.insert(result.warnings.end(), grey.warnings.begin(), grey.warnings.end());
     tissue.for_each([&](std::int64_t i, const glm::ivec3& v) {
       const float value = grey.voxels[grey.grid.index(v)];
-      // The comparison is false if the value is NaN.
+      // The comparison is false for NaN, so a NaN value is ignored.
       if (value > 0) best.offer(tissue.brick_at(v), i, static_cast<int>(b), std::min(value, 1.0f));
     });
   }

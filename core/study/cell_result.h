@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the figures of one computed cell of a study (one spacing, pose and technique) from the cell's folder, and
-// judges them by the study's quality gates.
+// Reads the figures of one computed cell of a study from the cell's folder, and judges them by the study's quality
+// gates. A cell is one combination of spacing, pose and technique.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@
 namespace limber {
 
 struct TissueFigures {
-  double label = 0;  // the value that stands for this tissue in the volume file
+  double label = 0;  // value of the tissue's voxels in the volume file
   std::string name;
   std::int64_t voxels_before = 0, voxels_after = 0;
   std::optional<double> volume_percent, mass_percent;  // change in %; empty where the tissue has no voxels at rest
@@ -49,7 +49,7 @@ struct JointFigures {
 struct CellResult {
   StudyCell cell;
   Path folder;
-  std::string failure;  // reason for which the cell has no figures; empty when it has them
+  std::string failure;  // why the cell could not be computed; empty if it was computed
   double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;
   std::string machine;
   std::map<std::string, double> seconds;  // wall-clock seconds of each stage
@@ -58,10 +58,10 @@ struct CellResult {
   double volume_percent = 0, mass_percent = 0;
   std::int64_t overlap_voxels = 0, bone_overlap_voxels = 0, new_hole_voxels = 0, dropped_voxels = 0,
                trapped_air_voxels = 0, mended_voxels = 0;
-  std::optional<std::int64_t> mass_exact_voxels;  // voxels that changed tissue; empty unless masses were made exact
+  std::optional<std::int64_t> mass_exact_voxels;  // voxels that were changed to make masses exact; empty: not done
   std::optional<double> skin_share_before, skin_share_after;
   std::string worst_bone;
-  std::optional<double> bone_residual_mm;  // residual of worst_bone
+  std::optional<double> bone_residual_mm;  // deviation of worst_bone from a rigid motion, mm
   std::optional<MeshFigures> mesh;
   std::optional<SolveFigures> solve;
   std::vector<JointFigures> joints;
@@ -73,14 +73,14 @@ struct CellResult {
   bool done() const { return failure.empty(); }
 };
 
-// Judges a cell's report and returns its quality gates.
+// Judges a cell's report. Returns each quality gate (a check of one figure against a limit) with its outcome.
 std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits);
 
-// Reads the result of a cell of the study. Throws Error where the files in the cell's folder cannot be read.
+// Reads the result of a cell of the study. Throws Error if files in the cell's folder cannot be read.
 CellResult read_result(const Study& study, const CellOutcome& outcome);
 
-// Returns the processor seconds spent on the skin weights of the cell's body. Returns nothing where body.json is
-// missing.
+// Returns the processor seconds that it took to compute the skin weights used by the cell. Returns nothing if body.json
+// is missing.
 std::optional<double> weights_seconds(const Path& out, const CellResult& cell);
 
 }  // namespace limber

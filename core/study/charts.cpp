@@ -15,8 +15,8 @@ namespace limber {
 namespace {
 
 constexpr double kLetter = 6.2;          // approximate width of a letter in text of 11 px, px
-constexpr double kLineHeight = 14;       // distance between the baselines of two labels, px
-constexpr int kBar = 22, kWidest = 940;  // px: kBar of a bar with room for its value, kWidest of the widest chart
+constexpr double kLineHeight = 14;       // smallest distance between the baselines of two labels, px
+constexpr int kBar = 22, kWidest = 940;  // px: width of a bar, so that its value fits above it; width limit of a chart
 
 std::string px(double value) { return fixed(value, 1); }
 
@@ -34,8 +34,8 @@ std::string colour_of(const TechniqueLook& look) {
   return "t" + std::to_string(look.number) + (look.exact ? " exact" : "");
 }
 
-// Draws the mark of a technique: a circle, square, triangle, diamond or inverted triangle. A value that belongs to no
-// technique has a small dot.
+// Draws the mark of a technique: a circle, square, triangle, diamond or inverted triangle. For a value that belongs to
+// no technique, draws a small dot.
 std::string mark(const TechniqueLook& look, double x, double y, double r) {
   const std::string style = " class=\"mark " + colour_of(look) + "\"/>";
   switch (look.number) {
@@ -62,8 +62,8 @@ std::string begin(int width, int height, const std::string& what) {
          "\" role=\"img\" aria-label=\"" + escaped(what) + "\" style=\"max-width:" + std::to_string(width) + "px\">";
 }
 
-// Returns the distance between axis ticks: 1, 2 or 5 times a power of ten that divides the range into at most `most`
-// parts.
+// Returns the distance between the ticks of an axis. It is 1, 2 or 5 times a power of ten, and divides the axis's range
+// into at most `most` parts.
 double tick_step(double range, int most) {
   const double rough = range / most, power = std::pow(10, std::floor(std::log10(rough)));
   for (const double nice : {1.0, 2.0, 5.0})
@@ -72,7 +72,7 @@ double tick_step(double range, int most) {
 }
 int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9))); }
 
-// Wraps the text into lines of at most `width` px; a word is never cut.
+// Wraps the text into lines of at most `width` px. Words are not cut, so a long word may exceed the width.
 std::vector<std::string> wrapped(const std::string& text, double width) {
   std::vector<std::string> lines;
   std::istringstream words(text);
@@ -105,8 +105,8 @@ Range range_of(const LineChart& chart) {
   return range;
 }
 
-// Moves the labels at the right ends of the lines apart where they would overlap. Keeps their vertical order and
-// returns their y coordinates.
+// Moves labels that would overlap apart vertically, and keeps their order. They are the labels at the right ends of a
+// chart's lines. Takes the wanted y coordinates and returns the new ones.
 std::vector<double> spread(std::vector<double> wanted, double low, double high) {
   std::vector<std::size_t> order(wanted.size());
   std::iota(order.begin(), order.end(), 0);
@@ -159,7 +159,7 @@ std::string svg_of(const LineChart& chart) {
       svg += line(left, y_of(tick), right, y_of(tick), "grid") +
              label(left - 6, y_of(tick) + 4, number(tick), "tick", "end");
   } else {
-    const double step = tick_step(range.high - range.low, 7);  // range_of() may extend its five steps by two
+    const double step = tick_step(range.high - range.low, 7);  // 7: range_of() rounds 5 steps up to 7 at most
     for (int i = 0; range.low + i * step <= range.high + step * 1e-6; ++i) {
       const double tick = range.low + i * step;
       const bool is_zero = std::abs(tick) < step * 1e-6;
@@ -174,7 +174,7 @@ std::string svg_of(const LineChart& chart) {
   double written_to = -INFINITY;
   for (std::size_t place = 0; place < chart.places.size(); ++place) {
     const double half = kLetter * double(chart.places[place].size()) / 2;
-    if (x_of(place) - half < written_to && room < 2 * half) continue;  // no room for this label: tries the next one
+    if (x_of(place) - half < written_to && room < 2 * half) continue;  // leaves out a label that would overlap the last
     written_to = x_of(place) + half + 4;
     svg += label(x_of(place), bottom + 17, chart.places[place], "tick", "middle");
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws charts as inline SVG with direct labels. A technique has the same colour and mark in every chart; its
-// mass-exact variant has a hollow mark and a dashed line. The colours are CSS classes of the page (page_style.cpp): tN
-// for the technique with look N, `exact`, `axis`, `grid` and `muted`.
+// Draws charts as inline SVG, with labels at the lines instead of a legend. A technique has the same colour and mark in
+// every chart. Its mass-exact variant (masses corrected afterwards) has a hollow mark and a dashed line. Colours come
+// from the CSS classes of the page (page_style.cpp): tN for the technique with colour and mark number N, `exact`,
+// `axis`, `grid` and `muted`.
 #pragma once
 
 #include <optional>
@@ -21,19 +22,19 @@ struct Series {
 struct LineChart {
   std::string title, unit;          // unit of the y axis: "%", "s"
   std::vector<std::string> places;  // the labels along the x axis
-  std::vector<double> positions;    // x values of these labels; empty: evenly spaced
+  std::vector<double> positions;    // x value of each label in `places`; empty: the labels are evenly spaced
   std::string x_unit;
   std::vector<Series> series;
-  std::optional<double> low, high;  // bounds of the y axis; empty: chosen from the values
-  bool is_signed = false;           // true: values are changes, so the axis has signs and a line at 0
+  std::optional<double> low, high;  // bounds of the y axis; empty: computed from the values
+  bool is_signed = false;           // true: values are changes, so their signs and a line at 0 are shown
   bool logarithmic = false;
-  bool names = true;  // true: the names of the series stand at the ends of their lines
+  bool names = true;  // true: each line has the name of its series at its right end
   int width = 620, height = 320;
 };
 std::string svg_of(const LineChart& chart);
 
-// Grouped bars that start at 0, with the value over each bar. The chart grows wider than `width` where the bars need
-// it.
+// A chart of grouped bars that start at 0, with the value above each bar. The chart becomes wider than `width` if the
+// bars need it.
 struct BarChart {
   std::string unit;
   std::vector<std::string> places;  // the labels of the bars within a group

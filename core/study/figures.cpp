@@ -14,7 +14,7 @@ namespace {
 
 constexpr glm::ivec2 kSliceSize{480, 360}, kBodySize{480, 420}, kCloseSize{360, 300};
 constexpr double kCloseUp_mm = 80;  // height of the region that a close-up shows
-constexpr double kTurn = 0.35;      // radians; the camera is turned so that a body's side is visible
+constexpr double kTurn = 0.35;      // angle by which the camera is turned to show a body's side, radians
 constexpr double kWithoutJoint_mm = 400;
 
 struct PosedBody {
@@ -25,7 +25,8 @@ struct PosedBody {
 PosedBody read_posed(const CellResult& cell, Progress& progress) {
   VolumeFile file = read_volume(cell.folder / "posed.nrrd", progress);
   std::optional<TissueTable> user;
-  // Uses the cell's own tissue table where the cell has one among its inputs.
+  // If one of the input files of this cell (one run of the study) is a tissue table, its entries override those of the
+  // volume file.
   for (const auto& [path, hash] : cell.inputs)
     if (const Path table = cell.folder / path; std::filesystem::exists(table) && is_tissue_table(table))
       user = read_tissue_table(table);
@@ -40,8 +41,8 @@ const JointFigures* furthest_joint(const CellResult& cell) {
   return furthest;
 }
 
-// Returns a picture frame in the plane in which the joint turns, through the joint's head. The body stands upright in
-// the picture where that is possible.
+// Returns a picture frame in the plane in which a joint turns, through the joint. If possible, the head end of the body
+// is up in the picture.
 PictureFrame frame_of(const JointFigures& joint) {
   PictureFrame frame{.centre = joint.head, .size = kSliceSize};
   const auto across = [&](const glm::dvec3& v) { return v - joint.axis * glm::dot(v, joint.axis); };
@@ -55,7 +56,7 @@ PictureFrame frame_of(const JointFigures& joint) {
   return frame;
 }
 
-// The rectangle of the frame's plane that tissue covers, in mm from the frame's centre.
+// The bounding rectangle of the tissue in a picture, projected onto the picture's plane, mm from the frame's centre.
 struct Box {
   glm::dvec2 low{1e300}, high{-1e300};
   void add(const LabelVolume& volume, const PictureFrame& frame) {
@@ -147,7 +148,8 @@ class Maker {
     }
   }
 
-  // Reads a volume with the values of its file as labels, since read_volume may have renumbered them.
+  // Reads a volume whose voxels are the values in the file. read_volume() may renumber them, which this function
+  // undoes.
   LabelVolume read_values(const Path& path) const {
     VolumeFile file = read_volume(path, progress_);
     std::vector<Label> value_of(65536, 0);
@@ -180,7 +182,7 @@ class Maker {
       figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
     box_.add(*body.volume, body_plane(frame));
 
-    // Results of an editor session may lack the files of the overlap or of the volume ratios.
+    // Results of an editor session may lack the files overlap.nrrd and ratio.nrrd.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
     if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap))
       figures_.overlaps.png[technique][0] =
@@ -191,8 +193,9 @@ class Maker {
     add_close_up(cell, *body.volume, ratios, colours, frame);
   }
 
-  // Keeps for each technique the close-up of one pose: the one with the largest number of voxels that are stretched or
-  // compressed to twice or half their volume. Skips mass-exact variants, since they do not change the volume ratios.
+  // Keeps one close-up for each technique: of the pose with the most voxels that are stretched beyond twice, or
+  // compressed below half, their volume. Skips mass-exact variants of techniques, since they have the same volume
+  // ratios.
   void add_close_up(const CellResult& cell, const LabelVolume& volume, const LabelVolume& ratios,
                     const LabelColours& colours, PictureFrame frame) {
     const Technique& technique = study_.techniques[cell.cell.technique];
@@ -215,7 +218,7 @@ class Maker {
     else figures_.close_ups.push_back(std::move(close));
   }
 
-  // Returns the frame of the slices, but turned a little so that the body's side is visible.
+  // Returns the frame of a slice for a 3D picture of the body, turned a little so that the body's side is visible.
   static PictureFrame body_plane(PictureFrame frame) {
     const glm::dvec3 eye = frame.towards_eye();
     frame.right = glm::normalize(std::cos(kTurn) * frame.right + std::sin(kTurn) * eye);
@@ -223,7 +226,7 @@ class Maker {
     return frame;
   }
 
-  // Chooses one frame size for all bodies, so that they are drawn at the same scale.
+  // Computes one frame size for the 3D pictures of all bodies, so that they have the same scale.
   void frame_bodies() {
     if (box_.low.x > box_.high.x) return;
     const glm::dvec2 extent = box_.high - box_.low;

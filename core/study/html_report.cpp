@@ -18,8 +18,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostBars = 6;     // upper limit on the bars of a group; with more, their mean is shown
-constexpr std::size_t kMostPanels = 12;  // number of tissues that have a chart of their own
+constexpr std::size_t kMostBars = 6;     // largest number of bars in a group; of more bars, only the mean is shown
+constexpr std::size_t kMostPanels = 12;  // largest number of tissues that get a chart of their own
 constexpr double kNarrow = 300;          // width of a tissue's chart, px
 constexpr double kWide = 460;            // width of each of two charts side by side, px
 
@@ -104,7 +104,7 @@ class Page {
              (style.empty() ? "" : " class=\"" + style + "\"") + ">" + inside + "</table></div></figure>\n";
   }
 
-  // The times of a study are processor seconds. Those of an editor session's results are wall-clock seconds.
+  // Times are processor seconds in a study, but wall-clock seconds in the results of an editor session.
   std::string seconds_word() const { return facts_.of_session ? "s" : "CPU s"; }
   std::string time_word() const { return facts_.of_session ? "time by the clock" : "processor time"; }
   static std::string counted(std::size_t count, const std::string& what) {
@@ -136,7 +136,7 @@ class Page {
              ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
   }
 
-  // The value of largest magnitude over all poses of one technique, at the finest spacing.
+  // The value with the largest magnitude among all poses of one technique at the finest spacing, and where it occurs.
   struct Extreme {
     double value = 0;
     const CellResult* cell = nullptr;
@@ -268,8 +268,7 @@ class Page {
       if (const CellResult* one = cell(spacing, p, technique)) sum += one->cpu_seconds, ++count;
     return count ? std::optional(sum / count) : std::nullopt;
   }
-  // Returns a sentence with the mean number of tets at each spacing. The number depends on the body's shape too, since
-  // a mesh is refined where the body needs it.
+  // Returns a sentence with the mean number of tets in the FEM meshes at each spacing. It explains the computing times.
   std::string tets_note() const {
     std::string note;
     for (int s = 0; s < std::ssize(study_.spacings); ++s) {
@@ -291,7 +290,8 @@ class Page {
     return seconds ? " (" + fixed(*seconds, 1) + " CPU s here)" : "";
   }
 
-  // Returns one series for each technique, with the percentage percent_of() of each pose at the finest spacing.
+  // Returns one series for each technique. Its values are the percentages percent_of(cell) of all poses at the finest
+  // spacing.
   template <class Percent>
   std::vector<Series> changes(const Percent& percent_of) const {
     std::vector<Series> all;
@@ -306,7 +306,7 @@ class Page {
     return all;
   }
 
-  // Returns the tissues with enough voxels for their gates to be judged, sorted by falling number of voxels.
+  // Returns the tissues that have enough voxels for the quality gates, largest first.
   std::vector<const TissueFigures*> large_tissues() const {
     std::vector<const TissueFigures*> tissues;
     for (const auto& [key, one] : at_) {
@@ -522,7 +522,7 @@ class Page {
     gate_tables("Gates of the body", kinds, 0, of_body);
     gate_tables("Gates", kinds, of_body, kinds.size());
   }
-  // Adds one table for each spacing, with a column for each of the gates [first, end).
+  // Adds one table of quality gates for each spacing. Its columns are the gates `first` to `end` - 1.
   void gate_tables(const std::string& title, const std::vector<QualityGate>& all, std::size_t first, std::size_t end) {
     const std::vector<QualityGate> kinds(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(end));
     std::string meanings;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes a study, or the results of an editor session (session_page.h), as one HTML page: summary, pictures, gates,
-// tissues, SAR where it was computed, and provenance. The file contains everything and runs no script; it is readable
-// in a browser in light and dark mode, and printed on A4.
+// Writes a study, or the results of an editor session (session_page.h), as one HTML page: summary, pictures, quality
+// gates, tissues, SAR values if they were computed, and provenance. The page is a single file without scripts. It suits
+// light and dark mode and print on A4.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace limber {
 struct ReportFacts {
   Path out;
   std::string command;  // the command line that made the study
-  std::string date;     // date of the report
+  std::string date;     // date on which the report is written
   std::optional<SarFigures> sar;
   bool of_session = false;  // true: results of an editor session, with wall-clock times and no cell folders
 };

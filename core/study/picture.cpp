@@ -17,15 +17,15 @@ namespace {
 constexpr glm::u8vec3 kBackground{0x25, 0x28, 0x2d};
 constexpr glm::u8vec3 kPressed{0x2c, 0x5c, 0xa6}, kAsAtRest{0xc9, 0xcd, 0xd4}, kStretched{0xc0, 0x57, 0x2f};
 constexpr glm::u8vec3 kTwice{0xff, 0x3e, 0xa5}, kBoneInBone{0xf3, 0xcf, 0x45};
-constexpr double kBlock_mm = 16;  // edge of a block; a WorstRegion is a box of 3 by 3 by 3 blocks
-constexpr double kBeyond = 2;     // a volume ratio above this, or below its inverse, is extreme
+constexpr double kBlock_mm = 16;  // edge of the blocks in which extreme voxels are counted
+constexpr double kBeyond = 2;     // a voxel is extreme if its volume ratio is above this or below the inverse of this
 
 glm::u8vec3 mixed(const glm::u8vec3& a, const glm::u8vec3& b, double share) {
   return glm::u8vec3(glm::dvec3(a) + (glm::dvec3(b) - glm::dvec3(a)) * share + 0.5);
 }
 
-// Calls put(pixel, voxel) for each pixel of the frame. `voxel` is the index of the voxel at the pixel, or -1 outside of
-// the grid.
+// Calls put(pixel, voxel) for each pixel of the picture. `voxel` is the index of the voxel at the pixel's position, or
+// -1 if this position is outside of the grid.
 template <class Put>
 void for_each_pixel(const Grid& grid, const PictureFrame& frame, const Put& put) {
   const AffineTransform to_voxel = voxel_from_world(grid);
@@ -64,7 +64,7 @@ std::string big_endian(std::uint32_t value) {
   return bytes;
 }
 
-// Returns a chunk of a PNG file: length, name, bytes, and the checksum of name and bytes.
+// Returns the given bytes as a chunk of a PNG file: length, name, bytes, and the checksum of name and bytes.
 std::string chunk(const std::string& name, const std::string& bytes) {
   return big_endian(static_cast<std::uint32_t>(bytes.size())) + name + bytes + big_endian(crc_of(name + bytes));
 }
@@ -119,7 +119,7 @@ std::string png_of(const Picture& picture) {
   const std::size_t row = std::size_t(picture.size.x) * 3;
   std::string line(row + 1, '\0');
   for (int y = 0; y < picture.size.y; ++y) {
-    // PNG filter 2: each row holds its differences from the row above, which compress better.
+    // Uses PNG's filter 2, which stores each row as differences from the row above. They compress better than colours.
     line[0] = 2;
     for (std::size_t i = 0; i < row; ++i)
       line[i + 1] = static_cast<char>(picture.rgb[y * row + i] - (y ? picture.rgb[(y - 1) * row + i] : 0));
@@ -139,7 +139,7 @@ std::optional<WorstRegion> worst_region(const LabelVolume& codes) {
   };
   const Grid& grid = codes.grid;
   const glm::ivec3 step = glm::max(glm::ivec3(glm::round(glm::dvec3(kBlock_mm) / grid.spacing)), glm::ivec3(1));
-  std::map<std::tuple<int, int, int>, Block> blocks;  // by block index (z, y, x)
+  std::map<std::tuple<int, int, int>, Block> blocks;  // blocks that contain tissue, by their index (z, y, x)
   std::int64_t i = 0;
   glm::ivec3 v;
   for (v.z = 0; v.z < grid.size.z; ++v.z)

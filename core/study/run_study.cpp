@@ -42,7 +42,7 @@ void make_folder(const Path& folder) {
   if (error) throw Error("the folder cannot be made", folder.string(), error.message());
 }
 
-// Returns the text without the characters that are unsafe in a file name.
+// Returns the text with only those characters that are safe in a file name.
 std::string plain(const std::string& text) {
   std::string result;
   for (const char c : text)
@@ -55,7 +55,8 @@ std::string hash_of(const Json& json) {
   return sha256_of_bytes(text.data(), text.size());
 }
 
-// Returns the file name extension to write the volume with: that of `path` if its format can be written, else .nrrd.
+// Returns the extension of the file to which a copy of the volume `path` is written. It is the extension of `path` if
+// this format can be written, else .nrrd.
 std::string volume_ending(const Path& path) {
   const std::string name = path.filename().string();
   for (const char* ending : {".seg.nrrd", ".nrrd", ".mha", ".nii.gz", ".nii"})
@@ -63,8 +64,8 @@ std::string volume_ending(const Path& path) {
   return ".nrrd";
 }
 
-// Estimates how long the remaining cells take, by the mean time of each technique. Cells with the rest pose do not
-// count, since their time says nothing about bent poses.
+// Estimates the computing time of the remaining cells from the mean time of finished cells of the same technique. Cells
+// of the rest pose are ignored, since they are faster than bent poses.
 class Pace {
  public:
   void took(const Technique& technique, double seconds) {
@@ -73,12 +74,12 @@ class Pace {
     taken.cells += 1;
     taken.units += weight(technique);
   }
-  // Returns the seconds that a cell of this technique is likely to take, negative while no cell has run.
+  // Returns the seconds that a cell of this technique is expected to take. Negative if no cell has finished yet.
   double expected(const Technique& technique) const {
     if (const auto found = taken_.find(word_of(technique)); found != taken_.end())
       return found->second.seconds / found->second.cells;
-    // A technique without a finished cell is estimated from the other techniques. A solve by finite elements counts as
-    // much as five skinnings.
+    // Without a finished cell of this technique, uses the times of the other techniques. A solve by finite elements is
+    // assumed to take as long as five cells by skinning.
     double units = 0, seconds = 0;
     for (const auto& [word, taken] : taken_) units += taken.units, seconds += taken.seconds;
     return units > 0 ? seconds / units * weight(technique) : -1;
@@ -89,10 +90,10 @@ class Pace {
     double seconds = 0, cells = 0, units = 0;
   };
   static double weight(const Technique& technique) { return technique.is_fem() ? 5 : 1; }
-  std::map<std::string, Taken> taken_;  // computing times, by the technique's name in the description
+  std::map<std::string, Taken> taken_;  // computing times of each technique, by the technique's word ("fem-contact")
 };
 
-// Reports a worker's progress as a fraction [begin, end] of the study's progress.
+// Reports the progress of one cell's worker process as part [begin, end] of the whole study's progress.
 class CellProgress final : public Progress {
  public:
   CellProgress(Progress& study, std::string name, double begin, double end)
@@ -137,12 +138,12 @@ class Runner {
 
  private:
   struct Input {
-    Path path;  // relative to a cell's folder, which lies two levels below `out`
+    Path path;  // relative to the folder of a cell, which is two levels below the study's output folder
     std::string sha256;
   };
 
-  // Copies an input file into the folder of the results, so that a job can be run again after this folder has moved. A
-  // .gltf file is not copied, since it refers to other files.
+  // Copies an input file into the study's output folder, so that the jobs in it can be run again after the folder has
+  // moved. A .gltf file is not copied, since it refers to other files by their paths.
   Input take(const Path& file) {
     if (file.empty()) return {};
     Input input{fs::absolute(file), sha256_of_file(file)};
@@ -178,7 +179,8 @@ class Runner {
     return json;
   }
 
-  // Returns the volume file that a body at this spacing is made from, and whether the volume must be resampled.
+  // Returns the file of the volume for a spacing (index into the study's spacings), and true if the volume must be
+  // resampled to this spacing.
   std::pair<Path, bool> source(int spacing) const {
     const std::optional<double> mm = study_.spacings[spacing];
     if (mm)
@@ -202,8 +204,8 @@ class Runner {
   WorkerOutput work(const WorkFolder& folder, const std::string& name, Json job, Progress& progress) const {
     write_file_atomically(folder / name, job.dump(1) + "\n");
     if (run_.threads == 0) return run_worker(folder / name, progress);
-    // The job file that stays with the result does not contain the number of threads, since results do not depend on
-    // it.
+    // The worker gets a second job file with the number of threads. The job file that stays with the result does not
+    // contain this number, since results do not depend on it.
     job["threads"] = run_.threads;
     write_file_atomically(folder / "limited.json", job.dump(1) + "\n");
     WorkerOutput output = run_worker(folder / "limited.json", progress);
@@ -211,8 +213,8 @@ class Runner {
     return output;
   }
 
-  // Name and key of the folder with a body's volume and weights at one spacing. Both are computed unless the folder
-  // exists.
+  // Name and key (hash of everything that it depends on) of the folder with the body's volume and skin weights at one
+  // spacing. Volume and weights are computed if there is no such folder yet.
   struct Body {
     std::string name, key;
   };
@@ -291,7 +293,7 @@ class Runner {
                     {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
   }
 
-  // Returns whether the folder contains a complete result with this key.
+  // Returns true if the folder contains a complete result of a cell with this key.
   static bool is_done(const Path& folder, const std::string& key) {
     if (!fs::exists(folder / "cell.json")) return false;
     const Json json = Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false);
@@ -301,7 +303,8 @@ class Runner {
   static bool is_rest(const StudyPose& pose) {
     return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty();
   }
-  // Returns the technique by which the cell's time is estimated. At rest every technique takes as long as skinning.
+  // Returns the technique from whose times the time of the cell is estimated. A cell of the rest pose takes as long as
+  // skinning, whatever its technique is.
   Technique kind_of(const StudyCell& cell) const {
     return is_rest(study_.poses[cell.pose]) ? Technique{"lbs"} : study_.techniques[cell.technique];
   }
@@ -324,7 +327,7 @@ class Runner {
     CellOutcome outcome{cell, run_.out / "cells" / name, {}};
     bool was_there = true;
     if (fs::exists(outcome.folder) && !is_done(outcome.folder, key))
-      fs::remove_all(outcome.folder);  // the result is damaged
+      fs::remove_all(outcome.folder);  // the result in the folder is damaged
     if (!fs::exists(outcome.folder)) {
       WorkFolder folder(outcome.folder, progress);
       was_there = folder.made();
@@ -336,8 +339,8 @@ class Runner {
     return outcome;
   }
 
-  // Computes a cell into the folder. Returns the reason for which the cell failed, or "". Throws Error for a failure
-  // that would stop every cell, such as a full disk.
+  // Computes a cell and writes its result to the folder. Returns the message of the error if the cell failed, else an
+  // empty text. Throws Error if no other cell could be computed either, because the disk is full.
   std::string compute_into(WorkFolder& folder, const StudyCell& cell, const std::string& key, const Json& job,
                            Progress& progress) const {
     const Stopwatch wall;
@@ -396,7 +399,7 @@ class Runner {
   const std::vector<StudyCell> cells_;
   std::vector<StudyCell> mine_;
   Input rig_, tissues_;
-  std::vector<std::array<Input, 3>> poses_;  // the pose, motion and map file of each pose
+  std::vector<std::array<Input, 3>> poses_;  // for each pose: its pose file, motion file and retarget map
   std::vector<std::optional<Body>> bodies_;
   Pace pace_;
   int started_ = 0;
@@ -418,7 +421,7 @@ std::string text_of(const Study& study, const StudyCell& cell) {
 }
 
 std::uint8_t code_of_ratio(double ratio) {
-  if (!(ratio > 0)) return 1;  // an inverted voxel gets the smallest code
+  if (!(ratio > 0)) return 1;  // an inverted voxel gets the smallest code of tissue
   return static_cast<std::uint8_t>(std::clamp(std::lround(kCodeOfOne + kStepsOfDoubling * std::log2(ratio)), 1L, 255L));
 }
 double ratio_of_code(int code) { return std::exp2((code - kCodeOfOne) / kStepsOfDoubling); }

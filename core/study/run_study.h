@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the cells of a study into a folder. A cell is one combination of spacing, pose and technique. Each cell runs
-// in a worker process as a `limber job` whose file stays with the result, so it does what the command line would do,
-// and its memory and processor time can be measured. Finished cells are stored under a hash of everything that they
-// depend on, including the program's own sources, and are never computed again. The folder contains:
-//   inputs/   rig, tissues, poses: copies that the jobs refer to
-//   bodies/   volume and weights at each spacing
+// Computes the cells of a study and writes them to a folder. A cell is one combination of spacing, pose and technique
+// (way of posing). A worker process runs each cell as a `limber job`. The same job can be run from the command line,
+// and the process's memory and processor time can be measured. Finished cells are stored under a hash of everything
+// that they depend on, including the program's own sources, and are not computed again. The folder contains:
+//   inputs/   copies of rig, tissues and poses, to which the jobs refer
+//   bodies/   volume and skin weights at each spacing
 //   cells/    job.json, report.json (limber-report/1), posed.nrrd, ratio.nrrd, overlap.nrrd, cell.json
 // A cell's folder appears only when it is complete, so a run may be killed at any moment and continued later.
 #pragma once
@@ -29,26 +29,26 @@ std::string text_of(const Study& study, const StudyCell& cell);  // "2 mm, +45, 
 
 struct CellOutcome {
   StudyCell cell;
-  Path folder;          // folder of the result
-  std::string failure;  // reason for which there is no result; empty when there is one
+  Path folder;          // folder with the cell's result
+  std::string failure;  // why the cell could not be computed; empty if it was computed
 };
 
-// The values of ratio.nrrd: each voxel of the posed volume has its volume relative to rest as a byte, 128 + 16 *
-// log2(ratio), limited to [1, 255]. Air has 0.
+// Convert between a volume ratio (volume of tissue in the pose divided by its volume at rest) and its code in the file
+// ratio.nrrd: the byte 128 + 16 * log2(ratio), limited to [1, 255]. Voxels of air have the code 0.
 std::uint8_t code_of_ratio(double ratio);
 double ratio_of_code(int code);
 
 struct StudyRun {
   Path out;
-  int shard = 0, shards = 1;  // this run computes the cells whose index modulo `shards` equals `shard`
-  int threads = 0;            // number of threads of each worker; 0: all cores
-  // Called when a cell is done. `was_there` is true for a cell of an earlier run. `seconds_left` is an estimate for the
-  // remaining cells, negative without an estimate.
+  int shard = 0, shards = 1;  // this run computes only the cells whose index modulo `shards` equals `shard`
+  int threads = 0;            // number of threads of each worker process; 0: all cores
+  // Called when a cell is done. `done` of `of` cells are done. `was_there` is true if the result of an earlier run was
+  // used. `seconds_left` is the estimated time of the remaining cells, negative if it is not known.
   std::function<void(const CellOutcome&, int done, int of, bool was_there, double seconds_left)> on_cell;
 };
 
-// Computes the cells of this run's shard and returns their outcomes, in order. Throws Error where an input is wrong or
-// the folder cannot be written, and Cancelled after a cancel.
+// Computes this run's share of the study's cells and returns their outcomes, in the order of cells_of(). Throws Error
+// if an input is wrong or the folder cannot be written, and Cancelled if the user cancels.
 std::vector<CellOutcome> run_study(const Study& study, const StudyRun& run, Progress& progress);
 
 }  // namespace limber

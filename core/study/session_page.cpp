@@ -28,7 +28,8 @@ Technique technique_of(const Result& result, const Json& report) {
   return found.front();
 }
 
-// Returns a volume with 1 at voxels that two positions of tissue claim, and 2 at voxels that two bones claim.
+// Returns a volume that marks overlaps: 1 at voxels to which the pose moves two separate pieces of tissue, 2 at voxels
+// to which it moves two bones.
 LabelVolume volume_of(const Overlap& overlap, const Grid& grid) {
   LabelVolume marks{grid, ZeroedVector<Label>(static_cast<std::size_t>(grid.voxel_count()))};
   for (const std::int64_t voxel : overlap.tissue) marks.voxels[static_cast<std::size_t>(voxel)] = 1;
@@ -36,8 +37,8 @@ LabelVolume volume_of(const Overlap& overlap, const Grid& grid) {
   return marks;
 }
 
-// Returns for each voxel the code of the volume ratio of the tet that contains it. The ratio is 1 outside of all tets,
-// since tissue there moves rigidly with its bone.
+// Returns, for each voxel of tissue, the volume ratio of the tet that contains the voxel, coded by code_of_ratio(). The
+// ratio is 1 outside of all tets, since tissue there moves rigidly with its bone.
 LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   const TissueVoxels tissue(volume);
   const std::vector<std::int32_t> tets = tets_of_voxels(solved.mesh.tets.T, solved.V, volume.grid, tissue);
@@ -53,7 +54,8 @@ LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   return codes;
 }
 
-// Writes the files that the folder of a study's cell has, so that the page reads results as it reads cells.
+// Writes a result of the session to a folder, with the files that a study writes for a cell (one spacing, pose and
+// technique). The page can then be made as for a study.
 void write_cell(const SessionResult& one, const TissueTable& tissues, const Path& folder) {
   const Result& result = *one.result;
   std::filesystem::create_directories(folder);
@@ -91,8 +93,8 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
     progress.update("results", double(outcomes.size()) / double(session.results.size()));
     const Json report = Json::parse(sound_json(one.result->report), nullptr, false);
     const int technique = index_of(study.techniques, technique_of(*one.result, report));
-    // Appends a number to the pose's name when the page already has a result of this pose and technique. That result
-    // has other settings or another rig.
+    // If the page already has a result of this pose and technique, made with other settings or another rig, appends a
+    // number to the pose's name.
     int pose = index_of(poses, one.pose);
     for (int again = 2; !taken.insert({pose, technique}).second; ++again)
       pose = index_of(poses, one.pose + " (" + std::to_string(again) + ")");

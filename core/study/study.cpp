@@ -23,10 +23,10 @@ constexpr std::size_t kLongestName = 60;
 
 constexpr const char* kExactWord = "-mass-exact";
 
-// Returns the techniques that a study compares when its description names none.
+// Returns the techniques (ways of posing) that a study compares if its description names none.
 std::vector<Technique> usual_techniques() { return techniques_of({"lbs", "dqs", "fem", "fem-contact"}, ""); }
 
-// Reads values of a study's description. Its errors name the key that is wrong.
+// Reads values of a study's description. Throws Error for a wrong value, with its key in the message.
 class Reader {
  public:
   Reader(const Path& path) : path_(path) {}
@@ -84,7 +84,8 @@ class Reader {
     return value;
   }
 
-  // Returns the value of a key as a list; it may be one text or a list of texts. Empty where the key is absent.
+  // Returns the texts under a key, whose value may be one text or a list of texts. Returns an empty list if the key is
+  // absent.
   std::vector<std::string> texts(const Json& value, const char* key, const std::string& where) const {
     if (!value.contains(key)) return {};
     if (value[key].is_string()) return {text(value[key], key)};
@@ -93,8 +94,8 @@ class Reader {
     return all;
   }
 
-  // Throws Error for an unknown name of a pose or joint now, before hours of work. A known joint that the rig lacks is
-  // no error here: it only makes its own cells fail.
+  // Reads a pose that is given by its name or by joint angles. Throws Error for an unknown name of a pose or joint,
+  // before hours of computing begin. A known joint that the rig lacks only makes the cells with this pose fail later.
   PoseRequest body_request(const Json& value, const std::string& where) const {
     PoseRequest request{text(value, "pose_name", ""), texts(value, "joints", where)};
     if (!request.name.empty()) require_body_pose(request.name, path_.string() + ", " + where + ", pose_name");
@@ -206,7 +207,8 @@ void read_cells(const Reader& read, const Json& json, Study& study) {
     read.refuse("the study has too many cells", "", "split it into several studies");
 }
 
-// Returns the volumes of the folder (man-arm-2mm.mha, man-arm-3mm.nrrd, ...) by their spacing in mm.
+// Returns the volume files in the folder (man-arm-2mm.mha, man-arm-3mm.nrrd, ...), keyed by the spacing (mm) in their
+// names.
 std::map<double, Path> real_arms(const Path& folder) {
   std::map<double, Path> arms;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -262,7 +264,8 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
   return techniques;
 }
 
-// The first five methods keep the looks that they had on earlier pages. Further methods share these looks.
+// Returns the colour and mark of a technique. There are five of them, in a fixed order, so that techniques look alike
+// on all pages. Techniques beyond the fifth share colours and marks with earlier ones.
 TechniqueLook look_of(const Technique& technique) {
   std::vector<std::string> order = {"lbs", "dqs", "fem", "fem-contact", "mix"};
   for (const Technique& one : plain_techniques())
@@ -321,7 +324,7 @@ Study paper_study(const Path& folder) {
     if (study.rig.empty())
       throw Error("the arm has no armature", folder.string(), "put man-arm-2mm-armature.vtk beside it");
     study.name = "Elbow flexion of the Visible Human arm";
-    study.fit_joints = true;  // flexion about the rig's own elbow joint would push bone into bone
+    study.fit_joints = true;  // because flexion about the elbow of this rig would move bone into bone
   }
   for (const int degrees : {0, 45, 60, 90}) {
     const std::string text = "+" + std::to_string(degrees);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A study: one body at several spacings, in several poses, by several techniques. Each combination is a cell, which is
-// one `limber resample`. A study is described in JSON; paths are relative to the description's folder:
+// A study compares one body at several voxel spacings, in several poses, by several techniques (ways of posing). Each
+// combination of these is a cell, computed by one run of `limber resample`. A study is described in a JSON file, in
+// which paths are relative to the file's folder:
 //   {"name"?: "Elbow", "volume": "arm.nrrd" | "phantom": "arm"|"body", "rig"?: "rig.json", "tissues"?: "t.json",
 //    "bones"?: [111, 209], "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4],
 //    "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
@@ -26,12 +27,12 @@
 
 namespace limber {
 
-// A technique, one of the ways to pose that a study compares: a deformation method (resample/deformation_method.h), for
-// finite elements with or without contact. A method whose masses are made exact afterwards is a technique of its own,
-// so that the report never shows this change as part of the method.
+// A technique: one of the ways of posing that a study compares. It is a deformation method
+// (resample/deformation_method.h), and for finite elements says whether contact is simulated. A method followed by the
+// correction that makes masses exact is a technique of its own, so that reports tell the two apart.
 struct Technique {
   std::string method;    // "dqs": a word of deformation_methods()
-  bool contact = false;  // for finite elements only
+  bool contact = false;  // true: contact is simulated; only for finite elements
   bool mass_exact = false;
 
   bool is_fem() const { return method == kFiniteElements; }
@@ -43,11 +44,12 @@ std::string technique_words();              // the words of these: "mix, lbs, dq
 std::string word_of(
     const Technique& technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
 std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"
-// Returns the techniques with these words. Throws Error naming `where` for an unknown word or one that occurs twice.
+// Returns the techniques with the given words ("lbs", "fem-contact"). Throws Error for a word that is unknown or occurs
+// twice; `where` names the source of the words in the message.
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where);
 
-// The colour and mark of a technique on the report page, [0, kLooks). A mass-exact technique has the look of its plain
-// one, but with a hollow mark.
+// The look of a technique on the report page: `number`, [0, kLooks), selects its colour and its mark. A mass-exact
+// technique (exact = true) has the look of the same method without this correction, but with a hollow mark.
 struct TechniqueLook {
   int number = -1;  // -1: grey, for values that belong to no technique
   bool exact = false;
@@ -57,9 +59,9 @@ TechniqueLook look_of(const Technique& technique);
 
 struct StudyPose {
   std::string name;
-  std::vector<std::string> flex;  // BONE=DEGREES; if `body` and the files are empty too: rest pose
+  std::vector<std::string> flex;  // requests BONE=DEGREES; if `flex`, `body` and all files are empty: the rest pose
   PoseRequest body;               // from the keys "pose_name" and "joints"
-  Path pose, motion, map;         // files; an empty path: none
+  Path pose, motion, map;         // pose file, motion file and retarget map; empty: no such file
   std::optional<int> frame;
   std::string up;
 };
@@ -69,25 +71,26 @@ struct Study {
   Path description;     // the file that the study was read from; empty: none
   std::string phantom;  // "arm", "body", or empty for a study of `volume`
   Path volume, rig, tissues;
-  std::map<double, Path> ready;  // existing volumes by spacing, mm; others are resampled from `volume`
+  std::map<double, Path> ready;  // volume files at some spacings (mm); at other spacings `volume` is resampled
   std::vector<double> bones;
   std::string weights = "heat", quality = "normal";
   bool fit_joints = false, nearest = false;
-  std::vector<std::optional<double>> spacings;  // mm; an empty one: the volume's own spacing
+  std::vector<std::optional<double>> spacings;  // voxel spacings, mm; an empty entry: the volume's own spacing
   std::vector<StudyPose> poses;
   std::vector<Technique> techniques;
   QualityLimits gates;
 };
 
-// Reads the description of a study. Throws Error, which names the wrong key.
+// Reads the description of a study from a JSON file. Throws Error for a wrong value, with its key in the message.
 Study read_study(const Path& path);
 
-// Returns the study of the paper: an arm at 2, 3 and 4 mm whose elbow is bent by 0, 45, 60 and 90 degrees more than at
-// rest, by the four usual techniques. Throws Error where the folder lacks the volume or the armature.
+// Returns the built-in study of elbow flexion: an arm at 2, 3 and 4 mm whose elbow is bent by 0, 45, 60 and 90 degrees
+// more than at rest, by the techniques lbs, dqs, fem and fem-contact. Throws Error if the folder lacks the volume or
+// the armature.
 //   folder  contains man-arm-2mm.mha (or other man-arm-*mm volumes) and its armature; empty: uses the procedural arm
 Study paper_study(const Path& folder = {});
 
-// Returns the study as JSON with all defaults written out, for the file of results.
+// Returns the study as JSON for the file of results, with the values of all keys that were left at their defaults.
 std::string to_json(const Study& study);
 
 // Returns "2 mm", or "as it is" for the volume's own spacing.

@@ -9,9 +9,9 @@
 
 namespace limber {
 
-// Writes the files, each completely or not at all. Throws Error where they cannot be written.
-//   command  the command line, which the report shows
-//   start    returns what draws bodies in 3D; may be empty
+// Writes the three files of results, each completely or not at all. Throws Error if they cannot be written.
+//   command  the command line that ran the study; the report shows it
+//   start    returns the function that draws bodies in 3D; may be empty
 void write_results(const Study& study, const std::vector<CellOutcome>& outcomes, const Path& out,
                    const std::string& command, const StartPictures& start, Progress& progress);
 

@@ -43,7 +43,7 @@ Json cell_json(const Study& study, const CellResult& cell) {
 
 using Row = std::map<std::string, std::string>;
 
-// Quotes a field of a CSV file as RFC 4180 says.
+// Quotes a text for a CSV file if it contains commas, quotation marks or line ends [RFC 4180].
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -51,8 +51,9 @@ std::string csv_field(const std::string& text) {
   return quoted + '"';
 }
 
-// Adds the figures of a JSON value to the row, with dotted column names. In a list of objects, an object's column is
-// named by its "name", "bone", "path" or "label". Lists of plain values become one field, joined by "; ".
+// Adds the figures in a JSON value to a row of the table. A column's name is the path to the figure, joined by dots. In
+// a list of objects, the object's "name", "bone", "path" or "label" is part of the path. A list of plain values becomes
+// one field, joined by "; ".
 void flatten(const Json& value, const std::string& name, std::vector<std::string>& order, Row& row) {
   const auto put = [&](const std::string& text) {
     if (row.emplace(name, text).second) order.push_back(name);
@@ -111,7 +112,7 @@ std::string cells_csv(const Study& study, const std::vector<CellResult>& cells) 
     std::vector<std::string> order;
     Row row;
     flatten(json, "", order, row);
-    // Inserts each new column behind the column that precedes it in this row.
+    // Adds columns that earlier rows lack. Each is inserted after the column that precedes it in this row.
     std::size_t at = 0;
     for (const std::string& name : order) {
       const auto found = std::find(columns.begin(), columns.end(), name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes every figure of every cell of a study as JSON and CSV, for other programs to read.
+// Writes every figure of every cell of a study (one spacing, pose and technique) as JSON and CSV, for other programs.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ namespace limber {
 //          "report": limber-report/1} | {..., "failure"}]}
 std::string cells_json(const Study& study, const std::vector<CellResult>& cells);
 
-// Returns CSV with a row for each cell and a column for each figure that any report has
-// ("tissues.fat.volume_change_percent"). A field is empty where the cell lacks the figure.
+// Returns CSV with one row for each cell and one column for each figure in the cells' reports
+// ("tissues.fat.volume_change_percent"). A field is empty if the cell lacks the figure.
 std::string cells_csv(const Study& study, const std::vector<CellResult>& cells);
 
 }  // namespace limber

@@ -26,8 +26,8 @@ WorkFolder::WorkFolder(const Path& place, Progress& progress)
   }
 }
 
-// Locks the working folder. The lock belongs to the open descriptor, so the system releases it when a program is
-// killed. Returns false when another program has the lock.
+// Locks the working folder, which has another name until it is complete. The lock belongs to the open file descriptor,
+// so the system releases it when the program is killed. Returns false if another program has the lock.
 bool WorkFolder::claim() {
   if (fs::exists(place_)) return made_ = true;
   if (::mkdir(working_.c_str(), 0777) != 0 && errno != EEXIST)
@@ -36,7 +36,8 @@ bool WorkFolder::claim() {
   if (descriptor_ < 0 && errno != ENOENT)
     throw Error("the folder cannot be opened", working_.string(), std::strerror(errno));
   const bool locked = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  // Checks that the opened folder still has its name, since the other program may just have renamed it to `place_`.
+  // The program that had the lock may just have renamed the opened folder to `place_`. Checks that the folder still has
+  // its working name.
   struct stat mine {
   }, there{};
   if (!locked || ::fstat(descriptor_, &mine) != 0 || ::stat(working_.c_str(), &there) != 0 ||

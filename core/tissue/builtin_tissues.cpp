@@ -34,8 +34,8 @@ TissueTable make_table(const char* source, std::initializer_list<Row> rows) {
   return table;
 }
 
-// Returns the names of the labels of Bender's arm. They were chosen from the positions and shapes of the tissues,
-// because no table came with the volume. Labels 3 and 6 are only a few scattered voxels.
+// Returns the table of Bender's arm. No table came with that volume, so the labels' names were chosen from the
+// positions and shapes of the tissues. Labels 3 and 6 are only a few scattered voxels.
 const TissueTable& bender_arm() {
   static const TissueTable table =
       make_table("built-in table of Bender's arm", {{17, "muscle", TissueKind::Muscle},
@@ -54,8 +54,8 @@ const TissueTable& bender_arm() {
                                                     {6, "connective specks 2", TissueKind::Connective}});
   return table;
 }
-// The classes of TotalSegmentator's `total` task, version 2 [Wasserthal et al. 2023], in the order of their labels; the
-// first has label 1.
+// The class names of TotalSegmentator's `total` task, version 2 [Wasserthal et al. 2023], in the order of their labels.
+// The first class has label 1.
 constexpr std::string_view kTotalSegmentator =
     "spleen kidney_right kidney_left gallbladder liver stomach pancreas adrenal_gland_right adrenal_gland_left "
     "lung_upper_lobe_left "
@@ -102,8 +102,8 @@ const TissueTable& total_segmentator() {
   return table;
 }
 
-// A built-in table and the labels (marks) by which volumes of its source are recognized. Every volume of that source
-// contains all of its marks, and few other volumes do. Marks are needed because small label numbers occur in many
+// A built-in table, and the labels (marks) by which a volume that this table describes is recognized. Every such volume
+// contains all of the marks, and few other volumes do. Without marks, volumes with small label numbers would match many
 // tables.
 struct BuiltIn {
   const TissueTable& table;
@@ -112,7 +112,7 @@ struct BuiltIn {
 }  // namespace
 
 const TissueTable* built_in_table_for(const TissueTable& present) {
-  // The marks of Bender's arm are muscle, cortical bone and skin; those of TotalSegmentator are the spinal cord and
+  // The marks of Bender's arm are muscle, cortical bone and skin. The marks of TotalSegmentator are the spinal cord and
   // both autochthonous back muscles.
   static const std::vector<BuiltIn> kTables = {{bender_arm(), {17, 111, 143}}, {total_segmentator(), {79, 86, 87}}};
   const auto is_present = [&](double value) { return present.find_file_value(value) != nullptr; };

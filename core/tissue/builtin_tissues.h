@@ -7,8 +7,8 @@
 
 namespace limber {
 
-// Returns the built-in table that names every file value in `present`, or nullptr when none does. The table's member
-// `source` is its name.
+// Returns the built-in table that names every file value in `present`, or nullptr when there is none. The member
+// `source` of the result is the table's name.
 const TissueTable* built_in_table_for(const TissueTable& present);
 
 }  // namespace limber

@@ -17,7 +17,8 @@ int row_named(const CompositionTable& table, const std::string& name) {
   throw Error("the table of media has no row " + in_quotes(name), "tissues/composition.csv", "install Limber again");
 }
 
-// Appends one medium to `table` for each tissue that is a mixture. The medium's name lists the mixture's parts.
+// Appends one medium to `table` for each tissue that is a mixture, unless the table has it already. The medium's name
+// lists the parts of the mixture.
 void append_mixtures(CompositionTable& table) {
   const TissueRows& tissues = tissue_rows();
   for (int row = 0; row < std::ssize(tissues.rows); ++row) {
@@ -66,7 +67,8 @@ CompositionTable read_composition_table() {
     }
     if (std::abs(sum - 100) > 0.5)
       throw Error("the shares add up to " + text_of(sum) + " %", where, "install Limber again");
-    for (double& share : shares) share /= sum;  // scaled to the sum 1, because published shares are rounded
+    // The shares are scaled to the sum 1, because published shares are rounded.
+    for (double& share : shares) share /= sum;
     table.names.push_back(tissue_names_of(fields, where));
     table.shares.push_back(shares);
     table.sources.push_back(fields.back());

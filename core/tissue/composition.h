@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads which elements tissues consist of, for particle transport simulations. The table assets/tissues/composition.csv
-// has one row per medium, with the elements' shares by mass and their source; it contains the media of ICRP Publication
-// 110 (2009) and metals. tissues.csv (tissue_rows.h) names the medium of each tissue. Each mixture in tissues.csv
-// becomes an additional medium after the others, composed by the masses of its parts.
+// Reads the chemical elements of tissues, for particle transport simulations. The table assets/tissues/composition.csv
+// has one row per medium (material of tissues), with the elements' shares by mass and their source; it contains the
+// media of ICRP Publication 110 (2009) and metals. tissues.csv (tissue_rows.h) names the medium of each tissue. Each
+// mixture in tissues.csv becomes an additional medium after the others, composed by the masses of its parts.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Element {
   const char* symbol;
   int atomic_number;
 };
-// The elements of the composition table: the 13 of ICRP Publication 110 in its order, then those of implants.
+// The elements of the composition table: the 13 elements of ICRP Publication 110 in its order, then those of implants.
 inline constexpr std::size_t kTissueElements = 13;
 inline constexpr std::array<Element, 16> kElements = {{{"H", 1},
                                                        {"C", 6},
@@ -35,19 +35,19 @@ inline constexpr std::array<Element, 16> kElements = {{{"H", 1},
                                                        {"Al", 13},
                                                        {"Ti", 22},
                                                        {"V", 23}}};
-using Composition = std::array<double, kElements.size()>;  // shares by mass, sum 1
+using Composition = std::array<double, kElements.size()>;  // share of each element by mass; the sum is 1
 
 struct CompositionTable {
-  std::vector<TissueNames> names;    // #rows
-  std::vector<Composition> shares;   // #rows
-  std::vector<std::string> sources;  // #rows
+  std::vector<TissueNames> names;    // names of the medium in each row
+  std::vector<Composition> shares;   // composition of the medium in each row
+  std::vector<std::string> sources;  // source of the composition in each row
 };
 
-// Reads the program's composition table. Throws Error, which names file and line, when a row is not valid.
+// Reads the program's composition table. If a row is not valid, throws Error, which names the file and the line.
 CompositionTable read_composition_table();
 
-// Returns the index in `media` of each tissue's medium, in the order of the tissues. Throws Error, which names the
-// tissues without a medium and `where` (the file).
+// Returns for each tissue, in the order of `tissues`, the index of its medium in `media`. If tissues have no medium,
+// throws Error, which names these tissues and `where` (the file).
 std::vector<int> media_of(const TissueTable& tissues, const CompositionTable& media, const std::string& where);
 
 }  // namespace limber

@@ -14,12 +14,13 @@
 namespace limber {
 
 namespace {
-constexpr double kVacuumPermittivity = 8.8541878128e-12;  // F/m [CODATA 2018]
+constexpr double kVacuumPermittivity = 8.8541878128e-12;  // permittivity of vacuum, F/m [CODATA 2018]
 constexpr std::uint64_t kMostBytes = 16 << 20;
 constexpr std::string_view kColumns =
     "name,names,kinds,epsilon_infinity,delta1,tau1_ps,alpha1,delta2,tau2_ns,alpha2,delta3,tau3_us,alpha3,delta4,tau4_"
     "ms,alpha4,conductivity,source";
-constexpr std::size_t kNumbers = 14;  // numeric fields of a row; they follow the columns name, names and kinds
+// Number of numeric fields of a row; they follow the columns name, names and kinds.
+constexpr std::size_t kNumbers = 14;
 constexpr double kSecondsOfTau[4] = {1e-12, 1e-9, 1e-6, 1e-3};
 
 ColeCole parameters_of(const std::vector<std::string>& fields, const std::string& where) {
@@ -115,8 +116,8 @@ std::string found_text(const TissueMatch& match, const Tissue& tissue) {
   return match.by_name ? "name: " + match.words : "kind: " + std::string(to_string(tissue.kind));
 }
 
-// Returns the sources of the dielectric properties of a tissue, or of the parts of a mixture, each source once. `row`
-// is a row of tissues.csv.
+// Returns the sources of the dielectric properties of a tissue; for a mixture, the sources of its parts, each source
+// once. `row` is the tissue's row in tissues.csv.
 std::string sources_of(const DielectricTable& table, int row) {
   const TissueRows& tissues = tissue_rows();
   std::string text;

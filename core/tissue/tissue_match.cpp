@@ -20,8 +20,8 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
-// Returns the number of words of name i of the row (0: its name, then its synonyms) when the tissue's name contains all
-// of them, else 0.
+// Returns how many words name i of a row has (i = 0: the row's name, then its synonyms) if the tissue's name contains
+// all of these words; else 0.
 int words_met(const TissueWords& name, const TissueNames& row, std::size_t i) {
   const TissueWords& wanted = row.words[i];
   if (row.whole[i] && name.size() != wanted.size()) return 0;

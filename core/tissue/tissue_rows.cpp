@@ -31,8 +31,8 @@ int row_named(const TissueRows& table, std::string_view name, const std::string&
   refuse("no row has the name " + in_quotes(std::string(name)), where);
 }
 
-// Removes the part of a mixture before the first '+' from `text` and returns its row and share, as from "0.5 grey
-// matter". A part without a number, as in "grey matter", gets the share 0.
+// Removes from `text` (a mixture such as "0.5 grey matter + 0.5 white matter") the part before the first '+', and
+// returns this part's row and share. A part without a number gets the share 0.
 TissueShare take_share(const TissueRows& table, std::string_view& text, const std::string& where) {
   const std::size_t end = std::min(text.find('+'), text.size());
   std::string_view part = trimmed(text.substr(0, end));
@@ -47,7 +47,8 @@ TissueShare take_share(const TissueRows& table, std::string_view& text, const st
   return {row_named(table, part, where), share};
 }
 
-// When a mixture has two parts without shares, sets their shares by volume so that the mixture has the row's density.
+// If a mixture has two parts without shares, computes their shares by volume, so that the mixture has the density of
+// `row`.
 void share_by_density(const TissueRows& table, const TissueRow& row, std::vector<TissueShare>& mixture,
                       const std::string& where) {
   if (mixture.size() != 2 || mixture[0].volume + mixture[1].volume != 0) return;
@@ -77,7 +78,8 @@ std::vector<TissueShare> mixture_of(const TissueRows& table, const TissueRow& ro
 
 TissueRows parse_tissue_rows(std::string_view text, const std::string& where) {
   TissueRows table;
-  std::vector<std::pair<std::string, std::string>> mixtures;  // of each row: text of its mixture, and its file and line
+  // For each row: text of its mixture, and the row's file and line.
+  std::vector<std::pair<std::string, std::string>> mixtures;
   int number = 0;
   for (std::string_view rest = text; !rest.empty();) {
     const auto line = trimmed(take_line(rest));

@@ -17,12 +17,12 @@ struct KindDefaults {
   TissueKind kind;
   std::string_view name;
   std::uint32_t colour;  // 0xRRGGBB
-  double young_modulus;  // kPa: 3 times the shear modulus used in the finite elements; bone far stiffer than flesh
+  double young_modulus;  // kPa, 3 times the shear modulus that the finite elements use; bone is far stiffer than flesh
   double poisson_ratio;
-  int priority;  // see Tissue::priority; bone highest, then thin and stiff tissues, skin lowest
+  int priority;  // see Tissue::priority; highest for bone, lower for thin and stiff tissues, lowest for skin
 };
-constexpr std::uint32_t kByLabel = 0xffffffff;  // in place of a colour: each label gets a colour of its own
-// Initial colour, stiffness and priority per kind, in the order of TissueKind.
+constexpr std::uint32_t kByLabel = 0xffffffff;  // stands for a colour that is computed from the label
+// Initial colour, stiffness and priority of each tissue kind, in the order of TissueKind.
 // Stiffness: published moduli of flesh differ by two orders of magnitude with method, load and muscle tone. The shape
 // of a posed body depends on the ratios of the moduli and not on their scale, because bones prescribe the motion. What
 // matters is their order: skin far above fat and relaxed muscle. Finite element models of bodies under load use shear
@@ -72,11 +72,11 @@ glm::vec3 srgb_of(double lightness, double chroma, double hue_degrees) {
   return srgb;
 }
 
-// Returns the colour of a label without a colour of its own. The same label always gets the same colour.
+// Returns a colour for a label that has none. A label always gets the same colour.
 glm::vec3 label_colour(double file_value) {
   const int label = static_cast<int>(std::fmod(std::abs(file_value), 65536.0));
-  // Hues of successive labels differ by the golden angle (137.5 degrees), so that neighbouring labels look very
-  // different. Hues from 45 to 75 degrees are skipped, because they mark a selection.
+  // The hues of successive labels differ by the golden angle (137.5 degrees), so that neighbouring labels look very
+  // different. Hues from 45 to 75 degrees are skipped, because the editor marks selections with them.
   double hue = std::fmod(label * 137.508, 360.0) * 330 / 360;
   if (hue >= 45) hue += 30;
   constexpr double kLightness[] = {0.62, 0.72, 0.82};
@@ -116,7 +116,7 @@ void apply_kind_defaults(Tissue& tissue) {
 }
 
 const Tissue* TissueTable::find(Label label) const {
-  // `tissues` is sorted by label.
+  // Binary search works because `tissues` is sorted by label.
   const auto found =
       std::lower_bound(tissues.begin(), tissues.end(), label, [](const Tissue& t, Label l) { return t.label < l; });
   return found != tissues.end() && found->label == label ? &*found : nullptr;

@@ -29,8 +29,8 @@ int end_of_run(const Label* row, int begin, int size) {
   return x;
 }
 
-// Returns the runs of slice z and writes the number of runs of each row to `runs_in_row`. `expected` is the approximate
-// number of runs in the slice, for which memory is allocated first.
+// Returns the runs (stretches of one label along x) of slice z. Writes the number of runs of each row to `runs_in_row`.
+//   expected  approximate number of runs in the slice, for which memory is reserved
 std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
                                std::size_t expected, std::int64_t* runs_in_row) {
   std::vector<Run> runs;
@@ -56,8 +56,8 @@ std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
   return run;
 }
 
-// Joins the union-find trees of runs a and b. The lower root becomes the root of both, so that a component's root is
-// its first run.
+// Joins the union-find trees that contain runs a and b. The root with the lower index stays the root, so that the root
+// of a connected component is its first run.
 void join(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
   if (parent[a] == parent[b]) return;
   a = root_of(parent, a);
@@ -77,8 +77,8 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
     for (std::int64_t z = begin; z < end; ++z) {
       of_slice[z] =
           runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), expected, &result.first_run[1 + z * size.y]);
-      expected =
-          of_slice[z].size() + of_slice[z].size() / 4;  // as many runs as in the previous slice, and a quarter more
+      // The next slice probably has about as many runs; a quarter more are expected to be on the safe side.
+      expected = of_slice[z].size() + of_slice[z].size() / 4;
     }
   });
   std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
@@ -98,14 +98,14 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
     const std::int64_t a_end = result.first_run[row + 1], b_end = result.first_run[other + 1];
     const auto join_touching = [&](std::int64_t i, std::int64_t k) {
       const Run &first = result.runs[i], &second = result.runs[k];
-      // Runs that meet only at a corner also touch: one ends where the other begins, hence <=.
+      // The comparisons are <= because runs that meet only at a corner touch too: one ends where the other begins.
       if (first.label == second.label && first.begin <= second.end && second.begin <= first.end)
         join(parent, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
     };
     while (a < a_end && b < b_end) {
       join_touching(a, b);
       const std::int32_t a_stops = result.runs[a].end, b_stops = result.runs[b].end;
-      // When both runs end at the same x, each may also touch the next run of the other row at a corner.
+      // If the two runs end at the same x, each of them may also touch the next run of the other row, at a corner.
       if (a_stops == b_stops && a + 1 < a_end) join_touching(a + 1, b);
       if (a_stops < b_stops) ++a;
       else ++b;

@@ -19,11 +19,11 @@ struct Components {
   };
   std::vector<Run> runs;                // row by row
   std::vector<std::int64_t> first_run;  // #rows + 1: index of the first run of row y + size.y * z
-  std::vector<std::int64_t> voxels;     // voxel count of each component, ordered by its first voxel
+  std::vector<std::int64_t> voxels;  // voxel count of each component; components are in the order of their first voxels
 };
 
-// Finds the connected components of the labels `of_labels` in the rows `in_rows`; nullptr: all labels, all rows. To
-// save time, a caller leaves out rows that are known to be air.
+// Finds the connected components of the labels in `of_labels` (nullptr: all labels), within the rows in `in_rows`
+// (nullptr: all rows). A caller may leave out rows that are known to be air, to save time.
 Components connected_components(const LabelVolume& volume, const RowSet* in_rows = nullptr,
                                 const LabelSet* of_labels = nullptr);
 

@@ -16,11 +16,12 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Number of neighbouring lines along y or z that are processed together, so that memory is read in whole cache lines.
 constexpr int kLines = 16;
-// Largest distance, in voxels along a line, up to which trying every position costs less than computing the envelope.
+// Largest distance to seeds, in voxels along a line, at which trying all nearer positions of the line takes less time
+// than computing the envelope of parabolas.
 constexpr int kNear = 48;
 
-// Computes the squared distance of each voxel of a row to the nearest seed in that row. Two sweeps that count voxels
-// since the last seed suffice.
+// Computes the squared distance from each voxel of a row to the nearest seed in the row. It takes two sweeps, forwards
+// and backwards, that count the voxels since the last seed.
 void distance_along_x(const std::uint8_t* seed, float* squared, int count, double step) {
   const int far = std::numeric_limits<int>::max();
   int steps = far;
@@ -35,14 +36,16 @@ void distance_along_x(const std::uint8_t* seed, float* squared, int count, doubl
   }
 }
 
-// Computes the lower envelope of the parabolas of one line of voxels, and holds the working memory for it.
+// Computes the lower envelope of parabolas, one for each voxel of a line. The members are working memory, which is
+// reused from line to line.
 struct Envelope {
-  std::vector<int> vertex;     // positions in the line of the vertices of the envelope's parabolas, rising
+  std::vector<int> vertex;     // positions in the line of the vertices of the parabolas that form the envelope, rising
   std::vector<double> border;  // position in the line from which parabola k is lower than parabola k - 1
 
   explicit Envelope(int count) : vertex(count), border(count + 1) {}
 
-  // Computes out[i] = min over j of line[j] + (step (i - j))^2: the squared distances in one more dimension.
+  // Computes out[i] = min over j of line[j] + (step (i - j))^2. This adds one dimension to the squared distances
+  // `line`.
   void lower(float* line, float* out, int count, double step) {
     const double squared_step = step * step;
     int top = -1;
@@ -71,10 +74,10 @@ struct Envelope {
   }
 };
 
-using Across = FloatLanes<kLines / 4>;  // the values at one position of kLines lines
+using Across = FloatLanes<kLines / 4>;  // the values that kLines lines have at one position
 
-// Computes out[i] = min over j of lines[j] + (step (i - j))^2 by trying every j that can be nearer. Returns false, with
-// `out` undefined, when a voxel would have to try positions more than kNear voxels away.
+// Computes out[i] = min over j of lines[j] + (step (i - j))^2, by trying all positions j from i outwards until none can
+// give less. Returns false, with `out` undefined, if positions more than kNear voxels away would have to be tried.
 bool lower_by_trying(const std::vector<Across>& lines, std::vector<Across>& out, int count, double step) {
   for (int i = 0; i < count; ++i) {
     Across lowest = lines[i];
@@ -100,8 +103,8 @@ void lower_by_envelope(const std::vector<Across>& lines, std::vector<Across>& ou
   }
 }
 
-// Computes the squared distances along one more axis, in place. There are `width` lines, which start at neighbouring
-// voxels from `first` on. Each has `count` voxels, which are `stride` apart in memory.
+// Adds the distances along one more axis to the squared distances, in place. There are `width` lines along this axis,
+// which start at adjacent values from `first` on. Each line has `count` values, which are `stride` apart in memory.
 void distance_along(float* first, int width, std::int64_t stride, int count, double step, std::vector<Across>& lines,
                     std::vector<Across>& out) {
   for (int begin = 0; begin < width; begin += kLines) {

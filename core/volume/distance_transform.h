@@ -42,8 +42,8 @@ VoxelBox tissue_box(const LabelVolume& volume, int margin = 0);
 std::vector<float> squared_distance(const VoxelBox& box, const std::vector<std::uint8_t>& seed,
                                     const glm::dvec3& spacing, Progress& progress = no_progress());
 
-// Returns the signed distance in mm between voxel centres for every voxel of the box. Outside the body it is positive:
-// the distance to the nearest voxel of the body. Inside it is negative: minus the distance to the nearest voxel outside
+// Returns the signed distance of every voxel of the box in mm, between voxel centres. A voxel outside the body has the
+// distance to the nearest voxel of the body. A voxel of the body has minus the distance to the nearest voxel outside
 // the body. Voxels beyond the box are unknown, so a body that touches the box's faces has no border there.
 std::vector<float> signed_distance(const VoxelBox& box, const std::vector<std::uint8_t>& body,
                                    const glm::dvec3& spacing, Progress& progress = no_progress());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes with floats of several lines of voxels at once, four floats per register. For the minimum of two plain
-// arrays of floats, compilers would use one instruction per float.
+// Functions for floats of several lines of voxels at once, with four floats in a SIMD register. The register type is
+// explicit because compilers take the minimum of two plain arrays one float at a time.
 #pragma once
 
 #include <array>

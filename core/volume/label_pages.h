@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Asks for large memory pages for a new label volume. Every page of a limb's volume is soon read or written, air too,
-// and one page fault for 2 MB takes far less time than 512 for 4 KB each. Large bodies get small pages: air that is
-// only read uses no memory there, but would with large pages.
+// Asks for large memory pages for a new label volume. All pages of a limb's volume are soon read or written, even those
+// with only air, and one page fault for 2 MB takes far less time than 512 page faults for 4 KB each. The volume of a
+// whole body keeps small pages: with these, air that is only read takes no memory.
 #pragma once
 
 #include "core/base/memory_pages.h"

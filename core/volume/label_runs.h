@@ -29,7 +29,7 @@ inline int end_of_tissue(const Label* row, int x, int size) {
   constexpr std::uint64_t kOnes = 0x0001000100010001, kHighest = kOnes << 15;
   for (std::uint64_t word; x + 4 <= size; x += 4) {
     std::memcpy(&word, row + x, sizeof word);
-    // The lowest bit set in `air` belongs to the first label that is 0.
+    // The lowest set bit of `air` is in the 16 bits of the first label that is 0.
     if (const std::uint64_t air = (word - kOnes) & ~word & kHighest) return x + std::countr_zero(air) / 16;
   }
   while (x < size && row[x] != 0) ++x;

@@ -41,7 +41,8 @@ class LabelSampler {
   // the point has one of them.
   Label tissue(const glm::dvec3& point, const LabelSet& allowed) const;
 
-  // The memberships at a point of the allowed tissues of the eight voxels around it, in no order.
+  // The memberships, at a point, of the allowed labels among the eight voxels around the point. The order is not
+  // defined.
   struct Memberships {
     int count = 0;
     std::array<Label, 8> label;
@@ -49,13 +50,14 @@ class LabelSampler {
   };
   Memberships memberships(const glm::dvec3& point, const LabelSet& allowed) const;
 
-  // Returns the label of the allowed voxel nearest to the point, distance in voxels. Only voxels at most `reach` voxels
-  // away along each axis are searched; 0 when none of them is allowed.
+  // Returns the label of the nearest voxel whose label is in `allowed`. Distances are measured in voxels. Only voxels
+  // up to `reach` voxels away along each axis are searched; the result is 0 if none of them has an allowed label.
   Label nearest_of(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
-  // Returns the allowed tissue with the most voxels around the point. Voxels are counted up to two voxels farther than
-  // the nearest allowed one. So the result is the tissue that surrounds a bone, and not a thin layer on the bone.
-  // Returns the smaller label on a tie, and 0 when no allowed voxel is within `reach` voxels along each axis.
+  // Returns the allowed label with the most voxels around the point. Voxels count if they are at most two voxels
+  // farther away than the nearest voxel with an allowed label. So near a bone the result is the tissue that surrounds
+  // the bone, and not a thin layer on it. Returns the smaller label on a tie, and 0 if no voxel with an allowed label
+  // is within `reach` voxels along each axis.
   Label prevailing(const glm::dvec3& point, const LabelSet& allowed, int reach) const;
 
  private:

@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// Counts the pairs of neighbouring tissue voxels along x, and those whose labels differ. Voxels are added in storage
-// order, in blocks of any length.
+// Counts the pairs of neighbouring tissue voxels along x, and among them the pairs whose labels differ. Voxels are
+// added in the order in which a volume stores them, in blocks of any length.
 class NeighbourChanges {
  public:
   explicit NeighbourChanges(int row_length) : row_length_(row_length) {}
@@ -33,7 +33,7 @@ class NeighbourChanges {
   // labels is no grey image, however finely the labels are mixed.
   //   labels  number of distinct labels
   bool looks_grey(std::size_t labels) const { return may_be_grey(labels) && share() > kMostlyDiffers; }
-  // Returns whether a volume with `labels` distinct labels has enough of them to be a grey image.
+  // Returns true if a volume with `labels` distinct labels has enough distinct values to be a grey image.
   static bool may_be_grey(std::size_t labels) { return labels >= kManyLabels; }
 
  private:

@@ -36,8 +36,9 @@ class AirFlood {
         size_(volume.grid.size),
         outside_(volume.voxels.size(), 0) {}
 
-  // Marks all voxels beyond the tissue's bounding box as outside and spreads from them. They belong to outside air,
-  // because each slab of air between the bounding box and a face of the volume contains four edges of the volume.
+  // Marks all voxels beyond the tissue's bounding box as outside air, and spreads from them. These voxels are connected
+  // to an edge of the volume, because each slab of air between the bounding box and a face of the volume contains the
+  // four edges of this face.
   void start_around_tissue() {
     const auto [lowest, highest] = box_of_tissue(volume_);
     const auto is_beyond = [&](int y, int z) { return y < lowest.y || y > highest.y || z < lowest.z || z > highest.z; };
@@ -52,7 +53,7 @@ class AirFlood {
         std::fill(row, row + lowest.x, std::uint8_t{1});
         std::fill(row + highest.x + 1, row + size_.x, std::uint8_t{1});
       }
-    // Continues from those faces of the bounding box that touch air beyond it.
+    // Spreads into the bounding box, through those of its faces that have air beyond them.
     for (int z = lowest.z; z <= highest.z; ++z)
       for (int y = lowest.y; y <= highest.y; ++y) {
         const bool is_side = (y == lowest.y && y > 0) || (y == highest.y && y + 1 < size_.y) ||
@@ -64,7 +65,8 @@ class AirFlood {
     spread();
   }
 
-  // Spreads from every air voxel that lies on at least `sides` faces of the volume (2: on an edge of the volume).
+  // Spreads outside air from every air voxel that lies on at least `sides` faces of the volume. With 2, these are the
+  // voxels on the volume's edges.
   void start(int sides) {
     for (int z = 0; z < size_.z; ++z)
       for (int y = 0; y < size_.y; ++y) {

@@ -9,9 +9,10 @@
 
 namespace limber {
 
-// Returns a byte per voxel of the grid, not 0 for outside air: air that is connected through voxel faces to one of the
-// twelve edges of the volume. Where a face of the volume cuts a body, a windpipe may reach that face but no edge, so
-// its air counts as inside. When tissue fills all edges, air connected to any face of the volume counts as outside.
+// Returns one byte per voxel of the grid, not 0 for outside air. Outside air is connected, through voxel faces, to one
+// of the twelve edges of the volume. So the air of a windpipe counts as inside even if a face of the volume cuts the
+// body and the windpipe reaches this face. If tissue fills all edges, air connected to any face of the volume is
+// outside air.
 std::vector<std::uint8_t> outside_air(const LabelVolume& volume);
 
 }  // namespace limber

@@ -21,8 +21,8 @@ class Seams {
   explicit Seams(const glm::ivec3& grid_size);
 
   glm::ivec3 grid_size() const { return grid_size_; }
-  // Adds the face to the set (cut) or removes it (join). The voxel `lower` and its upper neighbour along `axis` must
-  // both lie inside the grid.
+  // Add the face to the set of cut faces (cut) or remove it from the set (join). The two voxels of the face, `lower`
+  // and its upper neighbour along `axis`, must lie inside the grid.
   void cut(const glm::ivec3& lower, int axis);
   void join(const glm::ivec3& lower, int axis);
   bool is_cut(const glm::ivec3& lower, int axis) const {
@@ -36,9 +36,9 @@ class Seams {
     if (!(direction & 1) && --lower[direction >> 1] < 0) return false;
     return is_cut(lower, direction >> 1);
   }
-  bool touches(const glm::ivec3& voxel) const;  // returns whether any of the voxel's faces is cut
-  // Returns whether a face is cut within the brick of 8^3 voxels with the lowest voxel `corner`, or within one of its
-  // 26 neighbours.
+  bool touches(const glm::ivec3& voxel) const;  // returns true if any of the voxel's six faces is cut
+  // Returns true if any face is cut in the brick (8^3 voxels) whose lowest voxel is `corner`, or in one of its 26
+  // neighbouring bricks.
   bool is_near_brick(const glm::ivec3& corner) const;
 
   std::int64_t size() const { return size_; }  // number of cut faces
@@ -63,14 +63,16 @@ class Seams {
   }
 
  private:
-  using Brick = std::array<std::array<std::uint64_t, 8>, 3>;  // [axis][z]: a bit per face, x + 8 y of its lower voxel
+  // Bit x + 8 y of [axis][z] is set if the face of voxel (x, y, z) of the brick towards the higher end of `axis` is
+  // cut.
+  using Brick = std::array<std::array<std::uint64_t, 8>, 3>;
 
   std::int64_t cell_of(const glm::ivec3& v) const {
     return (v.x >> 3) + std::int64_t{brick_grid_.x} * ((v.y >> 3) + std::int64_t{brick_grid_.y} * (v.z >> 3));
   }
 
   glm::ivec3 grid_size_, brick_grid_;
-  std::vector<std::int32_t> brick_of_;  // one per brick of the grid: index into bricks_, -1 where nothing is cut
+  std::vector<std::int32_t> brick_of_;  // index in bricks_ of each brick of the grid; -1: no face is cut in it
   std::vector<Brick> bricks_;
   std::int64_t size_ = 0;
 };

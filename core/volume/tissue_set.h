@@ -20,8 +20,8 @@ class TissueSet {
   void add(const glm::ivec3& voxel) { slice(voxel) |= bit(voxel); }
   bool contains(const glm::ivec3& voxel) const { return slice(voxel) & bit(voxel); }
 
-  // Adds all voxels of `within` that are connected to voxels of this set through faces of voxels of `within`. Seams are
-  // ignored.
+  // Adds all voxels of `within` that can be reached from voxels of this set, from voxel to voxel of `within` through
+  // their faces. Seams do not stop this.
   //   within  a set over the same TissueVoxels list
   void spread(const TissueSet& within);
 

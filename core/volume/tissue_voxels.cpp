@@ -33,12 +33,13 @@ std::uint64_t tissue_bits(const Label* row, int count) {
   return bits;
 }
 
-// Returns the bricks that contain tissue in the layer of bricks number `bz` along z, in brick order.
+// Returns the bricks with tissue in one layer of bricks, whose index along z is `bz`. They are in brick order.
 std::vector<TissueVoxels::Brick> bricks_of_layer(const LabelVolume& volume, int bz) {
   constexpr int kBrick = TissueVoxels::kBrick;
   const glm::ivec3 size = volume.grid.size;
   std::vector<TissueVoxels::Brick> bricks;
-  std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);  // one mask per brick in x
+  // Masks of one row of bricks along x.
+  std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);
   for (int by = 0; by * kBrick < size.y; ++by) {
     std::fill(masks.begin(), masks.end(), std::array<std::uint64_t, kBrick>{});
     const int end_z = std::min((bz + 1) * kBrick, size.z), end_y = std::min((by + 1) * kBrick, size.y);
@@ -72,8 +73,8 @@ TissueVoxels::TissueVoxels(const LabelVolume& volume) : grid_size_(volume.grid.s
                 "crop it to " + std::to_string(kLongest) + ", or choose a coarser spacing");
   brick_grid_ = (grid_size_ + (kBrick - 1)) / kBrick;
   brick_of_.assign(std::int64_t{brick_grid_.x} * brick_grid_.y * brick_grid_.z, -1);
-  // Collects the bricks of each layer in parallel. Each brick's first list index is set afterwards, because it depends
-  // on the bricks before.
+  // Collects the bricks of each layer in parallel. Brick::first is set afterwards, because the list index of a brick's
+  // first voxel depends on the number of voxels in all bricks before it.
   std::vector<std::vector<Brick>> layers(brick_grid_.z);
   parallel_for(brick_grid_.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t bz = begin; bz < end; ++bz) layers[bz] = bricks_of_layer(volume, static_cast<int>(bz));

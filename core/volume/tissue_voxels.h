@@ -24,7 +24,7 @@ class TissueVoxels {
 
   struct Brick {
     glm::ivec3 corner;                     // lowest voxel
-    std::int64_t first;                    // list index of the brick's first tissue voxel
+    std::int64_t first;                    // index of the brick's first tissue voxel in the list of all tissue voxels
     std::array<std::uint64_t, 8> mask;     // tissue voxels, one word per z slice: bit x + 8 y
     std::array<std::uint16_t, 8> below{};  // number of tissue voxels in the slices below each slice
     int count() const {

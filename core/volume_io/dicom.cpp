@@ -19,13 +19,14 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMostFiles = 100000;
-// Share of the mean by which a gap between two slices may differ from it, because positions are rounded decimal text.
+// Upper limit on the difference between a slice gap and the mean gap, as a share of the mean gap. Slice positions are
+// rounded decimal text, so equal gaps differ slightly.
 constexpr double kEvenGaps = 0.02;
-// Largest number of bytes into which one byte of a compressed slice may unpack.
+// Upper limit on the number of bytes into which one byte of a compressed slice can unpack.
 constexpr std::int64_t kCodecMost = 4000;
-// Bytes of memory that GDCM may use in addition to the file (which it holds up to four times) and the pixels (which
-// JPEG 2000 expands widely). The limit is needed because GDCM allocates an element by its stated length of 32 bits
-// before it reads the element: a file of 300 bytes can request 4 GB.
+// Memory that GDCM may use in addition to the file (which GDCM holds up to four times) and the pixels (which JPEG 2000
+// expands widely), bytes. GDCM allocates memory for an element by its stated 32-bit length before it reads the element.
+// So without a limit, a file of 300 bytes could request 4 GB.
 constexpr std::size_t kCodecMemory = 64 << 20;
 
 struct Slice {
@@ -34,7 +35,7 @@ struct Slice {
   std::string series;
   int rows = 0, columns = 0;
   glm::dvec3 position{0}, along_row{1, 0, 0}, along_column{0, 1, 0};
-  glm::dvec2 spacing{1};  // mm between columns (x) and between rows (y)
+  glm::dvec2 spacing{1};  // distance between columns (x) and between rows (y), mm
   double thickness = 1;
   double slope = 1, intercept = 0;
   VoxelType type = VoxelType::Int16;
@@ -44,7 +45,7 @@ struct Slice {
   glm::dvec3 normal() const { return glm::cross(along_row, along_column); }
 };
 
-// The functions of the module that contains GDCM (dicom_codec.h).
+// The functions of the shared library that contains GDCM (dicom_codec.h).
 struct Codec {
   decltype(&limber_dicom_elements) elements;
   decltype(&limber_dicom_pixels) pixels;
@@ -69,8 +70,8 @@ const Codec& codec(const Path& path) {
   return loaded;
 }
 
-// Returns whether the file's transfer syntax says that its pixels are not compressed (three such syntaxes exist:
-// element lengths implicit, or explicit in either byte order).
+// Returns true if the file's pixels are not compressed. Its transfer syntax tells: three syntaxes are uncompressed
+// (implicit element lengths, or explicit element lengths in either byte order).
 bool is_plain(const PlainFile& file) {
   std::string start(2048, '\0');
   start.resize(file.read_at(0, start.data(), start.size()));
@@ -83,8 +84,8 @@ bool is_plain(const PlainFile& file) {
   return syntax == "1.2.840.10008.1.2" || syntax == "1.2.840.10008.1.2.1" || syntax == "1.2.840.10008.1.2.2";
 }
 
-// Throws Error when the file is too small to contain `bytes` bytes of pixels. Called before memory is allocated for the
-// pixels.
+// Throws Error when the file is too small to contain `bytes` bytes of pixels. Call this before memory is allocated for
+// the pixels.
 void check_pixels_fit(const PlainFile& file, const Path& path, std::int64_t bytes) {
   if (bytes > file.size() * (is_plain(file) ? 1 : kCodecMost))
     throw Error("the pixels of the DICOM image are missing or damaged", path.string(), "export the series again");
@@ -96,7 +97,7 @@ std::size_t memory_for(const PlainFile& file, std::size_t pixel_bytes) {
 
 // Holds the data elements of a DICOM header, each of which can be read as text or as a 16-bit number.
 class Elements {
-  static constexpr std::size_t kLongest = 1024;  // upper limit on the bytes of an element; longer ones are skipped
+  static constexpr std::size_t kLongest = 1024;  // size of the largest element that is kept, bytes
 
  public:
   Elements(const PlainFile& file, const Path& path) {
@@ -122,7 +123,8 @@ class Elements {
     std::memcpy(&number, found->second.data(), 2);
     return number;
   }
-  // Returns the element's numbers, which are separated by backslashes. Returns none unless there are exactly `count`.
+  // Returns the element's numbers, which are separated by backslashes. Returns an empty list unless the element has
+  // exactly `count` numbers.
   std::vector<double> numbers(std::uint16_t group, std::uint16_t element, std::size_t count) const {
     std::string all = text(group, element);
     std::replace(all.begin(), all.end(), '\\', ' ');
@@ -174,7 +176,7 @@ Slice read_slice_header(VolumeFiles& files, std::size_t index) {
     slice.along_row = {o[0], o[1], o[2]};
     slice.along_column = {o[3], o[4], o[5]};
   }
-  // DICOM stores the distance between rows first, then that between columns.
+  // DICOM stores the distance between rows first, then the distance between columns.
   for (const auto& spacing : {elements.numbers(0x0018, 0x1164, 2), elements.numbers(0x0028, 0x0030, 2)})
     if (!spacing.empty()) slice.spacing = {spacing[1], spacing[0]};
   for (const auto& thickness : {elements.numbers(0x0018, 0x0050, 1), elements.numbers(0x0018, 0x0088, 1)})
@@ -185,7 +187,8 @@ Slice read_slice_header(VolumeFiles& files, std::size_t index) {
   return slice;
 }
 
-// Reads the headers of all slices and sorts the slices along their normal. Throws Error for more than one series.
+// Reads the headers of all slices and sorts the slices along their normal. Throws Error when they belong to several
+// series.
 std::vector<Slice> read_series(VolumeFiles& files) {
   const Path& folder = files.location().path;
   std::map<std::string, std::vector<Slice>> by_series;
@@ -223,7 +226,7 @@ void check_alike(const std::vector<Slice>& slices, const Path& path) {
   }
 }
 
-// Returns the vector from one slice to the next, mm. Throws Error when the gaps between slices differ.
+// Returns the vector from one slice to the next, mm. Throws Error when the gaps between slices are not equal.
 glm::dvec3 slice_step(const std::vector<Slice>& slices, const Path& path) {
   const Slice& first = slices.front();
   const glm::dvec3 normal = glm::normalize(first.normal());
@@ -273,8 +276,8 @@ class DicomSource final : public VoxelSource {
     if (scale_) to_float(slice);
     place_ = 0;
   }
-  // Replaces the stored values of a slice by slope * stored + intercept, as floats. This serves a series whose slices
-  // have different slopes or intercepts.
+  // Replaces the stored values of a slice by slope * stored + intercept, as floats. Used for a series whose slices
+  // differ in slope or intercept.
   void to_float(const Slice& slice) {
     std::vector<char> scaled(static_cast<std::size_t>(std::int64_t{slice.rows} * slice.columns) * sizeof(float));
     visit_voxel_type(slice.type, [&]<class T>(T) {

@@ -8,16 +8,16 @@
 
 namespace limber {
 
-// Returns whether the file is DICOM: whether "DICM" follows its first 128 bytes. False for a file that cannot be
-// opened.
+// Returns true if the file is DICOM: the letters "DICM" follow its first 128 bytes. Returns false for a file that
+// cannot be opened.
 bool is_dicom_file(const Path& path);
-// Returns whether the folder contains at least one DICOM file.
+// Returns true if the folder contains at least one DICOM file.
 bool is_dicom_folder(const Path& path);
 // Returns the folder's DICOM files sorted by name. Throws Error when there are none.
 std::vector<Path> dicom_files(const Path& folder);
 
-// Loads GDCM. A process must call this before it enters its sandbox, because it cannot open files there. Returns false
-// when GDCM is missing.
+// Loads the library GDCM. Returns false when GDCM is missing. A process must call this before it enters its sandbox,
+// because it cannot open the library there.
 bool load_dicom_library();
 
 // Opens a series or a single image. Throws Error for several series, for missing or unevenly spaced slices, for colour

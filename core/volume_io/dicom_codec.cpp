@@ -12,7 +12,8 @@
 #include <unistd.h>
 
 namespace {
-// A stream over an open file from its first byte on. It does not change the file descriptor's own read position.
+// A stream over an open file, beginning at the file's first byte. The file descriptor's own read position does not
+// change.
 class FileBuffer final : public std::streambuf {
  public:
   explicit FileBuffer(int descriptor) : descriptor_(descriptor), size_(::lseek(descriptor, 0, SEEK_END)) {}

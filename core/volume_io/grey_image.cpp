@@ -27,7 +27,8 @@ float nearest(const GreyVolume& volume, const glm::dvec3& place) {
   return volume.grid.contains(voxel) ? volume.voxels[static_cast<std::size_t>(volume.grid.index(voxel))] : kOutside;
 }
 
-// The part of the line start + t * step that lies in the volume: from <= t <= to; empty when from > to.
+// The part of the line start + t * step that lies inside the volume: t in [from, to]. It is empty when `from` exceeds
+// `to`.
 struct Stretch {
   double from, to;
 };
@@ -46,7 +47,7 @@ Stretch inside(const Grid& grid, const glm::dvec3& start, const glm::dvec3& step
   return part;
 }
 
-// Returns a picture whose pixels are value(p), where p is the pixel's centre in voxel coordinates.
+// Returns a picture. Each pixel is value(p), where p is the pixel's centre in voxel coordinates.
 template <class Value>
 std::vector<float> picture(const GreyVolume& volume, const PictureFrame& frame, const Value& value) {
   std::vector<float> pixels(static_cast<std::size_t>(frame.size.x) * static_cast<std::size_t>(frame.size.y));

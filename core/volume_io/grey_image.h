@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Detects grey images (CT, MR) that are given in place of labels, and makes pictures of grey images.
+// Detects grey images (CT, MR) where a label volume is expected, and makes pictures of grey images.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,23 @@
 
 namespace limber {
 
-// Returns why a label volume looks like a grey image, as in "it has 300 values, and 99 % of neighbouring voxels
-// differ". Returns nothing when the volume does not look so. A volume whose labels mostly have names is never taken for
-// a grey image.
+// Returns the reason for which a label volume looks like a grey image, such as "it has 300 values, and 99 % of
+// neighbouring voxels differ". Returns nothing when it looks like labels. A volume whose labels mostly have names is
+// always treated as labels.
 std::optional<std::string> grey_image_doubt(const LabelVolume& volume, const TissueTable& tissues);
 
 // Throws Error naming the file when the volume looks like a grey image.
 void require_labels(const LabelVolume& volume, const TissueTable& tissues, const Path& path);
 
-// The range of values that a picture shows: `level` is shown as middle grey, and `width` is the range from black to
-// white.
+// The range of values that a picture shows. The value `level` is shown as middle grey, and `width` is the difference
+// between the values shown as white and as black.
 struct GreyWindow {
   double level = 0, width = 1;
 
   bool operator==(const GreyWindow&) const = default;
 };
-// Returns the window from the 1 % to the 99 % quantile of the volume's values. Outliers do not widen it.
+// Returns the window from the 1 % to the 99 % quantile of the volume's values, so that outliers do not widen the
+// window.
 GreyWindow usual_window(const GreyVolume& volume);
 
 // The position of a picture in the world: its centre `middle`, mm, and unit vectors along its rows (`right`) and its
@@ -37,13 +38,14 @@ struct PictureFrame {
   glm::ivec2 size{1};  // pixels
   double millimetres_per_pixel = 1;
 };
-// Both functions return the picture's values row by row from the top, NaN where the picture lies outside the volume.
+// Both functions return the picture's values row by row from the top. A value is NaN where the picture lies outside the
+// volume.
 //   grey_slice       the value of the voxel nearest to each pixel
 //   grey_projection  the largest value along each pixel's line of sight through the whole volume
 std::vector<float> grey_slice(const GreyVolume& volume, const PictureFrame& frame);
 std::vector<float> grey_projection(const GreyVolume& volume, const PictureFrame& frame);
 
-// Returns the grey level of a value in a window, 0 (black) to 255 (white); 0 for NaN.
+// Returns the grey level at which a value is shown: 0 (black) to 255 (white), and 0 for NaN.
 std::uint8_t grey_of(float value, const GreyWindow& window);
 
 }  // namespace limber

@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kLargestExact = std::int64_t{1} << 53;
-// Largest distance between a scaled value and a whole number, relative to that number, at which the value still counts
-// as a label. The product of a slope and a whole number is rounded.
+// Rounding tolerance of scaled voxel values, relative to the value. A scaled value this close to a whole number counts
+// as that whole number, since slope * stored is rounded.
 constexpr double kScaledTolerance = 1e-6;
 
 template <class Word>
@@ -36,8 +36,8 @@ void swap_bytes(void* voxels, std::size_t count, int size) {
   if (size == 8) swap_words<std::uint64_t>(voxels, count);
 }
 
-// Finds the label of a file's value: the value itself when possible, else the label that this value got before, else
-// the highest label that no value uses.
+// Finds the label for a voxel value of the file: the value itself when possible, else the label that the value got
+// earlier, else the highest label that is still unused.
 LabelDecoder::Problem LabelDecoder::assign(std::int64_t value, Label& label) {
   if (value >= 0 && value <= 65535 && use_[value] != kOther) {
     use_[value] = kItself;
@@ -62,7 +62,7 @@ LabelDecoder::Problem LabelDecoder::assign(std::int64_t value, Label& label) {
 template <class T>
 LabelDecoder::Problem LabelDecoder::decode_whole(const T* voxels, std::size_t count, Label* labels) {
   if constexpr (std::is_unsigned_v<T> && sizeof(T) <= 2) {
-    // Every value of this type is a valid label, so nothing is remapped.
+    // Every value of this voxel type is a valid label, so each value is its own label.
     for (std::size_t i = 0; i < count; ++i) {
       labels[i] = voxels[i];
       use_[voxels[i]] = kItself;

@@ -17,7 +17,7 @@ struct Landmark {
   glm::dvec3 position{0};  // world, mm
 };
 
-// Reads landmarks. Throws Error, which names file and line.
+// Reads landmarks. Throws an Error that names the file and the line.
 std::vector<Landmark> read_landmarks(const Path& path);
 void write_landmarks(const std::vector<Landmark>& landmarks, const Path& path);
 

@@ -44,12 +44,12 @@ std::vector<Number> numbers_in(const Fields& fields, std::initializer_list<std::
   if (!numbers || numbers->size() < count)
     throw Error(std::string(*names.begin()) + " is " + in_quotes(*text), where,
                 "this needs " + std::to_string(count) + " numbers; correct the header");
-  // A 2-D image may list a third number, which is dropped.
+  // The header of a 2-D image may list a third number, which is ignored.
   return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
-// Reads where the voxel data are from the value of ElementDataFile: LOCAL (this file), LIST (the names of the data
-// files are in the following lines), a pattern of names, or one name.
+// Reads where the voxel data are. The value of ElementDataFile is LOCAL (this file), LIST (the names of the data files
+// are in the following lines), a pattern of file names, or one file name.
 void find_data(VolumeHeader& header, std::string_view value, std::string_view rest, std::size_t header_end,
                const std::string& where) {
   const auto words = words_of(value);
@@ -75,7 +75,8 @@ void find_data(VolumeHeader& header, std::string_view value, std::string_view re
 }  // namespace
 
 bool looks_like_meta_header(std::string_view bytes) {
-  // Keys may come in any order. One line `key = value` with a known key, among the first eight lines, suffices.
+  // The keys of a header may come in any order. One line `key = value` with a known key among the first eight lines is
+  // enough to recognize MetaImage.
   std::string_view rest = bytes.substr(0, 4096);
   for (int line = 0; line < 8 && !rest.empty(); ++line) {
     const auto text = take_line(rest);
@@ -195,7 +196,7 @@ std::string meta_header(const Voxels& voxels, const std::string& data_name, cons
 }
 
 void write_meta(const Voxels& voxels, const Path& path) {
-  constexpr int kDigits = 15;  // blanks in the header for the compressed size, which is known only later
+  constexpr int kDigits = 15;  // blanks in the header, filled with the compressed size once it is known
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
     const std::string header = meta_header(voxels, "LOCAL", std::string(kDigits, ' '));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Parses headers of MetaImage files (.mha .mhd): lines `Key = value` up to ElementDataFile. TransformMatrix lists the
-// direction of each voxel axis in the world (LPS, mm), one axis after the other. AnatomicalOrientation is only
-// descriptive and is ignored.
+// direction of each voxel axis in the world (LPS, mm), one axis after the other. AnatomicalOrientation only describes
+// the axes in words, so it is ignored.
 #pragma once
 
 #include <string_view>
@@ -12,7 +12,8 @@ namespace limber {
 
 bool looks_like_meta_header(std::string_view bytes);
 
-// Parses a header. Throws Error unless it describes one scalar volume of 1 to 3 axes and its fields are consistent.
+// Parses a header. Throws Error unless the header describes one scalar volume of 1 to 3 axes and its fields are
+// consistent.
 //   bytes  the file's first bytes            where  the file, for messages
 VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where);
 

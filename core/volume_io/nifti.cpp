@@ -16,7 +16,7 @@
 namespace limber {
 
 namespace {
-// The byte offsets of the header's fields, and their width, for one of the two NIfTI versions.
+// The byte offsets and the width of the header's fields in one of the two NIfTI versions.
 struct Layout {
   int bytes, dim, pixdim, datatype, bitpix, vox_offset, slope, intercept, intent, qform_code, sform_code, quaternion,
       q_offset, srow, units, magic;
@@ -51,8 +51,8 @@ class Fields {
   std::int64_t whole(int place, int i = 0) const {
     return layout_.wide ? get<std::int64_t>(place + 8 * i) : get<std::int16_t>(place + 2 * i);
   }
-  // Reads a code (a small number for a choice): int16 in version 1, int32 in version 2. Not for the datatype, which is
-  // int16 in both.
+  // Reads a code, that is, a number that stands for a choice. Codes are int16 in version 1 and int32 in version 2. The
+  // datatype must not be read by this function, since it is int16 in both versions.
   int code(int place) const { return layout_.wide ? get<std::int32_t>(place) : get<std::int16_t>(place); }
   double real(int place, int i = 0) const {
     return layout_.wide ? get<double>(place + 8 * i) : get<float>(place + 4 * i);
@@ -94,8 +94,8 @@ bool usable(const glm::dmat3& columns) {
   return std::abs(glm::determinant(raw.direction)) > 1e-3;
 }
 
-// Returns the rotation of the qform, whose header stores the components b, c, d of the quaternion [NIfTI-1, quaternion
-// representation]. The first component follows from the quaternion's length, which is 1.
+// Returns the rotation of the qform. The header stores the components b, c, d of a quaternion of length 1, from which
+// the first component follows [NIfTI-1, quaternion representation].
 glm::dmat3 rotation_of(double b, double c, double d) {
   const double rest = 1 - (b * b + c * c + d * d);
   glm::dquat q(rest > 0 ? std::sqrt(rest) : 0, b, c, d);
@@ -150,7 +150,8 @@ class NiftiReader {
     for (int i = 1; i <= axes; ++i) sizes_.push_back(fields_.whole(at_.dim, i));
   }
 
-  // Returns the voxel size (field pixdim), mm. Along an axis of only one voxel, the size need not be valid.
+  // Returns the voxel size (field pixdim), mm. Throws Error for an invalid size, except along an axis of only one
+  // voxel.
   glm::dvec3 voxel_size() const {
     glm::dvec3 size(1);
     for (int i = 0; i < 3; ++i) {
@@ -207,7 +208,7 @@ class NiftiReader {
 
   void read_scale() {
     const double slope = fields_.real(at_.slope), intercept = fields_.real(at_.intercept);
-    if (slope == 0 || std::isnan(slope)) return;  // slope 0 or NaN means: values are not scaled
+    if (slope == 0 || std::isnan(slope)) return;  // slope 0 or NaN: the file's values are not scaled
     header_.volume.slope = slope;
     header_.volume.intercept = std::isnan(intercept) ? 0 : intercept;
     check_scale(header_.volume.slope, header_.volume.intercept, where_);
@@ -347,7 +348,7 @@ namespace {
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
-// Returns the first `most` bytes of a gzip stream's content; fewer when the stream is damaged or ends earlier.
+// Returns the first `most` bytes of a gzip stream's content, or fewer when the stream is damaged or shorter.
 std::string inflated_start(std::string_view packed, std::size_t most) {
   std::string plain(most, '\0');
   Inflater stream;

@@ -13,15 +13,15 @@
 
 namespace limber {
 
-constexpr std::size_t kNiftiHeaderBytes = 540;  // bytes of a NIfTI-2 header; a NIfTI-1 header is shorter
+constexpr std::size_t kNiftiHeaderBytes = 540;  // size of a NIfTI-2 header, bytes; a NIfTI-1 header is smaller
 
 bool looks_like_nifti_header(std::string_view bytes);
 
 // Parses a header. When the voxels are in a file of their own (`is_pair`), the caller sets that file's name. Throws
 // Error unless the header describes one scalar 3-D volume.
 //   bytes       the first kNiftiHeaderBytes bytes of the (decompressed) file, fewer when the file is shorter
-//   file_bytes  the file's size when it holds header and voxels and is not compressed; it tells a wrong vox_offset from
-//               missing data
+//   file_bytes  the size of an uncompressed file with header and voxels; empty for any other file. With it, the parser
+//               can tell a wrong vox_offset from missing data
 //   where       the file, for messages
 struct NiftiHeader {
   VolumeHeader volume;
@@ -30,8 +30,8 @@ struct NiftiHeader {
 NiftiHeader parse_nifti_header(std::string_view bytes, std::optional<std::int64_t> file_bytes,
                                const std::string& where);
 
-// Returns the header's bytes, little-endian, with the padding before the voxels of a single file (352 bytes in version
-// 1, 544 in version 2).
+// Returns the header's bytes, little-endian. For a single file, they include the padding before the voxels, which begin
+// at byte 352 in version 1 and at byte 544 in version 2.
 std::string make_nifti_header(const Grid& grid, VoxelType type, int channels, int version, bool is_pair);
 
 }  // namespace limber

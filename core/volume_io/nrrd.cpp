@@ -102,7 +102,8 @@ std::optional<VoxelType> nrrd_type(std::string_view name) {
   return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Parses a list of vectors, one per axis, such as "(1,0,0) none (0,1,0)"; "none" stands for an axis without a vector.
+// Parses a list of vectors, one for each axis, such as "(1,0,0) none (0,1,0)". "none" stands for an axis without a
+// vector.
 std::vector<std::optional<glm::dvec3>> vectors_of(std::string_view text, int dimension, const std::string& field,
                                                   const std::string& where) {
   const auto wrong = [&] {
@@ -131,8 +132,7 @@ std::vector<std::optional<glm::dvec3>> vectors_of(std::string_view text, int dim
   return vectors;
 }
 
-// An anatomical space that NRRD names: its number of dimensions, and the signs by which its coordinates are multiplied
-// to become LPS.
+// An anatomical space that NRRD names: its number of dimensions, and the sign of each coordinate axis relative to LPS.
 struct Space {
   glm::dvec3 to_lps{1};
   int dimension = 3;
@@ -168,8 +168,8 @@ double millimetres_per(const std::string* units) {
   return 1;
 }
 
-// Returns the names and colours of 3D Slicer's segments from the header's keys. Of several segments with one label
-// value, the first counts: the others belong to layers above 0, which are further volumes of the same file.
+// Returns the names and colours of 3D Slicer's segments from the header's keys. When several segments have one label
+// value, the first one is taken. The others belong to further layers, which are stored as further volumes of the file.
 TissueTable segments_of(const KeyValues& keys, const std::string& where) {
   TissueTable table;
   std::set<double> seen;
@@ -257,8 +257,8 @@ class NrrdReader {
     header_.grid = checked_grid(raw, where_, header_.warnings);
   }
 
-  // Returns the indices of the axes that span space, at most three. Throws Error when any other axis has more than one
-  // sample.
+  // Returns the indices of the axes that span space, at most three. Throws Error when one of the remaining axes has
+  // more than one sample.
   std::vector<std::size_t> find_space_axes() const {
     std::vector<std::string> kinds(sizes_.size(), "");
     if (const auto* text = get("kinds")) {
@@ -321,8 +321,8 @@ class NrrdReader {
     return grid_from_columns({}, columns, origin);
   }
 
-  // Completes the axes of a file with one or two axes in space: the missing axes are perpendicular to the others and 1
-  // mm long.
+  // Completes the axes of a file with only one or two spatial axes. Each missing axis is 1 mm long and perpendicular to
+  // the others.
   static void complete(glm::dmat3& columns, std::size_t count) {
     if (count == 2) {
       const glm::dvec3 normal = glm::cross(columns[0], columns[1]);
@@ -410,7 +410,8 @@ class NrrdReader {
     if (!name) {
       if (!text_.ended) throw Error("no empty line ends the header", where_, "the file is cut off; export it again");
       if (header_.byte_skip >= 0) header_.byte_skip += static_cast<std::int64_t>(text_.end);
-      // Data in the header's own file may not skip lines, because byte_skip is counted from the end of the header.
+      // `line skip` is an error for data in the header's own file, because byte_skip is already counted from the end of
+      // the header.
       attached_line_skip();
       return;
     }

@@ -14,11 +14,12 @@ namespace limber {
 
 bool looks_like_nrrd_header(std::string_view bytes);
 
-// Parses a header. Throws Error unless it describes one scalar volume of 1 to 3 axes and its fields are consistent.
+// Parses a header. Throws Error unless the header describes one scalar volume of 1 to 3 axes and its fields are
+// consistent.
 //   bytes  the file's first bytes            where  the file, for messages
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where);
 
-// Returns the text to write as the value of a `key:=value` line, in which backslashes and line ends are escaped.
+// Returns `value` as it is written in a `key:=value` line: with escaped backslashes and line ends.
 std::string nrrd_escaped(std::string_view value);
 
 }  // namespace limber

@@ -20,7 +20,7 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Returns so many first bytes of the file that they contain its header.
+// Returns the first bytes of the file, at least those of its header.
 std::string header_bytes(const PlainFile& file) {
   constexpr std::int64_t kUsual = 1 << 16;
   std::string bytes = first_bytes(file, kUsual);
@@ -31,7 +31,7 @@ std::string header_bytes(const PlainFile& file) {
 
 bool ends(const Path& path, std::string_view end) { return lower_case(path.filename().string()).ends_with(end); }
 
-// A parsed header and the row of the table of formats that parsed it. The row is null for a displacement field.
+// A parsed header, and the entry for its format in the table of volume formats (null for a displacement field).
 struct ReadHeader {
   const VolumeFormat* format;
   VolumeHeader header;
@@ -50,9 +50,9 @@ ReadHeader read_header(VolumeFiles& files, Holding holding) {
   throw Error("this is no volume that can be read", where, "use " + readable_formats());
 }
 
-// Completes the tissues that a parser found in a header: sets each tissue's kind from its name, and the initial values
-// of that kind. Parsers leave this to the program, which has the table of tissues. A colour from the file is kept; NaN
-// means that the file has none.
+// Completes the tissues that a parser found in a header: sets each tissue's kind from its name, and the default
+// properties of that kind. Parsers leave this to the program, which has the table of tissues. A colour from the file is
+// kept; NaN means that the file has none.
 void complete(TissueTable& named) {
   for (Tissue& tissue : named.tissues) {
     const glm::vec3 colour = tissue.colour;
@@ -101,7 +101,7 @@ std::vector<Path> files_of_volume(const Path& path) {
     files.push_back(header);
     for (const std::string& name : opened.header.data_names) files.push_back(header.parent_path() / name);
   } catch (const Error&) {
-    // The error is ignored here; reading the volume reports it.
+    // The Error is ignored here, since reading the volume throws it again.
   }
   return files;
 }

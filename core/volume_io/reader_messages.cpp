@@ -78,7 +78,7 @@ void put(ByteWriter& out, const TissueTable& table) {
 }
 
 TissueTable table_of(ByteReader& in) {
-  constexpr std::size_t kLeastBytes = 50;  // bytes of a tissue without a name, the shortest in a message
+  constexpr std::size_t kLeastBytes = 50;  // size of the smallest encoded tissue, which has no name, bytes
   TissueTable table;
   table.source = in.text();
   table.tissues.resize(in.count(kLeastBytes));
@@ -86,10 +86,10 @@ TissueTable table_of(ByteReader& in) {
   return table;
 }
 
-// Repeats the checks that every parser makes, and throws when the header fails one. These checks would change nothing
-// in a header that has passed them.
+// Repeats the checks of the parsers and throws when the header fails one. The checks may correct a grid, so a header
+// whose grid they would change was never checked and fails too.
 void check(const VolumeHeader& header, const std::string& where, const ByteReader& in) {
-  // A header's format begins with the name of a row of the table of formats: "NIfTI-1" with "NIfTI".
+  // A header's format is the name of a known volume format, plus at most two characters: "NIfTI-1" is a NIfTI format.
   const auto formats = volume_formats();
   in.require(std::any_of(formats.begin(), formats.end(), [&](const VolumeFormat& format) {
     return header.format.starts_with(format.name) && header.format.size() <= format.name.size() + 2;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Messages between the program and the process that parses a volume, the reader (volume_reader.h, serve_volume.h). A
-// message is a head of 16 bytes, followed by as many bytes as the head states. Program and reader belong to one build
-// on one machine, so numbers are sent as they are in memory. The program checks everything that it receives.
+// Messages between the program and the reader, which is the process that parses a volume (volume_reader.h,
+// serve_volume.h). A message is a head of 16 bytes, followed by as many bytes as the head states. Program and reader
+// belong to one build on one machine, so numbers are sent as they are in memory. The program checks everything that it
+// receives.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,7 @@ struct MessageHead {
   std::uint64_t size = 0;  // number of bytes that follow the head
 };
 
-// Version of the messages, which is raised with every change of them.
+// Version of the message format. Every change of the format needs a new version.
 constexpr std::uint32_t kMessageVersion = 1;
 
 struct Order {
@@ -59,9 +60,8 @@ std::string bytes_of(const Protection& protection);
 std::string bytes_of(const VolumeHeader& header);
 std::string bytes_of(const std::vector<std::string>& texts);
 
-// These functions decode a message. They call `damaged`, which must throw, for bytes that no reader of this build
-// sends. A decoded header has passed the same checks as every parsed header. A decoded protection came with
-// kMessageVersion.
+// Each function decodes a message. A function calls `damaged`, which must throw, for bytes that no reader of this build
+// would send. A header must pass the same checks as in a parser, and a protection must come with kMessageVersion.
 Order order_from(std::string_view bytes, const std::function<void()>& damaged);
 Protection protection_from(std::string_view bytes, const std::function<void()>& damaged);
 VolumeHeader header_from(std::string_view bytes, const std::string& where, const std::function<void()>& damaged);

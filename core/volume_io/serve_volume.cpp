@@ -22,11 +22,10 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 18;  // upper limit on the bytes of voxels per message, so that they stay in a cache
+constexpr std::size_t kChunk = 1 << 18;  // voxel bytes of one message, so few that they stay in a cache
 constexpr int kOrders = STDIN_FILENO, kAnswers = STDOUT_FILENO;
 
-// Ends this process. Called when the channel to the program is closed: the program has ended, so nobody reads an
-// answer.
+// Ends this process. It is called when the channel to the program is closed, since nobody then reads an answer.
 [[noreturn]] void leave() { ::_exit(1); }
 
 void write_all(iovec* parts, int count) {
@@ -87,7 +86,8 @@ Heard hear() {
   return heard;
 }
 
-// The volume's files as seen from the sandbox: each file is opened by the program, on request.
+// The files of a volume when they are read inside the sandbox. The sandbox forbids opening files, so this class asks
+// the program to open each file.
 class AskedFiles final : public VolumeFiles {
  public:
   AskedFiles(VolumeLocation location, const Sandbox& sandbox) : VolumeFiles(std::move(location)), sandbox_(sandbox) {}
@@ -118,7 +118,7 @@ class AskedFiles final : public VolumeFiles {
   }
 
   static constexpr std::size_t kBookkeeping = 64
-                                              << 20;  // bytes for names and positions of a series with the most images
+                                              << 20;  // memory for the names and positions of the largest series, bytes
   Sandbox sandbox_;
 };
 

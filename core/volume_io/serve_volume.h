@@ -11,9 +11,9 @@ namespace limber {
 
 using OpenFromFiles = std::function<OpenedVolume(std::shared_ptr<VolumeFiles>, Holding)>;
 
-// Runs limber_reader and returns its exit code. The arguments are the process ID of the program that started it, the
-// memory that it may use (bytes) and, for DICOM images, "dicom". Messages come on the standard input and are sent on
-// the standard output (reader_messages.h).
+// Runs limber_reader and returns its exit code. The arguments are the process ID of the program that started it, its
+// memory limit in bytes and, for DICOM images, "dicom". It receives messages on the standard input and sends messages
+// on the standard output (reader_messages.h).
 //   open  parses the header and returns the source of the voxels; runs in the sandbox
 int serve_volume(int argc, char** argv, const OpenFromFiles& open = open_volume_here);
 

@@ -60,7 +60,7 @@ int hexadecimal(char c) {
                                 : -1;
 }
 
-// Parses a colour: "#rrggbb", or [r, g, b] in [0, 1]. When one of r, g, b is above 1, all three are in [0, 255].
+// Parses a colour: "#rrggbb", or [r, g, b] in [0, 1]. If any of the three numbers exceeds 1, all three are in [0, 255].
 glm::vec3 colour_from(const Json& json, const std::string& where) {
   const auto wrong = [&] {
     return Error("the colour is neither [r, g, b] nor \"#rrggbb\"", where, "correct the table");

@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// Parses the text of a table. Throws Error, which names the line or key that is wrong.
+// Parses the text of a table. Throws an Error that names the line or key that is wrong.
 //   where  the file, for messages; its name becomes the table's source
 TissueTable parse_tissue_table(const std::string& bytes, const std::string& where);
 

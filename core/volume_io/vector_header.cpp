@@ -13,10 +13,10 @@ namespace limber {
 
 namespace {
 constexpr const char* kWhatToDo = "give a field as `limber resample --field OUT.nrrd` writes it";
-constexpr std::size_t kLargestHeader = 1 << 16;  // upper limit on the bytes of a header
+constexpr std::size_t kLargestHeader = 1 << 16;  // upper limit on the size of a header, bytes
 
-// Changes the size of the header's first axis from three samples to one and parses the result. The NRRD parser ignores
-// an axis of one sample, so it accepts the header.
+// Parses the header of a displacement field as if it had one number per voxel instead of three. The size of the first
+// axis is changed to one sample for this, since the NRRD parser ignores an axis of one sample.
 VolumeHeader header_of_one_number(std::string bytes, const std::string& where) {
   const std::size_t end = std::min(bytes.find("\n\n"), bytes.find("\n\r\n"));
   static const std::regex kSizes("(^|\n)sizes:[ \t]*3[ \t]");

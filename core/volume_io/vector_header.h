@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parses headers of displacement fields: NRRD files whose first axis is the three floats of a voxel.
+// Parses headers of displacement fields. These are NRRD files whose first axis holds the three floats of a voxel.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace limber {
 
-// Parses a header and returns it as that of a scalar volume with three times as many voxels in x. Throws Error unless
-// the file has three floats per voxel in this machine's byte order.
+// Parses a header and returns it in the form of a scalar volume whose x axis has three times as many voxels. Throws
+// Error unless the file has three floats per voxel in this machine's byte order.
 //   bytes  the file's first bytes            where  the file, for messages
 VolumeHeader parse_vector_header(std::string bytes, const std::string& where);
 

@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 constexpr const char* kWhatToDo = "give a field as `limber resample --field OUT.nrrd` writes it";
-constexpr std::size_t kChunk = 1 << 12;  // voxels that are read at a time
+constexpr std::size_t kChunk = 1 << 12;  // number of voxels that are read at a time
 }  // namespace
 
 VectorVolume read_vector_volume(const Path& path) {
@@ -38,7 +38,7 @@ VectorVolume read_vector_volume(const Path& path) {
         throw Error("the field has a displacement that is no number", path.string(), kWhatToDo);
     if (to_rest)
       for (std::size_t i = 0; i < some; ++i) chunk[i] = glm::vec3(0) - chunk[i];
-    // A chunk of zeros, as in air, is not copied into the field, so that it uses no memory.
+    // A chunk of zeros (air) is not copied into the field: memory that is never written stays zero and takes no space.
     if (std::any_of(chunk.begin(), chunk.begin() + std::ptrdiff_t(some),
                     [](const glm::vec3& v) { return v != glm::vec3(0); }))
       std::copy_n(chunk.begin(), some, field.voxels.begin() + first);

@@ -10,7 +10,8 @@
 namespace limber {
 
 namespace {
-// Returns the axis (0, 1, 2) that a word names: nx, ny, nz with letter 'n', or dx, dy, dz with letter 'd'; else -1.
+// Returns the axis (0, 1, 2) that a word such as nx or dz names, or -1 for any other word. The words begin with
+// `letter`: n for numbers of voxels, d for voxel sizes.
 int axis_of(std::string_view word, char letter) {
   if (word.size() != 2 || lower_case(word)[0] != letter) return -1;
   const char axis = lower_case(word)[1];

@@ -14,7 +14,7 @@ namespace limber {
 
 bool looks_like_virtual_family(std::string_view text);
 
-// Parses the text file. Throws Error, which names the line.
+// Parses the text file. Throws an Error that names the wrong line.
 //   text       content of the .txt file        raw_bytes  size of the .raw file
 VolumeHeader parse_virtual_family(std::string_view text, std::int64_t raw_bytes, const std::string& where);
 std::string make_virtual_family(const Grid& grid, const TissueTable& tissues);

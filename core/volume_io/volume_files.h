@@ -13,7 +13,7 @@ namespace limber {
 // volume reports what is wrong with it.
 std::vector<Path> files_of_volume(const Path& path);
 
-// Returns `path` itself and the files that may be written beside it when a volume is written to `path`.
+// Returns `path` itself and the data files that may be created beside it when a volume is written to `path`.
 std::vector<Path> files_written_as(const Path& path);
 
 }  // namespace limber

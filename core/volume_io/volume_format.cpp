@@ -5,7 +5,7 @@
 
 namespace limber {
 
-// Each function returns its format's row of the table and is defined in the format's own source file.
+// Each function returns one entry of the table of volume formats, and is defined in the source file of that format.
 VolumeFormat nrrd_format();
 VolumeFormat metaimage_format();
 VolumeFormat nifti_format();
@@ -14,7 +14,7 @@ VolumeFormat vti_format();
 
 namespace {
 
-// DICOM's row has no functions, because dicom.h reads DICOM and nothing writes it.
+// DICOM's table entry has no functions: dicom.h reads DICOM, and nothing writes it.
 VolumeFormat dicom_format() { return {.name = "DICOM", .endings = {".dcm"}}; }
 
 struct Match {
@@ -22,7 +22,8 @@ struct Match {
   const VolumeFormat::Written* written = nullptr;
 };
 
-// Returns the format and the writer with the longest file name ending that matches `path`; nulls when none matches.
+// Returns the format and the writer whose file name ending matches `path`. The longest matching ending wins. Returns
+// nulls when none matches.
 Match match_of(const Path& path) {
   const std::string name = lower_case(path.filename().string());
   Match found;

@@ -13,11 +13,11 @@ namespace {
 constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int16",  "uint16",  "int32",
                                                          "uint32", "int64", "uint64", "float32", "float64"};
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 40;
-// A direction vector whose length differs from 1 by at most this counts as a unit vector, because headers round to 6
-// digits. The length of any other one scales the spacing.
+// Largest deviation from 1 at which the length of a direction vector is treated as 1, because headers round to 6
+// digits. A larger deviation is meant: the vector's length then scales the spacing.
 constexpr double kUnitTolerance = 1e-4;
-// Limits of the triple product of the three axes, which is 1 for axes at right angles and 0 for axes in one plane. At
-// or below kFlat the axes are refused; below 1 - kRightAngles there is a warning.
+// Limits of the triple product of the three voxel axes, which is 1 for axes at right angles and 0 for axes in one
+// plane. At or below kFlat the axes are refused. Below 1 - kRightAngles the reader gives a warning.
 constexpr double kFlat = 1e-3, kRightAngles = 1e-3;
 }  // namespace
 
@@ -95,7 +95,7 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
 
 void check_scale(double slope, double intercept, const std::string& where) {
   constexpr double kMost = 1e15;
-  // Comparisons with NaN are false.
+  // The conditions are false for NaN, so NaN is refused too.
   const bool can_be = std::abs(slope) <= kMost && std::abs(slope) >= 1 / kMost && std::abs(intercept) <= kMost;
   if (!can_be)
     throw Error("the values are scaled by " + text_of(slope) + " and shifted by " + text_of(intercept), where,
@@ -104,7 +104,7 @@ void check_scale(double slope, double intercept, const std::string& where) {
 
 std::optional<std::vector<std::string>> names_of_pattern(std::string_view pattern, std::int64_t first,
                                                          std::int64_t last, std::int64_t step) {
-  // Accepts only one directive such as %d, %5d or %05d, which suffices for slice numbers.
+  // Accepts a pattern with only one directive such as %d, %5d or %05d. This suffices for slice numbers.
   const std::size_t percent = pattern.find('%');
   if (percent == std::string_view::npos) return std::nullopt;
   std::size_t end = percent + 1;

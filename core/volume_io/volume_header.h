@@ -22,7 +22,7 @@ enum class VoxelType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32,
 
 int size_of(VoxelType type);                                           // in bytes
 std::string_view to_string(VoxelType type);                            // "uint8" ... "float64"
-std::optional<VoxelType> voxel_type_from_text(std::string_view text);  // parses a name that to_string() returns
+std::optional<VoxelType> voxel_type_from_text(std::string_view text);  // inverse of to_string()
 
 // Calls body(T{}), where T is the C++ type of a voxel, and returns its result.
 template <class Body>
@@ -41,7 +41,7 @@ auto visit_voxel_type(VoxelType type, const Body& body) {
   }
 }
 
-// Encoding of voxel data. Deflate: gzip or zlib, which the data's first byte tells.
+// Encoding of the voxel data. Deflate means gzip or zlib; the first byte of the data tells which.
 enum class Encoding : std::uint8_t { Raw, Deflate, Bzip2, Ascii, Hex };
 
 using KeyValues = std::map<std::string, std::string, std::less<>>;
@@ -54,30 +54,30 @@ struct VolumeHeader {
   bool big_endian = false;
   double slope = 1, intercept = 0;  // a voxel's value is slope * stored + intercept
 
-  // Names of the files with the voxel data. None: the data are in the header's own file, from `byte_skip` on. Several:
-  // each file has the same number of slices.
+  // Names of the files with the voxel data. If there are none, the data are in the header's own file, from `byte_skip`
+  // on. If there are several, each file has the same number of slices.
   std::vector<std::string> data_names;
-  std::int64_t line_skip = 0;                    // lines to skip first, in every data file
-  std::int64_t byte_skip = 0;                    // bytes to skip next, before decoding; -1: the data end the file
-  std::int64_t decoded_skip = 0;                 // bytes to skip after decoding
+  std::int64_t line_skip = 0;     // lines to skip first, in each data file
+  std::int64_t byte_skip = 0;     // bytes to skip next, before decoding; -1: the data are the file's last bytes
+  std::int64_t decoded_skip = 0;  // bytes to skip after decoding, before the first voxel
   std::optional<std::int64_t> compressed_bytes;  // size that the header states, possibly wrong
 
   KeyValues keys;     // `key:=value` lines of NRRD
-  TissueTable named;  // names and colours that the header gives to file values; Tissue::label is not set
+  TissueTable named;  // names and colours of voxel values according to the header; Tissue::label is not set
   std::vector<std::string> warnings;
 };
 
-// Grid as a parser read it, before checks: sizes of any number of axes, spacing and origin in mm, and direction.
+// A grid as a parser has read it, before any check. It can have any number of axes. Spacing and origin are in mm.
 struct RawGrid {
   std::vector<std::int64_t> sizes;
   glm::dvec3 spacing{1}, origin{0};
   glm::dmat3 direction{1};
 };
 
-// Checks a grid and returns it. It must have at least one voxel along each axis, at most 2^40 voxels and three axes
-// with more than one voxel, a positive finite spacing, and a finite invertible direction. When a column of the
-// direction is not of unit length, its length scales the spacing. Adds a warning when the axes are not at right angles.
-// Throws Error, which names the field that is wrong.
+// Checks a grid and returns it. The grid must have at least one voxel along each axis, at most 2^40 voxels, at most
+// three axes with more than one voxel, a positive finite spacing, and a finite invertible direction. When a column of
+// the direction is not of unit length, its length scales the spacing. Adds a warning when the axes are not at right
+// angles. Throws an Error that names the wrong field.
 //   where  the file, for messages
 Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std::string>& warnings);
 
@@ -85,7 +85,7 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
 // and |intercept| must be at most 1e15.
 void check_scale(double slope, double intercept, const std::string& where);
 
-// Returns a grid whose steps from voxel to voxel along its axes are the columns of `columns`, mm. The columns' lengths
+// Returns a grid. The columns of `columns` are the steps from voxel to voxel along the grid's axes, mm: their lengths
 // become the spacing, their directions the direction.
 RawGrid grid_from_columns(const std::vector<std::int64_t>& sizes, const glm::dmat3& columns, const glm::dvec3& origin);
 

@@ -20,12 +20,12 @@
 namespace limber {
 
 namespace {
-// Voxels per chunk, few enough to stay in a cache between reading and decoding.
+// Number of voxels in a chunk. A chunk this small stays in a processor cache between reading and decoding.
 constexpr std::size_t kChunkVoxels = 1 << 14;
-constexpr std::size_t kPageVoxels = 1 << 11;  // labels per memory page of 4 KB
+constexpr std::size_t kPageVoxels = 1 << 11;  // number of labels in a memory page of 4 KB
 
 void check_memory(const Grid& grid, std::int64_t bytes_per_voxel, const Path& path) {
-  // Requires that a tenth of the free memory is left for everything else.
+  // The volume may use at most nine tenths of the free memory, so that a tenth is left for everything else.
   const double needed = static_cast<double>(grid.voxel_count()) * static_cast<double>(bytes_per_voxel);
   const double available = static_cast<double>(available_memory());
   if (needed > 0.9 * available)
@@ -35,8 +35,8 @@ void check_memory(const Grid& grid, std::int64_t bytes_per_voxel, const Path& pa
                 path.string(), "use a coarser spacing or a larger machine");
 }
 
-// Calls body(voxels, count, first) for every chunk of the volume: `count` voxels from voxel `first` on, in native byte
-// order.
+// Calls body(voxels, count, first) for every chunk of the volume. A chunk has `count` voxels, the first of which is
+// voxel `first`, in native byte order.
 template <class Body>
 void for_chunks(OpenedVolume& opened, Progress& progress, const Body& body) {
   const VolumeHeader& header = opened.header;
@@ -72,8 +72,8 @@ Error no_label(LabelDecoder::Problem problem, double value, const Path& path) {
                "this looks like a grey image or a weight; give a label volume");
 }
 
-// Returns one tissue per label. `values` lists the labels that the volume contains with their values in the file, and
-// `named` what the file's header states about such values.
+// Returns one tissue for each label. `values` lists the labels of the volume with their values in the file. `named`
+// holds what the file's header states about such values.
 TissueTable tissues_of(const std::vector<std::pair<Label, double>>& values, const TissueTable& named) {
   const FileValueIndex by_value(named);
   TissueTable table;
@@ -113,8 +113,8 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
         const auto problem = decoder.decode(from, some, header.voxel_type, header.slope, header.intercept, to);
         if (problem != LabelDecoder::Problem::None) throw no_label(problem, decoder.bad_value(), path);
       };
-      // In a page of zero bytes all labels equal the first one. When that is air, nothing is written, because the new
-      // volume is full of air, and pages that are never written use no memory.
+      // When all stored bytes of a page are zero, all its voxels have one label. If that label is air, the page is not
+      // written, because the new volume is already all air and pages that are never written use no memory.
       Label first_label = 1;
       if (is_all_zero(from, page * voxel_bytes)) decode(1, &first_label);
       if (first_label != 0) decode(page, &voxels[static_cast<std::size_t>(first) + done]);
@@ -172,7 +172,7 @@ VolumeSummary summarize_volume(const Path& path) {
       const T* values = static_cast<const T*>(chunk);
       for (std::size_t i = 0; i < count; ++i) {
         const double value = static_cast<double>(values[i]) * header.slope + header.intercept;
-        summary.minimum = value < summary.minimum ? value : summary.minimum;  // a NaN value changes nothing
+        summary.minimum = value < summary.minimum ? value : summary.minimum;  // a NaN value is ignored
         summary.maximum = value > summary.maximum ? value : summary.maximum;
       }
     });

@@ -22,7 +22,7 @@
 
 namespace limber {
 
-// Format and voxel type of a file, so that a result can be written in the same way.
+// Format and voxel type of the file that was read, so that a result can be written in the same way.
 struct FileType {
   std::string format;      // "NRRD", "MetaImage", "NIfTI-1", "NIfTI-2", "VTK image", "DICOM", "Virtual Family"
   std::string voxel_type;  // "uint8" ... "int64", "float32", "float64"
@@ -31,9 +31,10 @@ struct FileType {
 
 struct VolumeFile {
   LabelVolume volume;
-  TissueTable tissues;  // one entry per label in the volume, with what the file states about it
+  TissueTable tissues;  // one entry for each label of the volume, with what the file states about it
   FileType type;
-  // One line for each wrong header field despite complete data, and for a volume without tissue.
+  // Warnings: one line for each wrong header field in a file whose data are complete, and one for a volume without
+  // tissue.
   std::vector<std::string> warnings;
 };
 
@@ -45,30 +46,31 @@ struct GreyVolume {
   std::vector<std::string> warnings;
 };
 
-// What `info` shows about a label or grey volume: header, value range and label counts, without the voxels.
+// What the command `info` shows about a label or grey volume: header, value range and label counts, without the voxels.
 struct VolumeSummary {
   Grid grid;
   FileType type;
-  bool is_label = true;     // false when a value is no whole number or there are more than 65 535 labels
-  bool looks_grey = false;  // true when !is_label, or when most neighbouring voxels differ, as in an image
+  bool is_label = true;     // false: a value is not a whole number, or there are more than 65 535 labels
+  bool looks_grey = false;  // true: not labels, or most neighbouring voxels differ, as in a grey image
   struct Count {
     double value;
     std::int64_t voxels;
     std::string name;
   };
-  std::vector<Count> labels;  // voxels per value, sorted by value, 0 included
+  std::vector<Count> labels;  // number of voxels of each value, sorted by value, 0 included
   double minimum = 0, maximum = 0;
   std::vector<std::string> warnings;
 };
 
-// Reads a label volume. Throws Error when the file is not a complete label volume; the page above lists the reasons.
+// Reads a label volume. Throws Error when the file is not a complete label volume; the comment at the top of this file
+// lists the reasons.
 VolumeFile read_volume(const Path& path, Progress& progress = no_progress());
 GreyVolume read_grey_volume(const Path& path, Progress& progress = no_progress());
 VolumeSummary summarize_volume(const Path& path);
 bool is_volume_path(const Path& path);  // true for a volume's file name and for a folder with DICOM
 
-// Returns whether the file contains skin weights. They are also stored in NRRD files (skin/weights_io), in which the
-// key `limber_bones` distinguishes them from volumes.
+// Returns true if the file contains skin weights. Weights are also stored in NRRD files (skin/weights_io); the key
+// `limber_bones` distinguishes them from volumes.
 bool is_weights_path(const Path& path);
 struct WeightsSummary {
   std::string bones;  // names of the bones, as JSON
@@ -77,12 +79,12 @@ struct WeightsSummary {
 WeightsSummary summarize_weights(const Path& path);
 
 // Throws Error when no volume can be written to `path`: no format has its extension, or its folder is missing. Commands
-// call this before they compute.
+// call this first, so that no computed result is lost.
 void check_writable(const Path& path);
 
-// Writes a label volume in the format of the extension. Voxels get the tissues' file values as `type.voxel_type`, or a
-// wider type when a value does not fit. Names and colours are written where the format can store them (.seg.nrrd; other
-// NRRD as key/value pairs).
+// Writes a label volume in the format of the path's extension. The file contains the tissues' original file values.
+// Their type is `type.voxel_type`, or a wider type when a value does not fit. Names and colours are written where the
+// format can store them (as segments in .seg.nrrd, as key/value pairs in other NRRD files).
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues = {},
                   const FileType& type = {});
 void write_grey_volume(const GreyVolume& volume, const Path& path);

@@ -18,7 +18,7 @@ namespace limber {
 namespace fs = std::filesystem;
 
 PlainFile::PlainFile(const Path& path) {
-  // O_NONBLOCK, because to open a pipe would block otherwise.
+  // O_NONBLOCK is needed because opening a pipe would otherwise wait for a writer.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
   struct stat status {};
@@ -65,8 +65,8 @@ Path header_path(const Path& given) {
   return path.replace_extension(".hdr");
 }
 
-// Returns the path of the data file `name`. Throws Error unless the file, after symbolic links are resolved, lies in
-// the header's folder.
+// Returns the path of the data file `name`. Throws Error unless the file lies in the header's folder after symbolic
+// links are resolved.
 Path checked_data_path(const Path& header_path, const std::string& name) {
   const Path relative(name);
   const auto outside = [&] {

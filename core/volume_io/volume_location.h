@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Locates a volume and opens its files. This code only looks at file names and for the bytes that mark DICOM. All else
-// in a file is parsed by open_volume.cpp and dicom.cpp, which access files only through VolumeFiles. So the same
+// Locates a volume and opens its files. Of the files' content, this code only checks the bytes that mark DICOM.
+// Everything else is parsed by open_volume.cpp and dicom.cpp, which access files only through VolumeFiles. So the same
 // parsers work in a process that may not open files: there, VolumeFiles asks the program to open them
 // (serve_volume.cpp).
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace limber {
 
-// A regular file opened for reading; not a folder, pipe or device.
+// An open file that can be read. It is a regular file, not a folder, pipe or device.
 class PlainFile {
  public:
   explicit PlainFile(const Path& path);  // throws Error
@@ -28,7 +28,7 @@ class PlainFile {
 
   int descriptor() const { return descriptor_; }
   std::int64_t size() const { return size_; }  // bytes
-  // Reads `bytes` bytes from `offset` on and returns how many were read: fewer only at the file's end.
+  // Reads `bytes` bytes from `offset` on and returns how many bytes were read. These are fewer only at the file's end.
   std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const;
 
  private:
@@ -36,14 +36,14 @@ class PlainFile {
   std::int64_t size_ = 0;
 };
 
-// Returns the file's first bytes, at most `most`.
+// Returns the first `most` bytes of the file, or all bytes of a shorter file.
 std::string first_bytes(const PlainFile& file, std::int64_t most);
-constexpr std::int64_t kLargestHeader = 16 << 20;  // bytes; a longer text is not taken for a header
+constexpr std::int64_t kLargestHeader = 16 << 20;  // upper limit on the size of a header, bytes
 
 struct VolumeLocation {
-  Path path;  // as the user named it
+  Path path;  // the path that the user gave
   bool is_dicom = false;
-  std::vector<Path> headers;  // the file with the header; for DICOM all images, sorted by name
+  std::vector<Path> headers;  // the header's file; for DICOM all images, sorted by name
 
   Path folder() const { return headers.front().parent_path(); }
 };
@@ -59,10 +59,10 @@ class VolumeFiles {
   const VolumeLocation& location() const { return location_; }
 
   virtual PlainFile open_header(std::size_t index) = 0;  // throws Error
-  // Throws Error when a data file is missing or, after links are resolved, lies outside the header's folder.
+  // Throws Error when a data file is missing or, after symbolic links are resolved, lies outside the header's folder.
   virtual void check_data(const std::vector<std::string>& names) = 0;
   virtual PlainFile open_data(const std::string& name) = 0;  // throws Error as check_data() does
-  virtual bool has_data(const std::string& name) = 0;        // whether check_data() accepts the name
+  virtual bool has_data(const std::string& name) = 0;        // true if check_data() accepts the name
   // Announces that the parser may soon allocate up to this many bytes of memory at once.
   virtual void expect_memory(std::size_t) {}
 

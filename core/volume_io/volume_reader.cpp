@@ -27,10 +27,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kAskMilliseconds = 20;                 // interval between two checks whether the user cancelled
-constexpr int kPipeBytes = 1 << 20;                  // size of the pipe, the largest that the kernel usually grants
+constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether the user has cancelled
+constexpr int kPipeBytes = 1 << 20;   // requested pipe buffer, bytes: the largest that the kernel usually grants
 constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
-constexpr int kNotLoaded = 127;                      // exit code when the system finds a library of the program missing
+constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
 
 class Descriptor {
@@ -50,20 +50,21 @@ Error no_reader(const Path& program) {
   return {"the reader of volumes cannot be started", program.string(), std::strerror(errno)};
 }
 
-// Converts an Error's text "what: where: what to do" back to an Error.
+// Converts the text of an Error, "what: where: what to do", back to an Error.
 Error error_from(const std::string& text, const std::string& where) {
   const std::size_t first = text.find(": "), last = text.rfind(": ");
   if (first == std::string::npos || first == last) return {text, where, kHarmful};
   return {text.substr(0, first), text.substr(first + 2, last - first - 2), text.substr(last + 2)};
 }
 
-// The two ends of a channel between program and reader: `ours` is the program's, which never blocks, `its` the
-// reader's.
+// The two ends of a channel between this program and the reader process: `ours` is this program's end and never blocks,
+// `its` is the reader's end.
 struct Ends {
   Descriptor ours, its;
 };
 
-// Creates the channel for messages to the reader. It is a socket, because open files are sent with the messages.
+// Creates the channel for messages to the reader. The channel is a socket, because descriptors of open files are sent
+// with the messages.
 Ends make_orders(const Path& program) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw no_reader(program);
@@ -99,10 +100,10 @@ class ReaderProcess {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
   }
 
-  // Returns the exit status of the reader's process, which has closed its pipe and so should end soon. Waits up to 0.1
-  // s; returns nothing when the process still runs.
+  // Returns the exit status of the reader's process. A reader that has closed its pipe should end soon, so this
+  // function waits up to 0.1 s. Returns nothing when the process still runs.
   std::optional<int> ended_status() {
-    constexpr int kMoments = 100;  // upper limit on the waits, each of a millisecond
+    constexpr int kMoments = 100;  // upper limit on the number of waits, each of one millisecond
     for (int i = 0; id_ > 0 && i < kMoments; ++i) {
       int status = 0;
       if (::waitpid(id_, &status, WNOHANG) == id_) {
@@ -135,8 +136,8 @@ class ReaderProcess {
   pid_t id_ = -1;
 };
 
-// Transfers bytes between the program and its reader. While it waits, it checks whether the user cancelled and whether
-// the reader makes progress.
+// Transfers bytes between the program and its reader. While it waits for the reader, it checks whether the user has
+// cancelled and whether the reader makes progress.
 class Conversation {
  public:
   Conversation(const VolumeLocation& location, const ReaderSettings& settings, Progress& progress)
@@ -181,7 +182,7 @@ class Conversation {
   }
   std::string read_bytes(const MessageHead& head) {
     require(head.size <= kLongestMessage);
-    constexpr std::size_t kStep = 1 << 20;  // bytes; memory for a message grows by steps as its bytes arrive
+    constexpr std::size_t kStep = 1 << 20;  // bytes; memory for a message grows in such steps, only as bytes arrive
     std::string bytes;
     while (bytes.size() < head.size) {
       const std::size_t before = bytes.size(), more = std::min<std::size_t>(kStep, head.size - before);
@@ -191,7 +192,7 @@ class Conversation {
     return bytes;
   }
 
-  // Sets the name of the file that the reader parses now, for error messages.
+  // Remembers the name of the file that the reader is parsing, for error messages.
   void parses(const std::string& file) { parsed_ = file; }
   const std::string& parsed() const { return parsed_; }
 
@@ -227,8 +228,8 @@ class Conversation {
     if (::poll(&ready, 1, kAskMilliseconds) == 0) watch();
   }
 
-  // Throws Error when the reader has sent nothing for `busy_seconds` of processor time or `silent_seconds` of elapsed
-  // time. Called when nothing has arrived for kAskMilliseconds.
+  // Throws Error when the reader has sent nothing during `busy_seconds` of its processor time or `silent_seconds` of
+  // elapsed time. It is called when nothing has arrived for kAskMilliseconds.
   void watch() {
     const double processor = process_.processor_seconds();
     const auto now = Clock::now();
@@ -274,7 +275,7 @@ class Conversation {
   double busy_at_sign_ = 0;
 };
 
-// The source of the voxels that a reader process decodes. It answers the reader's questions meanwhile.
+// A source of voxels that a reader process decodes. While it waits for voxels, it answers the reader's questions.
 class ReaderVoxels final : public VoxelSource {
  public:
   ReaderVoxels(const VolumeLocation& location, Holding holding, Progress& progress, const ReaderSettings& settings)
@@ -322,8 +323,8 @@ class ReaderVoxels final : public VoxelSource {
 
   std::string await(Message kind) { return talk_.read_bytes(next_of(kind)); }
 
-  // Answers the reader's questions until a message of kind `kind` begins, and returns its head. Throws Error for any
-  // other message.
+  // Waits for a message of kind `kind` and returns its head. Answers the reader's questions until then. Throws Error
+  // for any other message.
   MessageHead next_of(Message kind) {
     for (;;) {
       const MessageHead head = talk_.read_head();
@@ -372,7 +373,7 @@ class ReaderVoxels final : public VoxelSource {
   const ReaderSettings settings_;
   LocalFiles files_;
   Conversation talk_;
-  std::int64_t promised_ = 0;  // bytes of voxels that the header promised and no message has announced yet
+  std::int64_t promised_ = 0;  // voxel bytes that the header promised and no Voxels message has announced yet
   std::size_t left_ = 0;       // bytes not yet read of the current Voxels message
 };
 

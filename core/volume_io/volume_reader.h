@@ -30,20 +30,20 @@ constexpr const char* kReaderName = "limber_reader";
 
 struct ReaderSettings {
   Path program;                                       // path of limber_reader
-  std::size_t memory_bytes = std::size_t{256} << 20;  // memory limit; for DICOM images it grows with their stated size
+  std::size_t memory_bytes = std::size_t{256} << 20;  // memory limit; it grows with the stated size of DICOM images
   double busy_seconds = 20;     // the reader is killed after this processor time without sending data
   double silent_seconds = 120;  // the reader is killed after this elapsed time without sending data
 };
 
-// Starts a reader and returns when it has sent the volume's header. The result's member `voxels` receives the voxels;
-// its destructor ends the reader.
+// Starts a reader process and returns when it has sent the volume's header. The result's member `voxels` receives the
+// voxels; its destructor ends the reader.
 //   progress  must live as long as `voxels`
-//   throws Error, which says what is wrong with the file or how the reader ended, and Cancelled
+//   throws Cancelled, and an Error that says what is wrong with the file or how the reader ended
 OpenedVolume open_in_reader(const VolumeLocation& location, Holding holding, Progress& progress,
                             const ReaderSettings& settings);
 
-// Starts a reader and returns the protections that are in force for it on this machine. Returns no protections when
-// limber_reader is missing.
+// Starts a reader process and returns which sandbox protections are in force for it on this machine. Returns no
+// protections when limber_reader is missing.
 Protection reader_protection();
 
 }  // namespace limber

@@ -25,8 +25,9 @@ const VolumeFormat::Written& writer_of(const Path& path) {
 
 void write(const Voxels& voxels, const Path& path) { writer_of(path).write(voxels, path); }
 
-// Returns a voxel type that holds all values from `lowest` to `highest`: `wanted` when it suffices, else the narrowest
-// wider type of its family (signed, unsigned, real). A negative `lowest` turns an unsigned type into a signed one.
+// Returns a voxel type that holds all values from `lowest` to `highest`. This is `wanted` when it suffices, else the
+// narrowest wider type of its family (signed, unsigned or real). A negative `lowest` turns an unsigned type into a
+// signed one.
 VoxelType type_that_holds(double lowest, double highest, std::optional<VoxelType> wanted) {
   using enum VoxelType;
   const auto holds = [&](VoxelType type) {
@@ -102,8 +103,8 @@ void write_volume(const LabelVolume& volume, const Path& path, const TissueTable
 
 void write_grey_volume(const GreyVolume& volume, const Path& path) {
   writer_of(path);
-  // The file keeps its original voxel type when every value fits it; interpolated values, which are fractional, make it
-  // float.
+  // The file keeps its original voxel type when this type can hold every value. Interpolated values are fractional, so
+  // they are written as floats.
   const auto wanted = voxel_type_from_text(volume.type.voxel_type).value_or(VoxelType::Float32);
   const bool keeps = visit_voxel_type(wanted, [&]<class T>(T) {
     if constexpr (std::is_floating_point_v<T>) return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Defines the interface for reading the voxels of one volume in storage order, from data files or a DICOM series.
+// Defines the interface for reading the voxels of one volume in storage order, from data files or from a DICOM series.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,8 @@ class VoxelSource {
   // or are damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
 
-  // Verifies checksums after the last voxel was read. Returns warnings, one line each: for data beyond what the header
-  // promises, and for wrong header fields.
+  // Verifies checksums; call it after the last voxel was read. Returns warnings, one line each: for data beyond what
+  // the header promises, and for wrong header fields.
   virtual std::vector<std::string> finish() = 0;
 };
 
@@ -32,16 +32,16 @@ struct OpenedVolume {
   std::unique_ptr<VoxelSource> voxels;  // null when only the header was requested
 };
 
-// The key by which an NRRD file with skin weights differs from one with a volume.
+// An NRRD file with this key contains skin weights, not a volume.
 constexpr const char* kWeightsKey = "limber_bones";
 
-// The kind of content to read. Vectors: a displacement field, read as a volume with three times as many voxels in x.
-// Header: only the header, of a file with any content.
+// The content to read from a file. Vectors is a displacement field, which is read as a volume with three times as many
+// voxels in x. Header means only the header, whatever the file contains.
 enum class Holding : std::uint8_t { Volume, Weights, Vectors, Header };
 
-// Reads and checks the header and opens the voxels. The file's format is recognized by content and extension. The file
-// is parsed in a process without rights (volume_reader.h), or in this one when limber_reader is missing. Throws Error,
-// also for a file of weights when a volume is requested.
+// Reads and checks the header and opens the voxels. The format is recognized by the file's content and extension. The
+// file is parsed in a process without rights (volume_reader.h), or in this process when limber_reader is missing.
+// Throws Error when the file is not valid, or contains weights when a volume is requested.
 OpenedVolume open_volume(const Path& path, Progress& progress = no_progress(), Holding holding = Holding::Volume);
 
 // Opens a volume as open_volume() does, but always parses it in this process.

@@ -15,8 +15,8 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kChunk = 1 << 16;
-// Upper limits on the bytes into which one byte of compressed data can unpack. For deflate it is 1032. A bzip2 block of
-// 900 000 bytes takes at least about 40 bytes.
+// Upper limits on the number of bytes into which one byte of compressed data can unpack. The limit of deflate is 1032.
+// A bzip2 block of 900 000 bytes takes at least about 40 compressed bytes.
 constexpr std::int64_t kDeflateMost = 1032, kBzip2Most = 25000;
 
 const char* const kExportAgain = "the file is cut off or damaged; export or download it again";
@@ -34,8 +34,8 @@ class ByteSource {
     place_ = place;
     next_ = end_ = 0;
   }
-  // Reads the next `bytes` bytes and returns how many were read: fewer only at the file's end. What the buffer lacks is
-  // read directly into `to`.
+  // Reads the next `bytes` bytes and returns how many bytes were read. These are fewer only at the file's end. Bytes
+  // that are not in the buffer are read directly into `to`.
   std::size_t read(void* to, std::size_t bytes) {
     std::size_t done = std::min(bytes, end_ - next_);
     std::memcpy(to, buffer_.data() + next_, done);
@@ -47,8 +47,8 @@ class ByteSource {
     }
     return done;
   }
-  // Returns the bytes in the buffer that were not read yet, after refilling an empty buffer. Returns none at the end of
-  // the file.
+  // Returns the buffered bytes that are not consumed yet. Refills the buffer first when it is empty. Returns no bytes
+  // at the end of the file.
   std::string_view peek() {
     if (next_ == end_) {
       end_ = file_.read_at(place_, buffer_.data(), buffer_.size());
@@ -67,14 +67,15 @@ class ByteSource {
   std::int64_t place_ = 0;
 };
 
-// Base class of the decoders, one per encoding. read() returns the number of decoded bytes, which is below `bytes` only
-// at the end of the data. It throws Error when the data are damaged.
+// Base class of the decoders; each encoding has one. read() returns the number of decoded bytes, which is below `bytes`
+// only at the end of the data, and throws Error when the data are damaged.
 class Decoder {
  public:
   explicit Decoder(ByteSource& source) : source_(source) {}
   virtual ~Decoder() = default;
   virtual std::size_t read(unsigned char* to, std::size_t bytes) = 0;
-  // Returns whether the data end after the bytes that were read. Throws Error when a checksum at their end is wrong.
+  // Returns true if no data follow the bytes that were read. Throws Error when a checksum at the end of the data is
+  // wrong.
   virtual bool ends_here() {
     unsigned char more;
     return read(&more, 1) == 0;
@@ -116,7 +117,7 @@ class DeflateDecoder final : public Decoder {
   }
 
  private:
-  // Starts the next gzip stream, because a gzip file may contain several streams in a row (as pigz and bgzip write).
+  // Starts the next gzip stream. A gzip file may contain several streams in a row; pigz and bgzip write such files.
   void start_next_member() {
     if (stream_.behind() > 0) source_.go_to(source_.place() - static_cast<std::int64_t>(stream_.behind()));
     const std::string_view rest = source_.peek();
@@ -165,7 +166,7 @@ class Bzip2Decoder final : public Decoder {
   bool ended_ = false;
 };
 
-// Converts numbers in a text, separated by blanks or commas, to voxels in memory.
+// Converts numbers in a text to voxels in memory. Blanks or commas separate the numbers.
 class AsciiDecoder final : public Decoder {
  public:
   AsciiDecoder(ByteSource& source, VoxelType type, bool big_endian) : Decoder(source), type_(type), swap_(big_endian) {}
@@ -295,8 +296,8 @@ void go_to_data(ByteSource& source, const VolumeHeader& header, std::int64_t raw
   source.go_to(source.place() + header.byte_skip);
 }
 
-// Throws Error when the file is too small to contain `bytes` bytes of decoded voxels. Called before memory is
-// allocated.
+// Throws Error when the file is too small to contain `bytes` bytes of decoded voxels. Call this before memory is
+// allocated for them.
 void check_room(const ByteSource& source, const VolumeHeader& header, std::int64_t bytes) {
   const std::int64_t there = source.left(), voxel = size_of(header.voxel_type);
   std::int64_t most = there;
@@ -319,7 +320,7 @@ struct VoxelStream::Sources {
   const VolumeHeader header;
   std::int64_t bytes_each = 0;
   std::int64_t current = 0;  // index of the current data file
-  std::int64_t left = 0;     // bytes left in the current file
+  std::int64_t left = 0;     // encoded bytes left in the current data file
   std::unique_ptr<ByteSource> source;
   std::unique_ptr<Decoder> decoder;
   std::int64_t data_start = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads and decodes the voxels that a header promises, in storage order and in chunks of any size. Throws Error when
-// they are incomplete, and never fills them up. Each byte is read and decompressed once, so that checking a file needs
+// voxels are missing, and never invents their values. Each byte is read and decompressed once, so checking a file needs
 // no second pass and no buffer for the whole file.
 #pragma once
 
@@ -16,9 +16,9 @@ namespace limber {
 
 class VoxelStream final : public VoxelSource {
  public:
-  // Checks the data files and opens the first one. They must be regular files inside the header's folder, also after
-  // links are resolved. They must be large enough for the voxels that the header promises; compressed files, at the
-  // best compression ratio of their encoding. Throws Error, which names the data file.
+  // Checks the data files and opens the first one. Each must be a regular file inside the header's folder, after
+  // symbolic links are resolved. The files must be large enough for the voxels that the header promises; for compressed
+  // files, the best compression ratio of their encoding is assumed. Throws an Error that names the data file.
   VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader& header);
   ~VoxelStream() override;
 

@@ -16,10 +16,10 @@
 
 namespace limber {
 
-// A file that is written piece by piece; pieces between begin_deflate() and end_deflate() are compressed.
+// A file that is written piece by piece. Pieces written between begin_deflate() and end_deflate() are compressed.
 class OutputFile {
  public:
-  explicit OutputFile(const Path& path);  // throws Error, as all members that write do
+  explicit OutputFile(const Path& path);  // throws Error; so do all members that write
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -55,14 +55,14 @@ struct Voxels {
   std::vector<std::pair<std::string, std::string>> keys = {};  // additional keys of NRRD
 };
 
-// Writes all voxels as bytes, in this machine's byte order; they are compressed only inside begin_deflate().
+// Writes all voxels in this machine's byte order. They are compressed only between begin_deflate() and end_deflate().
 void write_voxels(OutputFile& out, const Voxels& voxels);
-// Writes all voxels; compresses them when `voxels.compress` is set.
+// Writes all voxels, compressed when `voxels.compress` is set.
 void write_data(OutputFile& out, const Voxels& voxels, Deflater::Wrap wrap);
 void write_text(OutputFile& out, const std::string& text);
 
-// Writes the voxels into a file beside the header, then the header, so that a header never names data that do not
-// exist.
+// Writes the voxels into a data file beside the header, and then the header. In this order, no header ever names data
+// that do not exist.
 //   header  returns the header's text for the data file's name and size
 void write_detached(const Voxels& voxels, const Path& header_path, const std::string& data_extension,
                     Deflater::Wrap wrap,

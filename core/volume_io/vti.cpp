@@ -24,11 +24,11 @@ constexpr std::string_view kZlib = "vtkZLibDataCompressor";
 
 using Attributes = std::map<std::string, std::string, std::less<>>;
 
-// What has been read of the file's XML header.
+// The content of the file's XML header as far as it has been read.
 struct VtiHeader {
   Attributes file, image, piece, array;  // attributes of VTKFile, ImageData, Piece and the chosen DataArray
   bool in_cells = false;
-  std::string appended;       // encoding of appended data: "raw", "base64"; empty: none are appended
+  std::string appended;       // encoding of appended data: "raw", "base64"; empty: no appended data
   std::int64_t data_at = -1;  // offset of the data in the file, bytes
 };
 
@@ -42,7 +42,7 @@ class VtiText {
         XML_ParserCreate(nullptr), XML_ParserFree);
     if (!parser) throw std::bad_alloc();
     parser_ = parser.get();
-    XML_SetHashSalt(parser_, 0x51ed270b);  // fixed, because a sandbox cannot open /dev/urandom for a random salt
+    XML_SetHashSalt(parser_, 0x51ed270b);  // a fixed salt, because a sandbox cannot open /dev/urandom for a random one
     XML_SetUserData(parser_, this);
     XML_SetElementHandler(
         parser_, [](void* self, const char* name, const char** a) { static_cast<VtiText*>(self)->open(name, a); },
@@ -97,7 +97,7 @@ class VtiText {
     if (name == "AppendedData" && header_.array["format"] == "appended") begin_appended(all(attributes));
   }
 
-  // Chooses the array with the name in the attribute Scalars, else the first one; it must have one component.
+  // Takes the array with the name in the attribute Scalars, else the first array; it must have one component.
   void consider(Attributes array) {
     const bool one = !array.contains("NumberOfComponents") || array["NumberOfComponents"] == "1";
     const bool named = !wanted_.empty() && array["Name"] == wanted_;
@@ -121,14 +121,14 @@ class VtiText {
     stop();
   }
 
-  // Returns the file offset of the first byte after the XML tag that the parser reports now.
+  // Returns the file offset of the first byte behind the XML tag that the parser is reporting.
   std::int64_t behind_tag() const { return XML_GetCurrentByteIndex(parser_) + XML_GetCurrentByteCount(parser_); }
 
   void stop() {
     stopped_ = true;
     XML_StopParser(parser_, XML_FALSE);
   }
-  // Stops the parser and stores an Error, which is thrown when the parser, which is C code, has returned.
+  // Stops the parser and stores an Error, which is thrown after the C code of the parser has returned.
   void fail(const std::string& what, const std::string& remedy) {
     failure_.emplace(what, where_, remedy);
     stop();
@@ -211,7 +211,7 @@ VolumeHeader read_vti_header(VolumeFiles& files, const PlainFile& file, const st
     throw Error("the data are packed by " + in_quotes(compressor), where, "export them with zlib, or not packed");
   const std::string format = attribute(vti.array, "format", "ascii");
   const std::string in = format == "ascii" ? "text" : format == "binary" || vti.appended == "base64" ? "base64" : "raw";
-  // `encoding` describes the data in terms that all formats share; the keys say where the data are in this format.
+  // `encoding` describes the data in terms that all formats share; the keys tell where they are in the file.
   header.encoding = in == "text" ? Encoding::Ascii : compressor.empty() ? Encoding::Raw : Encoding::Deflate;
   header.keys = {{kDataAt, std::to_string(vti.data_at)},
                  {kDataIn, in},
@@ -220,7 +220,7 @@ VolumeHeader read_vti_header(VolumeFiles& files, const PlainFile& file, const st
   return header;
 }
 
-// Reads a file's bytes from a position on, as they are or decoded from base64.
+// Reads a file's bytes from a given offset on. The bytes are returned as they are, or decoded from base64.
 class EncodedBytes {
  public:
   EncodedBytes(PlainFile file, std::int64_t at, bool is_base64, std::string where)
@@ -240,7 +240,7 @@ class EncodedBytes {
       bytes -= some;
     }
   }
-  // Returns the next character of numbers written as text; 0 at the end of the data.
+  // Returns the next character of voxel values that are written as text, or 0 at the end of the data.
   char letter() {
     if (next_ == ready_.size() && !fill_raw()) return 0;
     return ready_[next_] == '<' ? 0 : ready_[next_++];
@@ -339,7 +339,7 @@ class VtiVoxels final : public VoxelSource {
     return value;
   }
 
-  // Reads the table before the blocks: their number, a block's size, the last one's, and each block's compressed size.
+  // Reads the table in front of the blocks: number of blocks, size of a block and of the last one, compressed sizes.
   void read_sizes(std::int64_t promised) {
     const std::uint64_t blocks = number(), block = number(), last = number();
     constexpr std::uint64_t kMostBlocks = 1 << 22;
@@ -362,7 +362,7 @@ class VtiVoxels final : public VoxelSource {
     waiting_.clear();
   }
 
-  // Ends the current block: verifies its checksum and that no data follow its last voxel, then skips its unread bytes.
+  // Ends the current block. Verifies its checksum and its length, then skips the bytes of it that were not read.
   void end_block() {
     char beyond = 0;
     while (inflater_ && !inflater_->ended())
@@ -372,7 +372,7 @@ class VtiVoxels final : public VoxelSource {
       bytes_.read(rest.data(), std::min<std::uint64_t>(left_packed_, rest.size()));
   }
 
-  // Decompresses bytes of the current block into `to` and returns how many were written, at most `room`.
+  // Decompresses bytes of the current block into `to`, at most `room` bytes. Returns how many bytes were written.
   std::size_t inflate_some(char* to, std::size_t room) {
     if (waiting_.empty() && left_packed_ > 0) {
       waiting_.resize(std::min<std::uint64_t>(left_packed_, 1 << 16));
@@ -445,7 +445,7 @@ std::string bytes_of(std::uint64_t number) { return {reinterpret_cast<const char
 void write_blocks(OutputFile& out, const Voxels& voxels) {
   const std::size_t voxel = static_cast<std::size_t>(size_of(voxels.type) * voxels.channels);
   const std::uint64_t total = static_cast<std::uint64_t>(voxels.grid.voxel_count()) * voxel;
-  const std::size_t in_block = kBlock / voxel;  // whole voxels, so that blocks can be filled one by one
+  const std::size_t in_block = kBlock / voxel;  // voxels of a block; whole, so that blocks can be filled one by one
   const std::uint64_t block = in_block * voxel, blocks = (total + block - 1) / block;
   const std::int64_t table_at = out.place();
   write_text(out, bytes_of(blocks) + bytes_of(block) + bytes_of(total % block) +

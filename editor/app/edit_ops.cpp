@@ -12,8 +12,8 @@ namespace {
 std::string nothing_to_undo(const Editor& editor) { return editor.history.can_undo() ? "" : "Nothing to undo"; }
 std::string nothing_to_redo(const Editor& editor) { return editor.history.can_redo() ? "" : "Nothing to redo"; }
 
-// Returns why the rename operator has nothing to rename; "" when it has. It renames the selected tissue, bone or
-// result. A list that has the keyboard focus renames its focused row itself.
+// Returns why the command Rename cannot run, or "" if it can. It renames the selected tissue, the selected bone or the
+// shown result. A list that has the keyboard renames its focused row without this command.
 std::string nothing_to_rename(const Editor& editor) {
   return editor.shown_popup == "Result" || editor.selection.tissue || needs_bone(editor).empty() || shown_result(editor)
              ? ""
@@ -23,7 +23,7 @@ std::string nothing_to_rename(const Editor& editor) {
 void rename(Editor& editor) {
   editor.arrangement().sidebar = true;
   const auto result = shown_result(editor);
-  // A selected bone is renamed only if no tissue is selected.
+  // Renames the selected bone, but only if no tissue is selected.
   if (editor.shown_popup != "Result" && !editor.selection.tissue && needs_bone(editor).empty()) {
     const std::string& name = editor.document().armature->bones[*editor.selection.bone].name;
     editor.open_sections["Outliner"] = editor.outliner.open["armature"] = true;
@@ -40,8 +40,8 @@ void rename(Editor& editor) {
   begin_renaming(editor, "tissues" + std::to_string(tissue->label), tissue->name);
 }
 
-// Goes one step back or forward in the history (undo, redo). If the step restores bones, selects these; otherwise keeps
-// the selected bones, found by their names.
+// Moves one step back or forward in the undo history. Afterwards the bones that the step restored are selected; if
+// there are none, the bones with the same names as before are selected.
 void step(Editor& editor, bool (History::*go)()) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
   (editor.history.*go)();

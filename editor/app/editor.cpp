@@ -44,20 +44,20 @@ constexpr double kCameraMove = 0.18;  // duration of a camera move, s
 constexpr double kLongestRest = 60;   // upper limit on the wait for an event, s, so that every wait ends
 constexpr double kJobPulse = 0.1;     // time between frames while a job runs, s
 constexpr int kJobsAtOnce = 2;
-constexpr int kMostTurns = 200;        // upper limit on the extra passes through the panels per frame, for typed keys
-constexpr int kMostAgain = 3;          // upper limit on passes per frame that are repeated because a widget moved
-constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step of an extra pass, s: almost no time passes
+constexpr int kMostTurns = 200;  // upper limit on the extra draws of the panels in one frame, for typed keys
+constexpr int kMostAgain = 3;    // upper limit on the extra draws of the panels in one frame, after a widget has moved
+constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step in an extra draw of the panels, s: almost no time passes
 constexpr double kUploadTime = 0.008;  // time per frame in which weights are uploaded to the GPU, s
 
-// Returns the picture; creates it at its first use.
+// Returns the picture, and creates it first if it does not exist yet.
 template <class Picture>
 Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
   if (!picture) picture = std::make_unique<Picture>(views.renderer);
   return *picture;
 }
 
-// Draws a view's picture. In a comparison side by side, each view shows volume A or B. In other comparisons a view
-// draws pictures of both, which are laid over each other.
+// Draws a view's picture. If two results A and B are compared side by side, each view shows one of them. In other
+// comparisons a view draws pictures of both, one over the other.
 void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place,
                        double now) {
   const glm::ivec2 size(place.rect.size());
@@ -94,7 +94,7 @@ void move_camera(BodyView& body, double now, bool at_once) {
   if (t >= 1) body.move.reset();
 }
 
-// Returns whether an event is a button press, a wheel step or a key press. Each of these ends a running camera move.
+// Returns true if an event is a button press, a wheel step or a key press. Each of these ends a running camera move.
 bool begins_something(const Event& event) {
   if (const auto* button = std::get_if<ButtonChanged>(&event)) return button->down;
   if (const auto* key = std::get_if<KeyChanged>(&event)) return key->down && key->key < Key::Ctrl;
@@ -105,7 +105,7 @@ void ended(const Editor& editor, const char* part_of_frame) {
   if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
 }
 
-// Starts another ImGui frame without input, so that the panels are drawn again before the frame is shown.
+// Begins another ImGui frame without input, so that the panels are drawn again before the window shows the frame.
 void begin_turn_without_input(Editor& editor) {
   ImGuiIO& io = ImGui::GetIO();
   ImGui::EndFrame();
@@ -221,8 +221,8 @@ void Editor::take_input() {
   dispatch(*this, events, before);
 }
 
-// Passes through the panels once for each typed key that does more than insert a character, without drawing the views
-// again. The input of the last pass remains for the frame that is shown.
+// Draws the panels once for each typed key that does more than insert a character, without drawing the views again. The
+// input after the last of these keys is left to the frame that is shown.
 void Editor::read_typed_text() {
   for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
     layout = layout_of(*this, host.size());
@@ -234,8 +234,8 @@ void Editor::read_typed_text() {
   }
 }
 
-// Handles finished jobs. Their dialogs and messages wait until they neither take the keyboard from a text field nor
-// appear under a pressed mouse button.
+// Handles finished jobs. Their dialogs and messages wait while they would take the keyboard from a text field or appear
+// under a pressed mouse button.
 void Editor::meet_jobs() {
   const std::size_t errors = messages.errors.size();
   of_users_act_ = false;
@@ -313,7 +313,8 @@ void Editor::draw() {
   follow_keyboard(*this);
   if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
   host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
-  // Put the windows of the regions behind popups and dialogs, in the order in which they were drawn.
+  // Moves the ImGui windows of the regions behind popups and dialogs. Among themselves they keep the order in which
+  // they were drawn.
   for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name)
     ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
 }
@@ -336,7 +337,8 @@ void Editor::frame(double time) {
   const bool pressed = input.down(MouseButton::Left) || input.down(MouseButton::Right);
   take_input();
   read_typed_text();
-  // A press or release acts on what the user saw at that moment, so handle it before a finished job changes the panels.
+  // A press or release of a button acts on what the user saw at that moment. It is therefore handled before a finished
+  // job changes the panels.
   if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
     draw();
     note_pressed(*this);

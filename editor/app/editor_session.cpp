@@ -10,7 +10,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kRestBeforeWriting = 1;  // time without changes before the state is written, s
+constexpr double kRestBeforeWriting = 1;  // the state is written after this time without changes, s
 
 Path file_of(const Editor& editor) { return editor.folders.config / "remembered.json"; }
 

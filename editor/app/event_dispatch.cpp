@@ -19,8 +19,8 @@ constexpr double kLongestClick = 0.3;  // longest press that counts as a click, 
 
 bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
 
-// Returns whether a key combination belongs to the focused text field, even if the field does not use it. Combinations
-// with Alt belong to it, because they type characters on many keyboard layouts.
+// Returns true if a chord belongs to the focused text field, even if the field does not use it. Chords with Alt belong
+// to the field, because they type characters on many keyboard layouts.
 bool belongs_to_text(const Chord& chord) {
   if (chord.key >= Key::F1 && chord.key <= Key::F12) return false;
   if (!chord.modifiers.ctrl || chord.modifiers.alt) return true;
@@ -30,14 +30,14 @@ bool belongs_to_text(const Chord& chord) {
   return moves || std::find(std::begin(kEditing), std::end(kEditing), chord.key) != std::end(kEditing);
 }
 
-// Returns whether the start screen uses the key to select a recent file.
+// Returns true if the start screen uses the key to select a recent file.
 bool belongs_to_start_screen(const Chord& chord) {
   return chord.modifiers == Modifiers{} && (chord.key == Key::Up || chord.key == Key::Down || chord.key == Key::Return);
 }
 
 void run_chord(Editor& editor, const Chord& chord) {
   if (editor.start_screen && belongs_to_start_screen(chord)) return;
-  // Any other key that belongs to a command closes the start screen and runs the command.
+  // Any other key that is bound to a command closes the start screen and runs the command.
   if (editor.start_screen && editor.keymap.find(chord, contexts(editor))) editor.start_screen = false;
   if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
 }
@@ -90,7 +90,8 @@ void on_key(Editor& editor, const KeyChanged& event) {
   run_chord(editor, chord);
 }
 
-// Returns whether the pointer is over a button, handle or bar in a view. These handle the left mouse button themselves.
+// Returns true if the pointer is over a button, handle or bar in a view. These widgets handle the left mouse button
+// themselves.
 bool over_widget(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
@@ -99,7 +100,7 @@ bool over_widget(const Editor& editor) {
   });
 }
 
-// Handles a button press in a view or the timeline that may become a drag.
+// Handles the press of a button in a view or the timeline. The press may become a drag.
 void on_press(Editor& editor, MouseButton button) {
   editor.list_focus = {};
   const ViewPlace* view = hovered_view(editor);

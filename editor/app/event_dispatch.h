@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Runs the operators that the user's input events stand for. An event goes first to a running drag, then to a focused
-// text field, then to the keymap's contexts: the area under the pointer, the workspace, selection, view, global. A
-// button press becomes a drag when the pointer moves by 4 px; if the button is released before that, and within 300 ms,
-// the press is a click.
+// Runs the operators that the user's input events are bound to. An event goes first to a running drag, then to a
+// focused text field, then to the contexts of the key map: the area under the pointer, the workspace, selection, view,
+// global. A button press becomes a drag when the pointer moves by 4 px. If the button is released before that, and
+// within 300 ms, the press is a click.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace limber::editor {
 
-// Handles the events of a frame. Call it after ImGui::NewFrame and before the panels are drawn. before: the input state
-// before these events.
+// Handles the events of a frame. Call it after ImGui::NewFrame and before the panels are drawn. `before` is the input
+// state before these events.
 void dispatch(Editor& editor, const std::vector<Event>& events, InputState before);
-// Returns whether a dialog or message that the user did not ask for may take the keyboard and the pointer now.
+// Returns true if a dialog or message that the user did not ask for may take the keyboard and the pointer now.
 bool may_interrupt(const Editor& editor);
 
 }  // namespace limber::editor

@@ -3,7 +3,8 @@
 
 namespace limber::editor {
 
-// Each function returns the operators that one *_ops.cpp file defines. The order is that of the menus.
+// Each function returns the operators that are defined in one file *_ops.cpp. The functions stand in the order of the
+// menus.
 std::vector<Operator> file_operators();
 std::vector<Operator> import_operators();
 std::vector<Operator> export_operators();

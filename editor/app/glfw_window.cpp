@@ -71,8 +71,8 @@ Key key_of_position(int key) {
   return Key::None;
 }
 
-// Returns the letter that the user's keyboard layout has on the key. If that is no Latin letter, returns the key that a
-// US layout has at this position.
+// Returns the letter that the user's keyboard layout has on the key. If this is no Latin letter, returns the key that
+// the US layout has at this position.
 Key key_of(int key, int scancode) {
   const Key position = key_of_position(key);
   if (key < GLFW_KEY_A || key > GLFW_KEY_Z) return position;
@@ -168,7 +168,7 @@ class Window final : public Host {
  private:
   static Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
   void set_callbacks();
-  // Converts GLFW's window coordinates to pixels. On some desktops the two differ.
+  // Converts GLFW's window coordinates to pixels. On some desktops, GLFW's units are larger than pixels.
   glm::vec2 pixels(double x, double y) const {
     glm::ivec2 units;
     glfwGetWindowSize(window_, &units.x, &units.y);
@@ -178,14 +178,14 @@ class Window final : public Host {
   GLFWwindow* window_ = nullptr;
   std::array<GLFWcursor*, 7> cursors_{};
   Cursor cursor_ = Cursor::Arrow;
-  glm::ivec4 windowed_{0};  // position and size to restore after full screen
+  glm::ivec4 windowed_{0};  // position and size of the window before full screen
 };
 
 void Window::set_callbacks() {
   glfwSetCursorPosCallback(
       window_, [](GLFWwindow* w, double x, double y) { of(w).events.push(PointerMoved{of(w).pixels(x, y)}); });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
-    // While a button is held, the drag continues outside the window, so do not report that the pointer left.
+    // While a button is held, a drag continues outside the window, so the event that the pointer left is not sent.
     for (int button = 0; button <= GLFW_MOUSE_BUTTON_MIDDLE; ++button)
       if (glfwGetMouseButton(w, button) == GLFW_PRESS) return;
     if (!entered) of(w).events.push(PointerMoved{glm::vec2(-1e6f)});
@@ -195,7 +195,7 @@ void Window::set_callbacks() {
     of(w).events.push(ButtonChanged{static_cast<MouseButton>(button), action == GLFW_PRESS});
   });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) {
-    // Some desktops turn Shift+wheel into horizontal scrolling; turn it back into vertical scrolling.
+    // Some desktops turn Shift+wheel into horizontal scrolling. This turns it back into vertical scrolling.
     const bool shift =
         glfwGetKey(w, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(w, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
     if (shift && y == 0) std::swap(x, y);
@@ -215,8 +215,7 @@ void Window::set_callbacks() {
                              [](GLFWwindow* w, int focused) { of(w).events.push(FocusChanged{focused == GLFW_TRUE}); });
 }
 
-// Opens the file through a shell that exits at once, so that the editor neither waits for the other program nor ends
-// it.
+// Opens the file by a shell that exits at once. The editor then neither waits for the opened program nor ends it.
 bool Window::open_file(const Path& path) {
   const auto opener = find_program("xdg-open");
   if (!opener) return false;

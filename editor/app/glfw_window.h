@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// Returns the window. Throws Error if no display can be reached, or if the driver has no OpenGL 3.3.
+// Opens the window and returns it. Throws Error if no display can be reached, or if the driver has no OpenGL 3.3.
 std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& title);
 
 }  // namespace limber::editor

@@ -13,14 +13,14 @@ namespace limber::editor {
 class Offscreen : public Host {
  public:
   virtual void resize(const glm::ivec2& size) = 0;
-  // Renders the last presented frame and returns it. Frames are rendered only on request, because a script needs few of
-  // them.
+  // Draws the last presented frame and returns its picture. Frames are drawn only on request, because a script needs
+  // few pictures.
   virtual render::Image picture() = 0;
   virtual glm::vec2 shifted() const = 0;  // sum of all moves of the pointer by shift_pointer(), pixels
-  virtual bool full_screen() const = 0;   // whether the editor asked for full screen
+  virtual bool full_screen() const = 0;   // true if the editor asked for full screen
 };
 
-// Returns the window. Throws Error if EGL gives no OpenGL 3.3 context.
+// Makes the window in memory and returns it. Throws Error if EGL gives no OpenGL 3.3 context.
 std::unique_ptr<Offscreen> open_offscreen(const glm::ivec2& size, double monitor_scale = 1);
 
 }  // namespace limber::editor

@@ -12,7 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-// Time between frames while the window is minimized, s. Nothing is drawn then, but finished jobs are handled.
+// Time between frames while the window is minimized, s. In these frames nothing is drawn, but finished jobs are
+// handled.
 constexpr double kMinimizedRest = 0.25;
 
 double steady_seconds() {
@@ -33,8 +34,8 @@ void play(const StartOptions& options) {
   Player player(editor, *host);
   player.step();
   player.play({{0, {"wait-job"}}});
-  // Discards the journal of the script's edits at the end, so that only a script that was killed leaves edits to
-  // recover.
+  // Discards the journal of the script's edits when the script ends. Edits to recover are then left only by a script
+  // that was killed.
   struct Ending {
     Editor& editor;
     ~Ending() {

@@ -13,7 +13,7 @@ namespace limber::editor {
 struct StartOptions {
   std::vector<Path> files;
   glm::ivec2 size{1600, 900};
-  std::optional<double> scale;       // interface scale; none: the scale in the preferences
+  std::optional<double> scale;       // interface scale; no value: the scale in the preferences
   std::optional<std::string> theme;  // "dark" or "light" in place of the preferences' theme
   Path script;                       // script to play without a display; empty: opens a window
 };

@@ -5,7 +5,8 @@
 
 namespace limber::editor {
 
-// Commits the edits of finished jobs and reports failed jobs. Returns true if anything changed. Call once per frame.
+// Applies the edits of finished jobs to the document and reports failed jobs. Returns true if anything changed. Call it
+// once per frame.
 bool poll_jobs(Editor& editor);
 
 }  // namespace limber::editor

@@ -37,12 +37,14 @@ void browse_keymap(Editor& editor, FileRequest::Kind kind) {
 std::vector<Operator> preferences_operators() {
   return {
       {"edit.preferences", "Preferences...", icon::kPreferences, "Edit",
-       "Change theme, scale, keys, undo, jobs and folders.", [](Editor& e) { e.open_dialog(open_preferences()); }},
+       "Change settings: theme, scale, keys, undo, jobs and folders.",
+       [](Editor& e) { e.open_dialog(open_preferences()); }},
       {"edit.keymap", "Change keys...", icon::kKeyboard, "Edit", "Change which keys run which commands.", open_keys},
       {"edit.import_keymap", "Import keymap...", icon::kImport, "Edit",
-       "Read from a file which keys run which commands.", [](Editor& e) { browse_keymap(e, FileRequest::Kind::Open); }},
+       "Load a keymap (the keys that run commands) from a file.",
+       [](Editor& e) { browse_keymap(e, FileRequest::Kind::Open); }},
       {"edit.export_keymap", "Export keymap...", icon::kExport, "Edit",
-       "Write to a file which keys run which commands, to use it on another machine.",
+       "Save the keymap (the keys that run commands) to a file, to use it on another machine.",
        [](Editor& e) { browse_keymap(e, FileRequest::Kind::Save); }},
       {"edit.other_theme", "Other theme", icon::kTheme, "Edit", "Switch between the dark and the light theme.",
        other_theme},

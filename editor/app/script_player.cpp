@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kDragSteps = 8;             // a drag is divided into this many pointer moves, as by a slow hand
+constexpr int kDragSteps = 8;             // number of pointer moves into which a drag is divided, as by a slow hand
 constexpr double kLongestJob = 300;       // upper limit on the wait for a job, s
 constexpr int kLongestSettling = 20'000;  // upper limit on the frames to wait until the editor is idle
 
@@ -139,7 +139,7 @@ void Player::hold(const std::vector<std::string>& words, std::size_t first, bool
 
 glm::vec2 Player::place_of(const std::string& name) {
   const Widget* widget = editor_.widgets.find(name);
-  // The rows of a menu exist only while the menu is open, so open the menu first.
+  // The rows of a menu exist only while the menu is open, so this opens the menu first.
   if (const auto slash = name.rfind('/'); !widget && slash != std::string::npos) {
     const std::string parent = name.substr(0, slash);
     host_.events.push(PointerMoved{place_of(parent)});
@@ -168,12 +168,12 @@ void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
   do {
     while (editor_.busy()) {
-      frame();  // The script's time does not advance, so the result does not depend on how long the job takes.
+      frame();  // the script's clock stands still, so the result does not depend on the job's duration
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob))
         throw Error("the job does not end", "wait-job", "look at what it does");
     }
-    settle();  // a finished job may start another
+    settle();  // a finished job may start another job
   } while (editor_.busy());
 }
 

@@ -39,8 +39,8 @@ class Player {
  public:
   Player(Editor& editor, Offscreen& host);
 
-  // Plays the lines. Relative file names in them start at `folder`. Throws Error if a line cannot be played or if its
-  // expectation fails; the error names the line.
+  // Plays the lines. Relative file names in the script start at `folder`. Throws Error if a line cannot be played or
+  // its expectation is not met. The error names the line.
   void play(const std::vector<ScriptLine>& script, const Path& folder = ".");
   void play(const std::string& script) { play(parse_script(script)); }
   // Runs frames until all events are handled and their changes are drawn.
@@ -65,11 +65,11 @@ class Player {
   std::string doing_ = "beginning";  // the line being played, for error messages
 };
 
-// Returns a fact about the editor as text. For example, "workspace" returns "rig", "history" returns the number of
-// steps in the history, and "text:Muscle" returns "shown" or "absent". Throws Error for an unknown name.
+// Returns a fact about the editor as text. For example, "workspace" gives "rig", "history" gives the number of steps in
+// the undo history, and "text:Muscle" gives "shown" or "absent". Throws Error for an unknown name.
 std::string fact(const Editor& editor, const std::string& name);
 std::vector<std::string> fact_names();
-// Returns a hash of the voxels, tissues, visibility and bones; equal contents give equal hashes.
+// Returns a hash of the voxels, tissues, visibility and bones. Equal contents give equal hashes.
 std::string document_hash(const Document& document);
 
 }  // namespace limber::editor

@@ -48,7 +48,7 @@ std::string hidden(const Editor& editor) {
   return std::to_string(count);
 }
 
-// Returns the content of the text field that has the keyboard focus; none if no text field has it.
+// Returns the content of the text field that has the keyboard. Returns no value if no text field has it.
 std::optional<std::string> typed_text(const Editor& editor) {
   ImGui::SetCurrentContext(editor.imgui);
   const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());

@@ -15,7 +15,7 @@ Operator to_workspace(const char* id, const char* label, const char* icon, const
 }
 
 Operator by_step(const char* id, const char* label, int step) {
-  return {id, label, "", "Workspace", "Switch to the neighbouring workspace.", [step](Editor& e) {
+  return {id, label, "", "Workspace", "Switch to the previous or next workspace of the top bar.", [step](Editor& e) {
             e.workspace = static_cast<Workspace>((static_cast<int>(e.workspace) + step + 4) % 4);
           }};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Defines the command `limber editor`. It opens the editor, as `limber [FILE...]` does, with options for the window's
-// size and scale. It also plays scripts, without a display.
+// Defines the command `limber editor`. It opens the editor, as `limber [FILE...]` does, and has options for the
+// window's size and scale. It can also play a script without a display.
 #include <memory>
 
 #include "core/base/error.h"

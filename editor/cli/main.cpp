@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy. Without a command it opens the editor.", "limber");
   std::vector<std::string> files;
   app.add_option("FILE", files, "volumes or a project to open in the editor")->check([](const std::string& name) {
-    // A word without "." or "/" that names no file is most likely a misspelled command.
+    // An argument without "." or "/" that names no file is most likely a misspelled command.
     const bool is_word = name.find_first_of("./") == std::string::npos;
     return is_word && !std::filesystem::exists(name) ? "there is neither a command nor a file " + name : std::string();
   });

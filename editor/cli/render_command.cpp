@@ -77,7 +77,7 @@ TissueLook& look_at(Visibility& visibility, const TissueTable& tissues, double f
   return visibility.looks[tissue->label];
 }
 
-// Returns `visibility` as changed by the options --hide and --opacity.
+// Returns `visibility` after the changes by the options --hide and --opacity.
 Visibility visibility_of(const Options& options, const TissueTable& tissues, Visibility visibility) {
   for (const double label : options.hide) {
     char text[32];
@@ -175,8 +175,8 @@ SkinWeights weights_of(const Options& options, const Document& document, Progres
   return std::move(file.weights);
 }
 
-// Returns the bounding box of the posed tissue in voxels of `grid`. It is computed from bones and weights alone, so
-// that the picture of a preview and the picture of a resampled volume show the same part of space.
+// Returns the bounding box of the posed tissue in voxels of `grid`. The box is computed from bones and weights alone,
+// so that pictures of a preview and of a resampled volume show the same part of space.
 std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, const TissueVoxels& tissue,
                                        const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest,
                                        Blend blend) {
@@ -236,7 +236,8 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   return result;
 }
 
-// Returns the box that the picture must show, in the world, mm: the bounding box of the tissue, cut by the clip box.
+// Returns the box that the picture must show, in the world, mm: the bounding box of the tissue, intersected with the
+// clip box.
 std::array<glm::dvec3, 2> box_of_tissue(const PosedScene& posed, const render::Clip& clip) {
   const LabelVolume& volume = *posed.scene.volume;
   glm::dvec3 from, to;

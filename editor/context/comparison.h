@@ -10,7 +10,7 @@ namespace limber::editor {
 
 struct ResultFacts;
 
-// What tables show about a resampled volume, read once for each result.
+// What tables show about a result (a resampled volume). The facts are computed once for each result.
 struct KnownResult {
   std::weak_ptr<const Result> result;
   std::shared_ptr<const ResultFacts> facts;
@@ -20,9 +20,9 @@ struct KnownResult {
 // unknown name means the volume at rest.
 struct Comparison {
   std::string a, b;
-  bool shows_a = false;  // which result the views show while nothing is compared: a (true) or b (false)
+  bool shows_a = false;  // true: the views show a while nothing is compared; false: they show b
   enum class Views {
-    One,         // no comparison: either a or b is shown
+    One,         // no comparison: the views show either a or b
     Wipe,        // each view is divided by a movable line: a is shown left of the line, b right of it
     SideBySide,  // each view is shown twice with the same camera: a at the left, b at the right
   } views = Views::One;

@@ -14,8 +14,8 @@ glm::vec2 PointerWrap::leap(const glm::vec2& pointer) {
   if (!inside_ || awaited_ != glm::vec2(0)) return {};
   const Rect inside = inside_->grown(-margin_);
   for (int axis = 0; axis < 2; ++axis) {
-    // The pointer is moved by 2 pixels less than the rectangle's size. So it ends just inside the opposite edge, and is
-    // not moved back at once.
+    // Moves the pointer by 2 pixels less than the rectangle's size, so that it ends just inside the opposite edge.
+    // Otherwise it would be moved back at once.
     const float way = inside.size()[axis] - 2;
     if (way < 16 * margin_) continue;
     if (pointer[axis] < inside.low[axis]) awaited_[axis] = way;

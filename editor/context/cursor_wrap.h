@@ -13,19 +13,21 @@ namespace limber::editor {
 
 class PointerWrap {
  public:
-  // `margin`: the pointer leaps at this distance from the edge of the rectangle `inside`, pixels.
+  // The pointer leaps when it is less than `margin` pixels inside the edge of the rectangle `inside`.
   PointerWrap() = default;
   PointerWrap(const Rect& inside, float margin) : inside_(inside), margin_(margin) {}
 
-  // Returns how far the user's hand moved, pixels: `to` - `from`, less a leap between the two positions.
+  // Returns how far the user's hand moved, pixels: `to` - `from`, minus the leap if one happened between the two
+  // positions.
   glm::vec2 moved(const glm::vec2& from, const glm::vec2& to);
-  // Returns by how much the caller must move the pointer now, pixels. Zero unless the pointer has reached an edge.
+  // Returns the distance by which the caller must move the pointer now, pixels. It is zero unless the pointer has
+  // reached an edge.
   glm::vec2 leap(const glm::vec2& pointer);
 
  private:
   std::optional<Rect> inside_;
   float margin_ = 0;
-  glm::vec2 awaited_{0};  // the last leap while no move made after it has arrived, pixels; zero: none
+  glm::vec2 awaited_{0};  // the last leap until a pointer position after it arrives, pixels; zero: none awaited
 };
 
 }  // namespace limber::editor

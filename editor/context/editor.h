@@ -51,8 +51,8 @@ struct OverlapView;
 struct SeamView;
 struct BoneTable;
 
-// A drag with a mouse button. Its function `moved` gets every move of the pointer until the button is released or
-// Escape cancels the drag.
+// A drag with a mouse button. `moved` is called for every move of the pointer until the button is released (then
+// `ended` is called) or Escape cancels the drag (then `cancelled` is called).
 struct Drag {
   MouseButton button = MouseButton::Left;
   std::function<void(Editor&, const glm::vec2& pixels)> moved;  // `pixels`: pointer motion since the last call
@@ -73,11 +73,11 @@ class Dialog {
   virtual ~Dialog() = default;
   virtual void draw(Editor& editor) = 0;  // calls begin_dialog() and end_dialog() of dialog.h
   virtual void escape(Editor& editor);    // closes the dialog
-  // Handles a pressed key before a text field gets it. Returns whether the dialog used the key.
+  // Handles a pressed key before a text field of the dialog gets it. Returns true if the dialog used the key.
   virtual bool key(Editor&, const Chord&) { return false; }
 };
 
-// What the start screen shows about a recent file: whether the file is missing, and a small picture.
+// What the start screen shows about a recent file: a small picture of it, and whether the file is missing.
 struct RecentFacts {
   bool missing = false;
   std::shared_ptr<const render::Image> picture;
@@ -96,19 +96,19 @@ struct Editor : Ui {
 
   void frame(double now);  // draws one frame; `now`: time of the frame on a steady clock, s
   double rest() const;     // time until the next frame if no input arrives, s; 0: draw at once
-  bool busy() const;       // whether a thread or process is working for the editor
+  bool busy() const;       // true while a thread or process works for the editor
   bool at_rest() const { return rest() > 0 && !busy(); }
 
   Arrangement& arrangement() { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Arrangement& arrangement() const { return arrangements[static_cast<std::size_t>(workspace)]; }
   const Document& document() const { return history.current(); }
-  // Opens a dialog in the next frame and closes the one that is open. A dialog that no action of the user's caused,
-  // such as one at a job's end, waits until it does not interrupt the user.
+  // Opens a dialog in the next frame and closes the dialog that is open. A dialog that opens without an action of the
+  // user's, such as at the end of a job, waits until it does not interrupt the user.
   void open_dialog(std::unique_ptr<Dialog> dialog);
   void close_dialog();
   Host& host;
   Preferences preferences;
-  Path preferences_path;             // empty: the preferences are not written
+  Path preferences_path;             // file of the preferences; empty: they are not written
   bool preferences_problem = false;  // true: the last attempt to write the preferences failed
   std::string shown_theme;
   Keymap keymap;
@@ -116,27 +116,27 @@ struct Editor : Ui {
   std::function<void(Editor&)> before_change = [](Editor&) {
   };  // called before an operator that must not run during playback; stops the playback
   Messages messages;
-  bool error_details = false;  // whether the details of the shown error are unfolded
+  bool error_details = false;  // true: the details of the shown error are unfolded
 
   // The project
   History history;
   Jobs jobs;
-  std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // called when a job ends, by the job's id
+  std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // called when a job of this id ends
   Path worker_program = "/proc/self/exe";                                   // the program that runs `limber job`
-  bool workers_yield = true;              // whether worker processes run at low priority
+  bool workers_yield = true;              // true: worker processes run at low priority
   std::map<int, Task> tasks;              // the jobs that are background tasks, by id
-  std::map<int, StepOfWork> step_of_job;  // the workflow step that a job belongs to, by the job's id
+  std::map<int, StepOfWork> step_of_job;  // workflow step in which a job was started, by the job's id
   ProjectLife life;
-  // Functions called once a frame; one that returns false is removed
+  // Functions that are called once in every frame. A function that returns false is removed.
   std::vector<std::function<bool(Editor&)>> each_frame;
-  Path project_path;              // empty: never saved
-  std::vector<NamedFile> inputs;  // files that data of the project was read from; they are never overwritten
+  Path project_path;              // file of the project; empty: never saved
+  std::vector<NamedFile> inputs;  // files from which the project's data was read; they are never overwritten
   std::string shown_title;        // the window's title
   std::string name;               // the name of the project, or of the volume opened last
   std::vector<Path> to_open;      // files dropped on the window or given on the command line
 
   // Stored on disk between runs of the program
-  Folders folders;  // an empty path in it: nothing of that kind is stored
+  Folders folders;  // an empty path: files of that kind are not stored
   RecentFiles recent_files;
   RecentFilesOnDisk recent_files_on_disk;
   std::map<Path, RecentFacts> recent_facts;
@@ -149,7 +149,7 @@ struct Editor : Ui {
   Workspace workspace = Workspace::Rig;
   Arrangements arrangements;
   Layout layout;
-  std::unique_ptr<Dialog> dialog;  // null: none
+  std::unique_ptr<Dialog> dialog;  // the open dialog; null: none
   bool quit = false;
 
   // The user's selection, tool and other state of what is shown in the window
@@ -160,12 +160,12 @@ struct Editor : Ui {
   struct {
     std::string search;
     bool searching = false, focus_search = false;
-    std::map<std::string, bool> open;  // by row: whether the user unfolded (true) or folded (false) it
+    std::map<std::string, bool> open;  // true: the user unfolded a row, false: folded it; by row
   } outliner;
   struct {
     std::string name;
     double value = 0;
-  } edited_number;  // the number that is being dragged or typed; the document changes once, when that ends
+  } edited_number;  // the number field that the user drags or types in; the document changes once, at the end
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::unique_ptr<TransformSettings> transform_settings;  // how tools transform bones; never null
@@ -173,13 +173,13 @@ struct Editor : Ui {
   std::string open_menu;                                  // title of the top bar's open menu; "" for none
   std::string open_popup;           // the menu of menus.h to open at the pointer in the next frame; "" for none
   std::string shown_popup;          // the menu of menus.h that is open; "" for none
-  bool open_pick_list = false;      // true: the list of what lies under the pointer opens in the next frame
+  bool open_pick_list = false;      // true: the list of bones and tissues under the pointer opens in the next frame
   std::vector<Pickable> pick_list;  // bones and tissues under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
   std::unique_ptr<FemView> fem;                // declared in fem_live_view.h; never null
   std::unique_ptr<FemOverlay> fem_overlay;     // declared in fem_overlay.h; never null
-  std::unique_ptr<TestPose> trial;             // declared in test_pose.h; never null
+  std::unique_ptr<TestPose> trial;             // settings of the test pose, declared in test_pose.h; never null
   std::unique_ptr<DifferenceView> difference;  // declared in difference_overlay.h; never null
   std::unique_ptr<OverlapView> overlap;        // declared in overlap_overlay.h; never null
   std::unique_ptr<SeamView> seams;             // declared in seam_view.h; never null
@@ -193,19 +193,19 @@ struct Editor : Ui {
   struct {
     std::string method = deformation_methods().front().word;
     double spacing = 0;        // voxel size of the posed volume, mm; 0: as in the volume at rest
-    bool bones_apart = false;  // whether joints may shift by more than a voxel so that bones do not overlap
-    bool mass_exact = false;   // whether each soft tissue keeps its volume, exact to a voxel
-    // Options of the method finite elements
+    bool bones_apart = false;  // true: joints may shift by more than a voxel so that bones do not overlap
+    bool mass_exact = false;   // true: each soft tissue keeps its volume, exact to a voxel
+    // Options of the method "finite elements"
     bool contact = true;
     std::string quality = "normal";  // "draft", "normal", "fine"
   } resampling;
   struct {
-    bool keep_limits = true;                   // joints stop at their limits
-    std::map<std::string, glm::dquat> copied;  // the copied pose: rotation of each bone, by its name
+    bool keep_limits = true;                   // true: joints stop at their limits
+    std::map<std::string, glm::dquat> copied;  // the copied pose: rotation of each bone, by the bone's name
   } posing;
   struct {
     std::string search;
-    std::array<bool, 4> hidden{};  // whether messages of a severity are hidden, by severity
+    std::array<bool, 4> hidden{};  // true: messages of a severity are hidden; indexed by severity
     std::size_t lines_seen = 0;
   } console;
   std::map<int, double> stopping_since;  // time at which a job that still runs was cancelled, s, by the job's id
@@ -214,9 +214,9 @@ struct Editor : Ui {
   std::shared_ptr<Modal> modal;  // null: none
   PointerWrap modal_wrap;
   std::unique_ptr<Timeline> timeline;  // declared in timeline.h; never null
-  Rect timeline_area;                  // the timeline's rows in the last frame; empty while not shown
-  float wheel_rest = 0;  // fraction of a wheel step over a slice that is still to be used: touch pads send fractions
-  std::string last_operator;                      // the id of the operator that Repeat runs
+  Rect timeline_area;         // area of the timeline's rows in the last frame; empty while the timeline is not shown
+  float wheel_rest = 0;       // fraction of a wheel step that has not moved a slice yet; touch pads send fractions
+  std::string last_operator;  // the id of the operator that the command Repeat runs again
   std::unique_ptr<LastOperation> last_operation;  // declared in redo_last_operator.h; never null
 
   Cursor cursor = Cursor::Arrow;  // the pointer's shape in this frame
@@ -234,7 +234,7 @@ struct Editor : Ui {
   // Dialogs and errors that no action of the user's caused. They are shown once they do not interrupt the user.
   std::deque<std::unique_ptr<Dialog>> waiting_dialogs_;
   std::vector<ErrorMessage> waiting_errors_;
-  bool of_users_act_ = true;  // whether an action of the user's caused what happens now
+  bool of_users_act_ = true;  // true: what happens now was caused by an action of the user's
 };
 
 }  // namespace limber::editor

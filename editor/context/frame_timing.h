@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Measures how long frames take in the thread that draws them. Real clocks are used, since a script's clock is
-// simulated.
+// Measures how long frames take in the thread that draws them. Times are those of the computer's clock, since a
+// script's own clock is simulated.
 //
-// Each frame has two times in milliseconds: the time from its begin to its end, including waits for OpenGL, and this
-// thread's CPU time. The first is split into parts ("input", "body", "panels") in the order in which they ended. The
-// time in which a script's window is painted for the script's pictures is not counted.
+// Each frame has two times in milliseconds: the time from its begin to its end, including waits for OpenGL, and the CPU
+// time of the drawing thread. The first is split into parts ("input", "body", "panels") in the order in which they
+// ended. When a script runs, the time in which the window is painted for the script's pictures is not counted.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,14 @@ class FrameLog {
  public:
   using Parts = std::vector<std::pair<const char*, double>>;
   struct Frame {
-    double took = 0, computed = 0;  // ms
+    double took = 0, computed = 0;  // time from begin to end, and CPU time, ms
     Parts parts;
     std::string doing;
   };
 
   void begin();
-  void part(const char* name);  // ends a part that began at the end of the part before; `name` must be a string literal
+  // Ends a part of the frame, which began at the end of the previous part. `name` must be a string literal.
+  void part(const char* name);
   void end(const std::string& doing);  // ends the frame; `doing` says why it was drawn
   const std::vector<Frame>& frames() const { return frames_; }
   void clear() { frames_.clear(); }
@@ -40,8 +41,8 @@ class FrameLog {
   double computed_before_ = 0;
 };
 
-// Returns the percentile: the smallest value such that at least `percent` percent of the values are not larger. Returns
-// 0 if there are no values.
+// Returns the percentile: the smallest value that at least `percent` percent of the values do not exceed. Returns 0 if
+// there are no values.
 double percentile(std::vector<double> values, double percent);
 
 }  // namespace limber::editor

@@ -21,7 +21,7 @@ class Pixels {
 
 void place_one(Layout& layout, ViewId id) { layout.view_places = {{id, layout.views}}; }
 
-// Lays out the 3D view at the left and two slices, one above the other, at the right.
+// Splits the region of the views: the 3D view at the left, and two slices, one above the other, at the right.
 void place_split(Layout& layout, const Arrangement& arrangement, float gap) {
   const Rect& all = layout.views;
   const float x = std::round(all.low.x + (all.width() - gap) * arrangement.split_x),
@@ -99,7 +99,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
   layout.status = {{0, size.y - px(kStatus)}, size};
   const float top = layout.top_bar.high.y, bottom = layout.status.low.y;
 
-  // The sidebar
+  // Region of the sidebar
   layout.sidebar_over_views = unscaled.x < 1100;
   const bool sidebar_open = !alone && arrangement.sidebar.value_or(!layout.sidebar_over_views);
   float width = std::clamp(arrangement.sidebar_width, kSidebarLow, kSidebarHigh);
@@ -110,7 +110,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
     layout.sidebar = {{size.x - px(width), layout.sidebar_over_views ? header_bottom : top}, {size.x, bottom}};
   layout.tool_header = {{0, top}, {right, header_bottom}};
 
-  // The bottom area: console, results or timeline
+  // Region of the bottom area: console, results or timeline
   float views_bottom = bottom;
   if ((arrangement.console || arrangement.results || arrangement.timeline) && !alone) {
     const float most = std::max(kBottomLow, unscaled.y / 2);

@@ -25,7 +25,7 @@ enum class Workspace { Rig, Skin, Pose, Resample };
 enum class ViewId { Body, Axial, Coronal, Sagittal };
 enum class ViewLayout { One, Split, Four };
 
-// Which regions the user has opened and how large they are; each workspace has its own.
+// The regions of the window that the user has opened, and their sizes. Each workspace has its own arrangement.
 struct Arrangement {
   ViewLayout views = ViewLayout::One;
   std::optional<bool> sidebar;  // whether the sidebar is open; no value: open if the window is at least 1100 wide
@@ -34,7 +34,7 @@ struct Arrangement {
   bool results = false;
   bool timeline = false;
   float sidebar_width = 320, bottom_height = 192;
-  // Fraction of the width or height that the left or upper views take
+  // Fractions of the width or height that the left or upper views take, in the layouts Split and Four
   float split_x = 0.66f, split_y = 0.5f, four_x = 0.5f, four_y = 0.5f;
   std::optional<ViewId> maximized;
 
@@ -42,7 +42,7 @@ struct Arrangement {
 };
 Arrangement default_arrangement(Workspace workspace);
 
-using Arrangements = std::array<Arrangement, 4>;  // one for each workspace
+using Arrangements = std::array<Arrangement, 4>;  // one arrangement for each workspace
 Arrangements default_arrangements();
 
 struct ViewPlace {
@@ -54,7 +54,7 @@ struct ViewPlace {
 enum class SplitterId { Sidebar, Bottom, SplitX, SplitY, FourX, FourY };
 struct Splitter {
   SplitterId id;
-  Rect line;      // the visible gap between views; the area that can be dragged is wider
+  Rect line;      // the visible gap between two regions; the area that can be dragged is wider
   bool vertical;  // true: the line runs from top to bottom and is dragged sideways
 };
 
@@ -71,12 +71,12 @@ struct Layout {
   const Rect* place_of(ViewId id) const;                   // nullptr if the view is not shown
 };
 Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrangement);
-// Splits each view into two views with a gap between them, to compare two results. The left one shows result A.
-//   share  fraction of the view's width that the left one takes, [0, 1]
+// Splits each view into two views with a gap between them, to compare two results. The left view shows result A.
+//   share  fraction of the original view's width that the left view takes, [0, 1]
 Layout in_sides(Layout layout, float share, float scale);
 
-// Returns the arrangement after the pointer dragged a splitter to the point `to`. Limits: sidebar 260 to 520 pixels
-// wide, bottom area 120 pixels to half of the window high, views 20 to 80 percent of their region.
+// Returns the arrangement after the pointer dragged a splitter to the point `to`. The sidebar stays 260 to 520 pixels
+// wide, the bottom area 120 pixels to half of the window high. Views keep 20 to 80 percent of their region.
 Arrangement dragged(Arrangement arrangement, SplitterId id, const glm::vec2& to, const Layout& layout, float scale);
 // Returns the arrangement with a splitter at its default position. A double click on the splitter asks for this.
 Arrangement restored(Arrangement arrangement, SplitterId id, Workspace workspace);

@@ -24,7 +24,7 @@ void take_size(const Json& json, const char* key, float low, float high, float& 
   if (const double size = *found; size >= low && size <= high) value = static_cast<float>(size);
 }
 
-// Reads an enumerator that is stored as its number. Returns nothing if the number is missing or not in [0, count).
+// Reads an enumerator that is stored as its number. Returns no value if the number is missing or not in [0, count).
 template <class Choice>
 std::optional<Choice> choice(const Json& json, const char* key, int count) {
   const auto found = json.find(key);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The base class of modal tools, such as walking. A modal tool gets all input until the user confirms or cancels it.
-// Each function that handles input returns whether the tool continues.
+// Each function that handles input returns true while the tool continues.
 #pragma once
 
 #include <string>
@@ -28,11 +28,11 @@ class Modal {
   virtual bool wheel(Editor&, float /*steps*/) { return true; }
   virtual bool button(Editor&, const ButtonChanged&) { return true; }
   virtual bool key(Editor&, const KeyChanged&) { return true; }
-  // Called once a frame, after the input functions.
+  // Called once in every frame, after the functions that handle input.
   virtual bool frame(Editor&, double /*seconds*/) { return true; }
-  // Draws the tool's graphics over a view, whose picture has been drawn before.
+  // Draws the tool's graphics over a view. The view's picture has been drawn before.
   virtual void draw(Editor&, const ViewPlace&) {}
-  virtual bool moving() const { return false; }  // whether frames must be drawn even without input
+  virtual bool moving() const { return false; }  // true: frames must be drawn even without input
   virtual void cancel(Editor&) {}                // undoes what the tool did
   virtual std::vector<KeyHint> hints(const Editor&) const { return {}; }
   virtual bool hides_pointer() const { return false; }

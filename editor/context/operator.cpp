@@ -11,8 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-// Records the use of an operator: for the command Repeat, and for the search, which lists the latest and the most used
-// operators first.
+// Records that an operator was used. The command Repeat runs the last operator again, and the search lists the latest
+// and the most used operators first.
 void note_use(Editor& editor, const Operator& op) {
   if (op.id == "search.commands" || op.id == "edit.repeat_last" || op.id == "edit.adjust_last" ||
       needs_pointer(editor, op))
@@ -25,8 +25,8 @@ void note_use(Editor& editor, const Operator& op) {
   editor.preferences.command_counts[op.id] += 1;
 }
 
-// Returns whether the animation keeps playing while the operator runs. This is so for operators that do not change the
-// pose, such as turning a view or selecting.
+// Returns true if the animation keeps playing while the operator runs: for operators that do not change the pose, such
+// as those that turn a view or select.
 bool goes_on_while_playing(const Operator& op) {
   constexpr const char* kSuch[] = {"view.",    "slice.",  "select.", "motion.",  "workspace.",
                                    "compare.", "search.", "help.",   "file.save"};

@@ -20,7 +20,7 @@ struct Operator {
   std::string description;  // what it does, for its tool tip
   std::function<void(Editor&)> run;
   std::function<std::string(const Editor&)> disabled_reason;  // why it cannot run; "" or no function: it can
-  std::function<bool(const Editor&)> checked;                 // for an operator that is a switch: whether it is on
+  std::function<bool(const Editor&)> checked;                 // true if the operator is a switch that is on now
 };
 
 // Returns all operators, in the order of the menus.
@@ -28,13 +28,13 @@ std::vector<Operator> gather_operators();
 
 const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr for none
 std::string disabled_reason(const Editor& editor, const Operator& op);     // "" when it can run
-// Runs the operator, or shows a message with the reason why it cannot run.
+// Runs the operator. If it cannot run now, shows a message with the reason instead.
 void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);
-// Returns whether the operator needs the pointer: whether it is bound to mouse buttons or the wheel and to no key.
+// Returns true if the operator needs the pointer: it is bound to mouse buttons or the wheel, and to no key.
 bool needs_pointer(const Editor& editor, const Operator& op);
-// Calls `act` and shows an exception that it throws as an error message. All operators are run by this function, and so
-// is what follows later from them: an answer to a question, a selected file, a task's end.
+// Calls `act`. If `act` throws an exception, shows it as an error message. All operators are run by this function, and
+// so is their later work, such as the answer to a question, a selected file or a task's end.
 bool attempt(Editor& editor, const std::string& label,
              const std::function<void(Editor&)>& act);  // returns true when nothing was thrown
 

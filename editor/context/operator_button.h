@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Buttons, menu rows and check boxes that run operators. Each shows the operator's tool tip, with the reason if it
-// cannot run.
+// Buttons, menu rows and check boxes that run operators. Each shows the operator's tool tip, and if the operator cannot
+// run now, the reason.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace limber::editor {
 struct Editor;
 struct Operator;
 
-// Draws an operator's button with its icon and `label`. With the label "", only the icon is shown. Returns whether the
-// button was clicked.
+// Draws an operator's button with its icon and `label`. An empty label leaves only the icon. Returns true if the button
+// was clicked.
 bool operator_button(Editor& editor, std::string_view id, const Rect& rect, const std::string& label,
                      ButtonStyle style = ButtonStyle::Plain);
 

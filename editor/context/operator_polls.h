@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Checks that many operators share. Each returns the reason why an operator cannot run now, or "" if it can.
+// Checks that many operators share. Each function returns the reason why an operator cannot run now, or "" if it can.
 #pragma once
 
 #include <string>

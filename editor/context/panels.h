@@ -23,19 +23,19 @@ void draw_tour(Editor& editor);
 // What is drawn over the views
 void draw_body_overlay(Editor& editor, const ViewPlace& place);
 void draw_slice_overlay(Editor& editor, const ViewPlace& place);
-bool draw_weight_legend(Editor& editor, const Rect& view);  // returns whether it drew one
-bool draw_fem_legend(Editor& editor, const Rect& view);     // returns whether it drew one
-// Draws the legend of the marked voxels: voxels in which two volumes differ, or to which two points of the body at rest
-// were moved. Returns the legend's height in pixels at scale 1; 0: no legend.
+bool draw_weight_legend(Editor& editor, const Rect& view);  // returns true if a legend was drawn
+bool draw_fem_legend(Editor& editor, const Rect& view);     // returns true if a legend was drawn
+// Draws the legend of the marked voxels: those in which two volumes differ, or those to which two points of the body at
+// rest were moved (overlaps). Returns the legend's height in pixels at scale 1; 0: no legend.
 float draw_marks_legend(Editor& editor, const Rect& view);
-// Draws a label in place of a compared view's title: A or B, and the name of the shown result.
+// Draws a label in place of the title of a view that shows one of two compared results: A or B, and the result's name.
 void draw_side_chip(Editor& editor, const ViewPlace& place);
 void put_swatch(const Look& look, const glm::vec2& corner, Colour colour);
 void draw_weights_at_pointer(Editor& editor);
 void draw_empty_view(Editor& editor, const Rect& rect);
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel);
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state);
-// Updates Views::hover, which describes what lies under the pointer.
+// Updates Views::hover, which says what is under the pointer.
 void hover_views(Editor& editor);
 
 // Sections of the sidebar
@@ -68,8 +68,8 @@ void draw_results(Editor& editor, const Rect& rect);
 void draw_change_plot(Editor& editor, const Rect& rect);
 void draw_timeline(Editor& editor, const Rect& rect);
 
-// Draws the running job into the status bar, with its right end at `right`. Returns the x of the job's left end, where
-// the remaining space ends.
+// Draws the running job into the status bar, so that it ends at x = `right`. Returns the x where the job's left end is.
+// The space to its left is still free.
 float draw_job_slot(Editor& editor, const Rect& bar, float right);
 
 // Messages

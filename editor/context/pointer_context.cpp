@@ -7,8 +7,8 @@ namespace limber::editor {
 
 namespace {
 
-// Returns whether the pointer is over the ImGui window of a region. Used for the sidebar and the bottom area, where the
-// 3D view's keys must not work.
+// Returns true if the pointer is over the ImGui window of a region: the sidebar or the bottom area, where the 3D view's
+// keys must not work.
 bool is_over(const char* region) {
   const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
   return window && std::string_view(window->RootWindow->Name) == region;

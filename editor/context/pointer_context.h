@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds what lies under the pointer, since the meaning of keys and mouse buttons depends on it.
+// Finds what is under the pointer, since the meaning of keys and mouse buttons depends on it.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace limber::editor {
 
-// Returns the key map's contexts that apply at the pointer's position, in the order in which they are searched.
+// Returns the names of the key map's contexts that apply at the pointer's position. Keys are searched in this order.
 std::vector<std::string> contexts(const Editor& editor);
-// Returns the view under the pointer; nullptr where a menu, dialog or another region covers it.
+// Returns the view under the pointer; nullptr if the pointer is outside the views, or a menu or dialog covers them.
 const ViewPlace* hovered_view(const Editor& editor);
-// Returns whether the pointer is over the timeline's rows, not the buttons above them.
+// Returns true if the pointer is over the timeline's rows. The buttons above them do not count.
 bool over_timeline(const Editor& editor);
 
 }  // namespace limber::editor

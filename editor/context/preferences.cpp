@@ -36,7 +36,7 @@ Preferences read_preferences(const Path& path, std::string& problem) {
     return {};
   }
   if (problem.empty()) return preferences;
-  // The damaged file is renamed, so that it is not lost and the next start does not read it again.
+  // Renames the damaged file, so that it is not lost and the next start does not read it again.
   const Path aside = path.string() + ".damaged";
   std::filesystem::rename(path, aside, ignored);
   problem = Error(problem, path.string(), "the defaults are used; the old file is kept as " + aside.filename().string())

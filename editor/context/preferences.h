@@ -25,20 +25,20 @@ struct Preferences {
   std::string display = "solid";  // "solid", "xray" or "tissue"
 
   // Undo and saving
-  int undo_limit_mb = 1024;  // [64, 65536]
+  int undo_limit_mb = 1024;  // memory limit of the undo history, MB, [64, 65536]
   int autosave_minutes = 0;  // interval of automatic saving for a project that has a file, [0, 240]; 0: never
 
   // Jobs
-  int jobs_at_once = 2;       // [1, 8]
-  int worker_memory_mb = 0;   // memory that a resampling may use; 0: no limit
-  double worker_minutes = 0;  // time that a resampling may take; 0: no limit
+  int jobs_at_once = 2;       // number of jobs that may run at the same time, [1, 8]
+  int worker_memory_mb = 0;   // memory that a resampling may use, MB; 0: no limit
+  double worker_minutes = 0;  // time that a resampling may take, minutes; 0: no limit
 
   // Folders
   std::string scratch_folder;  // for the temporary files of a resampling; "": the system's
 
-  Arrangements arrangements = default_arrangements();  // those of the last use; a project stores its own
+  Arrangements arrangements = default_arrangements();  // arrangements of the last use; a project stores its own
   std::string keymap = "blender";                      // the preset: "blender" or "maya"
-  KeyChanges keys;                                     // the user's changes of the preset's keys
+  KeyChanges keys;                                     // the user's changes of the key map preset
   bool advanced_steps = false;
   std::vector<std::string> recent_commands;  // ids of operators, latest first, at most kMostRecent
   std::map<std::string, int> command_counts;
@@ -50,7 +50,7 @@ struct Preferences {
 
 Path preferences_path();
 // Reads the preferences. Numbers are clamped to their range and unknown entries are ignored. If the file is missing or
-// damaged, the defaults are returned. If it is damaged, `problem` says what is wrong.
+// damaged, returns the defaults. If the file is damaged, `problem` says what is wrong.
 Preferences read_preferences(const Path& path, std::string& problem);
 Preferences preferences_from_json(const std::string& text, std::string& problem);
 std::string to_json(const Preferences& preferences);

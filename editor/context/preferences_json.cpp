@@ -15,8 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Calls `visit` with the group, name, value and range of each preference. This one list serves both to read and to
-// write.
+// Calls `visit` with the group, name, value and range of each preference. Reading and writing share this list.
 template <class Visit, class P>
 void visit(P& p, const Visit& visit) {
   visit("interface", "theme", p.theme, {}, {});

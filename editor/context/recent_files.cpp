@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::size_t kMostRecents = 30;
 constexpr std::size_t kMostFolders = 8;
-constexpr std::uint64_t kLargestSettings = 4 << 20;  // bytes
+constexpr std::uint64_t kLargestSettings = 4 << 20;  // larger settings files are refused, bytes
 constexpr const char* kSchema = "limber-remembered/1";
 
-// Reads a value of a JSON object. `value` stays as it is if the entry is absent or of another type.
+// Reads an entry of a JSON object into `value`. `value` keeps its content if the entry is missing or of another type.
 template <class T>
 void take(const Json& json, const char* key, T& value) {
   const auto found = json.find(key);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Stores the recent files, the folders last used in file dialogs and the tour's progress between runs of the program.
-// They hold no work of the user's. So if the file is damaged, it is renamed with a warning and the program starts
-// without it.
+// The stored file holds no work of the user's. If it is damaged, it is therefore renamed with a warning, and the
+// program starts without it.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Recent {
 
 struct RecentFiles {
   std::vector<Recent> recents;          // latest first
-  std::map<std::string, Path> folders;  // the folder where a file dialog was last used, by the dialog's purpose
+  std::map<std::string, Path> folders;  // last folder of each file dialog, by the dialog's purpose
   std::vector<Path> recent_folders;     // folders used in any file dialog, latest first
   bool show_start = true;
   bool hidden_files = false;
@@ -32,12 +32,12 @@ struct RecentFiles {
   bool operator==(const RecentFiles&) const = default;
 };
 
-// What the disk holds of the recent files, to find out whether they must be written.
+// The recent files as they were last written to the disk. Comparing them shows whether they must be written again.
 struct RecentFilesOnDisk {
   RecentFiles contents;
-  std::vector<Recent> named;         // the recent files for which an operator exists that opens the file
+  std::vector<Recent> named;         // the recent files for which operators exist that open them
   std::optional<double> changed_at;  // time of the first change that is not written yet, seconds on the editor's clock
-  bool failure_told = false;         // whether the user has been told that writing failed
+  bool failure_told = false;         // true: the user has been told that writing failed
 };
 
 void add_recent(RecentFiles& recent_files, const Path& path, std::int64_t time);

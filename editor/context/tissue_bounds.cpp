@@ -10,7 +10,8 @@ Extents extents_of(std::shared_ptr<const LabelVolume> volume) {
   const Label* voxel = volume->voxels.data();
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y, voxel += size.x)
-      // Voxels of one tissue form runs along x. Each run is added to the tissue's box as a whole, to save time.
+      // Neighbouring voxels along x mostly have the same tissue. To save time, a whole run of equal voxels is added to
+      // the tissue's box at once.
       for (int x = 0; x < size.x;) {
         const Label label = voxel[x];
         const int first = x;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes each tissue's bounding box in voxels, in one pass over a volume. The boxes are kept, so that zooming to a
-// tissue takes no time.
+// tissue needs no further pass.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace limber::editor {
 
 struct VoxelBox {
-  glm::ivec3 low{1 << 30}, high{-1};  // first and last voxel; high < low: the box is empty
+  glm::ivec3 low{1 << 30}, high{-1};  // lowest and highest voxel of the box; high < low: the box is empty
 
   bool empty() const { return high.x < low.x; }
   void add(const VoxelBox& other) {

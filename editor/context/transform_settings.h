@@ -26,9 +26,9 @@ struct TransformSettings {
   enum class Part { Whole, Head, Tail };
 
   Space space = Space::Global;
-  bool auto_ik = true;      // whether dragging a joint moves its limb by inverse kinematics
-  bool x_mirror = false;    // whether the bone on the body's other side makes the mirrored motion
-  Part part = Part::Whole;  // which part of the active bone is selected in the Rig workspace
+  bool auto_ik = true;      // true: dragging a joint moves its limb by inverse kinematics
+  bool x_mirror = false;    // true: the bone on the body's other side makes the mirrored motion
+  Part part = Part::Whole;  // part of the active bone that is selected in the Rig workspace
   Snap snap = Snap::Steps;
   bool snapping = false;  // true: snaps unless Ctrl is held; false: snaps while Ctrl is held
   struct {                // the pole target (it directs the knee or elbow) that is being dragged
@@ -38,7 +38,7 @@ struct TransformSettings {
 
   std::shared_ptr<ProposedJoint> proposed_joint;  // declared in joint_axis_fit.h; null: no joint is proposed
   std::shared_ptr<KnownRigCheck> rig_check;       // declared in rig_check.h; null: not checked yet
-  bool rig_check_marks = true;                    // whether the views mark the problems that the check found
+  bool rig_check_marks = true;                    // true: the views mark the problems that rig_check found
 
   struct {             // the bone whose row in the outliner is being dragged
     std::string bone;  // "" for none
@@ -58,8 +58,8 @@ struct TransformSettings {
   } library_drag;
 };
 
-// Returns the axes of a coordinate space as columns x, y, z, for a bone of a posed rig. For a root bone, the space
-// Parent is the world.
+// Returns the x, y and z axes of a coordinate space, as the columns of a matrix, for a bone of a posed rig. For a root
+// bone, the space Parent is the world.
 glm::dmat3 axes_of(Space space, const Armature& armature, const Pose& pose, int bone, const ViewProjection& view);
 
 // Returns the bone's own axes in the pose, in world coordinates, as columns x, y (along the bone), z.

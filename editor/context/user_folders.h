@@ -6,7 +6,7 @@
 
 namespace limber::editor {
 
-// The folders for the editor's own files. An empty path means that no files of that kind are stored.
+// The folders for the editor's own files. If a path is empty, no files of that kind are stored.
 struct Folders {
   Path config;  // settings, recent files
   Path cache;   // small pictures; may be deleted at any time
@@ -17,7 +17,7 @@ struct Folders {
 // ~/.cache/limber) and $XDG_STATE_HOME/limber/edits.
 Folders user_folders();
 
-// Returns the path as text, shortened like "~/anatomy/arm.mha" inside the user's home.
+// Returns the path as text. Inside the user's home it is shortened to the form "~/anatomy/arm.mha".
 std::string short_path(const Path& path);
 Path home_folder();  // "/" when there is none
 

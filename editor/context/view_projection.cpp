@@ -34,7 +34,7 @@ std::optional<glm::dvec2> ViewProjection::pixel_of(const glm::dvec3& point) cons
 }
 
 bool ViewProjection::shows(const glm::dvec3& point) const {
-  constexpr double kDepth = 20;  // largest distance from the slice's plane, mm
+  constexpr double kDepth = 20;  // points farther than this from the slice's plane are not shown, mm
   return place.id == ViewId::Body || std::abs(glm::dot(point - slice.centre, towards_eye)) <= kDepth;
 }
 

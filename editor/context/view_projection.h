@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects world points to pixels of a view and back, for the 3D view and the slices alike. Pixels are the window's;
+// Projects world points to pixels of a view and back, for the 3D view and for slices. Pixels are those of the window;
 // lengths are mm. A slice is a parallel projection along its normal.
 #pragma once
 
@@ -15,20 +15,21 @@ struct Editor;
 struct ViewProjection {
   ViewProjection(const Editor& editor, const ViewPlace& place);
 
-  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // no value for a point behind the eye
+  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // no value: the point is behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
   glm::dvec3 direction_to_eye(const glm::dvec3& point) const;   // unit vector
   double millimetres_per_pixel(const glm::dvec3& point) const;  // at the point, perpendicular to the line of sight
 
-  // Returns whether the view shows the point: always in 3D; in a slice if the point lies within 20 mm of the plane.
+  // Returns true if the view shows the point: always in the 3D view, and in a slice if the point lies within 20 mm of
+  // the slice's plane.
   bool shows(const glm::dvec3& point) const;
 
-  // Returns the point where the pixel's line of sight meets the plane through `point` with that normal. Nothing if the
-  // line of sight misses the plane.
+  // Returns the point where the pixel's line of sight meets the plane through `point` with normal `normal`. Returns no
+  // value if the line of sight misses the plane.
   std::optional<glm::dvec3> in_plane(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& normal) const;
   // Finds the point of a line that is nearest to the pixel's line of sight. The line runs through `point` along the
-  // unit vector `direction`. Returns the found point's signed distance from `point` along the line, mm. Nothing if the
-  // line and the line of sight are parallel.
+  // unit vector `direction`. Returns the found point's signed distance from `point` along the line, mm. Returns no
+  // value if the line and the line of sight are parallel.
   std::optional<double> along_line(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& direction) const;
 
   ViewPlace place;
@@ -37,7 +38,7 @@ struct ViewProjection {
   glm::dvec3 right, up, towards_eye;  // the picture's axes in the world, unit vectors
 };
 
-// Returns the projection of the 3D view; nothing when that view is not shown.
+// Returns the projection of the 3D view. Returns no value when the 3D view is not shown.
 std::optional<ViewProjection> body_seen(const Editor& editor);
 
 }  // namespace limber::editor

@@ -18,12 +18,12 @@
 
 namespace limber::editor {
 
-// An animated move of the camera. It takes 180 ms and slows down towards its end; any input ends it.
+// A move of the camera, shown as an animation of 180 ms that slows down towards its end. Any input ends the animation.
 struct CameraMove {
   render::Camera from, to;
   double start = 0;
 };
-// Returns the camera at the fraction t of a move, [0, 1].
+// Returns the camera at a fraction t of a camera move, [0, 1].
 render::Camera between(const render::Camera& from, const render::Camera& to, double t);
 
 struct BodyView {
@@ -31,16 +31,16 @@ struct BodyView {
   std::optional<CameraMove> move;
   std::string name;  // "Front" while the body is seen from there; empty between the standard views
   std::unique_ptr<render::View3D> picture;
-  std::unique_ptr<render::View3D> other;  // the view's second picture, of Views::other_scene, for comparing
+  std::unique_ptr<render::View3D> other;  // picture of result A (Views::other_scene) in a comparison
 };
 
 struct SliceState {
   render::SliceCamera camera;
-  bool fitted = false;  // whether the camera has been set to show the body; this needs the view's size
+  bool fitted = false;  // true: the camera shows the whole body; this has to wait until the view's size is known
   std::unique_ptr<render::SliceView> picture, other;
 };
 
-// The selected tissues and bones. They are not part of the document: selecting is no edit.
+// The selected tissues and bones. They are not part of the document, so selecting is no edit.
 struct Selection {
   std::optional<Label> tissue;  // the active tissue
   std::set<Label> tissues;      // all selected tissues, including the active one
@@ -48,9 +48,9 @@ struct Selection {
   std::set<int> bones;
 };
 
-// A bone or a tissue that lies under the pointer.
+// A bone or a tissue under the pointer, which a click can select.
 struct Pickable {
-  std::optional<int> bone;  // no value: a tissue is under the pointer, with this label
+  std::optional<int> bone;  // no value: this is the tissue with the label `tissue`
   Label tissue = 0;
 
   bool operator==(const Pickable&) const = default;
@@ -61,18 +61,18 @@ struct BoneWeight {
   double value;  // the weight, [0, 1]
 };
 
-// What lies under the pointer in the views.
+// What is under the pointer in the views.
 struct Hover {
   std::optional<ViewId> view;
-  bool inside = false;  // whether the point is inside the body
+  bool inside = false;  // true: the point is inside the body
   Label label = 0;
-  glm::ivec3 voxel{0};              // voxel of the volume at rest, also if the body is shown posed
+  glm::ivec3 voxel{0};              // voxel of the volume at rest, even if the body is shown posed
   glm::dvec3 point{0};              // the point under the pointer, world, mm
-  std::vector<BoneWeight> weights;  // the voxel's skin weights, largest first; empty if it has none
+  std::vector<BoneWeight> weights;  // skin weights of the voxel, largest first; empty if it has none
 };
 
 struct Views {
-  // Needs a current OpenGL context; throws Error when its version is too old.
+  // Needs a current OpenGL context. Throws Error when its version is older than 3.3.
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;
@@ -91,16 +91,16 @@ struct Views {
   std::shared_ptr<const Extents> extents;             // the tissues' bounding boxes in the document's volume
   std::shared_ptr<const TissueVoxels> tissue_voxels;  // those of the volume tissue_voxels_of; computed at first use
   std::shared_ptr<const LabelVolume> tissue_voxels_of;
-  // What the views show in place of the document's own objects while the user drags. At the end of the drag, these
-  // objects are put into the document or dropped. Null: the document's own is shown.
+  // What the views show instead of the document's objects while the user drags. At the end of the drag, these objects
+  // are put into the document or dropped. Null: the view shows the document's object.
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
   std::shared_ptr<const Pose> preview_pose;
   std::shared_ptr<const Armature> preview_armature;
   std::shared_ptr<const SkinWeights> preview_weights;
-  glm::vec2 handle_from{0};                  // the pointer's position at which the drag of a handle began, pixels
+  glm::vec2 handle_from{0};                  // the pointer's position when the drag of a handle began, pixels
   render::Scene scene;                       // the scene of the last frame
-  std::optional<render::Scene> other_scene;  // scene of result A in a comparison; no value: nothing is compared
+  std::optional<render::Scene> other_scene;  // scene of result A in a comparison; no value: no comparison
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
 };
@@ -110,38 +110,38 @@ ViewId view_of(render::SliceAxis axis);
 SliceState& slice_of(Views& views, ViewId id);
 std::string name_of(ViewId id);
 
-// Sets Views::scene so that the views show this document.
+// Sets Views::scene to the scene that shows this document.
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
 
-// Returns the bounding box of the volume's grid in the world, mm. Without a volume, returns a cube of 300 mm.
+// Returns the bounding box of the volume's grid in the world, mm. If there is no volume, returns a cube of 300 mm.
 struct Box {
   glm::dvec3 low, high;
 };
 Box world_box(const Document& document);
 // Returns the bounding box in the world, mm, of one tissue, or of all visible tissues if `tissue` has no value. If
-// these have no voxel, returns the volume's box.
+// there is no voxel of them, returns the volume's box.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
 
-// Returns the voxel of the volume at rest that is shown at a world point of the scene, in which the body may be posed.
-// Nothing if the posed body has no tissue there.
+// Returns the voxel of the volume at rest that is shown at a world point of the scene. The body in the scene may be
+// posed. Returns no value if there is no tissue at the point.
 std::optional<glm::ivec3> voxel_shown_at(const render::Scene& scene, const glm::dvec3& world);
 
-// Moves a slice's picture by so many pixels.
+// Moves a slice's picture by `pixels`.
 void shift(SliceState& slice, const glm::dvec2& pixels);
 // Returns the tissue voxels of the document's volume. They are computed once for each volume. The document must have a
 // volume.
 const std::shared_ptr<const TissueVoxels>& tissue_voxels(Views& views, const Document& document);
-// Returns the skin weights of a voxel of the document's volume, or empty if the voxel has none. While a tool shows
-// changed weights (Views::preview_weights), returns those.
+// Returns the skin weights of a voxel of the document's volume; empty if the voxel has none. While a tool previews
+// changed weights (Views::preview_weights), returns the changed weights.
 std::vector<BoneWeight> weights_at(Views& views, const Document& document, const glm::ivec3& voxel);
 
 // Sets the slice's camera so that a view of `size` pixels shows the whole box.
 void fit(SliceState& slice, const Box& box, const glm::vec2& size);
-// Returns a point near the middle of the box that very likely lies inside the body: the centroid of the tissue in the
-// axial slice through the middle of the box.
+// Returns a point near the middle of the box that very likely lies inside the body. It is the centroid of the tissue in
+// the axial slice through the middle of the box.
 glm::dvec3 middle_of_body(const Document& document, const Box& box);
 
-// Convert a pixel of a slice view, `size` pixels large, to a world point in mm and back.
+// These functions convert a pixel of a slice view, which is `size` pixels large, to a world point in mm and back.
 glm::dvec3 world_of(const render::SliceCamera& camera, const glm::vec2& pixel, const glm::vec2& size);
 glm::vec2 pixel_of(const render::SliceCamera& camera, const glm::dvec3& world, const glm::vec2& size);
 

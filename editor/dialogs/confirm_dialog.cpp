@@ -57,8 +57,8 @@ class QuestionDialog final : public Dialog {
   }
 
   Question question_;
-  bool shown_ = false;  // drawn in an earlier frame; only then Return answers: it may be the key that opened the dialog
-  bool had_error_ = false;  // true: an error message covered the dialog in the last frame and gets the keys
+  bool shown_ = false;      // false in the dialog's first frame, in which Return may be the key that opened the dialog
+  bool had_error_ = false;  // true: an error message covered the dialog in the last frame, so keys go to the message
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A dialog that asks a question. It has a title, a line of text or two, and a button for each answer at the lower
-// right; the recommended answer is the last one.
+// A dialog that asks a question. It has a title, one or two lines of text, and a button for each answer at the lower
+// right. The button of the recommended answer is the last one.
 #pragma once
 
 #include <functional>

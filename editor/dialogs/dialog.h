@@ -10,9 +10,9 @@
 
 namespace limber::editor {
 
-// Begins a dialog in the middle of the window and dims everything behind it. Width and height are pixels at scale 1.
-// Returns the rectangle of the dialog's content. The Close button calls `close`; if that is empty, it closes
-// Editor::dialog.
+// Begins to draw a dialog in the middle of the window, and dims everything behind the dialog. Width and height are
+// pixels at scale 1. Returns the rectangle of the dialog's content.
+//   close  called by the dialog's Close button; empty: the button closes Editor::dialog
 Rect begin_dialog(Editor& editor, const std::string& title, float width, float height,
                   const std::function<void()>& close = {});
 void end_dialog(Editor& editor);

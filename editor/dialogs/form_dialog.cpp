@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture = 240;
 constexpr std::size_t kMostBeside = 4;
-constexpr int kMostLines = 5;  // largest number of lines for the text that says what the action will do
+constexpr int kMostLines = 5;  // upper limit on the lines of the text that tells what the form's action will do
 
 bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
   const Look& look = editor.look;
@@ -55,12 +55,13 @@ class Form final : public Dialog {
  private:
   FormRequest request_;
   bool accept_ = false;
-  bool focused_ = false;               // whether the first text or number field has been given the keyboard
-  std::string words_;                  // text of the action's outcome, for which the dialog is laid out
-  std::vector<std::string> problems_;  // each field's problem for which the dialog is laid out; "" for none
+  bool focused_ = false;               // true once the first text or number field has got the keyboard
+  std::string words_;                  // text below the fields that tells what the action will do
+  std::vector<std::string> problems_;  // for each field, the text that tells what is wrong with its number; "": nothing
 };
 
-// Returns what is wrong with the number in a field, for the user; "" if it is in range or the field holds no number.
+// Returns a text that tells the user what is wrong with the number in a field. Returns "" if the number is in its
+// range, or if the field has no number.
 std::string problem_of(const FormField& field) {
   if (field.kind != FormField::Kind::Number || (field.value >= field.low && field.value <= field.high)) return "";
   char low[48], high[48];
@@ -70,7 +71,8 @@ std::string problem_of(const FormField& field) {
          (*field.unit ? std::string(" ") + field.unit : "") + ".";
 }
 
-// Returns the height of a field's row in pixels at scale 1, without the line for its problem.
+// Returns the height of a field's row in pixels at scale 1. The line below it, which tells what is wrong with the
+// field's number, is not included.
 float height_of(const Look& look, const FormField& field) {
   if (field.kind != FormField::Kind::Fact) return kRow;
   return std::max(
@@ -81,7 +83,8 @@ void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float description =
       height_of_wrapped(look.fonts.regular, request_.description, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
-  // The layout changes only while the left mouse button is up, so that nothing moves under the pointer during a press.
+  // Update the lines about wrong numbers only while the left mouse button is up. They change the dialog's layout, and
+  // nothing may move under the pointer during a press.
   if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
     problems_.clear();
     for (const FormField& field : request_.fields) problems_.push_back(problem_of(field));

@@ -30,19 +30,19 @@ FormField choice_of(std::string label, std::string description, std::vector<std:
 FormField text_of(std::string label, std::string description, std::string text);
 FormField fact_of(std::string label, std::string text);
 
-// Thrown by FormRequest::outcome while the user still has to fill in fields. `words` tells the user so; it is not shown
-// as an error.
+// Thrown by FormRequest::outcome while the user still has to fill in fields. The form shows `words`, which tell the
+// user what to fill in, as a plain text and not as an error.
 struct NotYet {
   std::string words;
 };
 
-// What happens to a typed number outside its range. Clamped: it is set to the nearest limit. Stays: it is kept, and the
-// form refuses it.
+// What a field does with a typed number outside its range. Clamped: the field replaces it by the nearest limit. Stays:
+// the field keeps the number, and the form's button is disabled until the user corrects it.
 enum class OutOfRange { Clamped, Stays };
 
-// Draws a row with a label at the left and a field. Returns true when the user has changed the field's value; for a
-// number, in the frame in which the drag or typing ends.
-//   focus  gives the field the keyboard
+// Draws a row that has a label at the left and the field at the right. Returns true in the frame in which the user has
+// changed the field's value. For a number, this is the frame in which the drag or the typing ends.
+//   focus  true: gives the field the keyboard
 bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus = false,
                 OutOfRange numbers = OutOfRange::Clamped);
 
@@ -53,12 +53,12 @@ struct FormRequest {
   std::string description;  // what the form does; shown above the fields
   std::string action;       // the label of the primary button
   std::vector<FormField> fields;
-  // Returns a text that says what the action will do with these fields; it is shown below the fields. If the action
-  // cannot be done, throws Error: the error's text is shown instead and the button is disabled. Throws NotYet to
-  // disable the button without a warning.
+  // Returns a text for the line below the fields that tells what the action will do with them. Throws Error if the
+  // action is impossible: the form then shows the error's text and disables the primary button. Throws NotYet to
+  // disable the button without showing an error.
   std::function<std::string(const Editor&, const std::vector<FormField>&)> outcome;
   std::function<void(Editor&, const std::vector<FormField>&)> act;
-  // Draws a picture beside the fields that shows what the fields mean. Empty: no picture.
+  // Draws a picture at the right of the fields that illustrates what they mean; an empty function: no picture.
   std::function<void(Editor&, const Rect&, const std::vector<FormField>&)> picture;
 };
 std::unique_ptr<Dialog> make_form(FormRequest request);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Lets the user change the numbers of the last operation afterwards, as Blender's redo panel does. Each change undoes
-// the operation and does it again with the new numbers, so that the history keeps one step. Forms and transforms run
-// their operations by act_and_allow_redo(), which allows this.
+// the operation and performs it again with the new numbers, so that the history keeps one step. This works for
+// operations that were started by act_and_allow_redo(), such as those of forms and transforms.
 #pragma once
 
 #include <cstdint>
@@ -19,31 +19,33 @@ using ActWith = std::function<void(Editor&, const std::vector<FormField>&)>;
 struct LastOperation {
   std::string label;  // the history's label of its edit; "": there is nothing to redo
   std::vector<FormField> fields;
-  std::vector<FormField> shown = fields;  // the fields as displayed, which differ from `fields` while the user drags
+  std::vector<FormField> shown = fields;  // the displayed fields; they differ from `fields` while the user drags one
   ActWith act;
-  // The history's revision after the operation. The operation can be redone only while this is the current revision.
+  // Revision number of the history after the operation. The operation can be changed only while the history still has
+  // this revision.
   std::int64_t revision = -1;
   bool made_a_step = true;  // false: the operation changed nothing, so there is no step to undo
 
-  Selection selection;  // the selection before the operation, restored before it is redone
+  Selection selection;  // selection before the operation; it is restored before the operation is performed again
   TransformSettings::Part part = TransformSettings::Part::Whole;
 
-  bool unfolded = false;  // whether the operation's panel in the view is unfolded
+  bool unfolded = false;  // true: the panel with the operation's fields, which is drawn in the view, is open
   bool wanted_at_pointer = false;
 };
 
-// Calls act(editor, fields). If that adds exactly one step to the history, the user may redo it with other fields.
-//   first  is called this time in place of `act`, if not empty; later calls use `act`
+// Performs an operation by act(editor, fields). If the call adds exactly one step to the history, the user may change
+// the fields afterwards, which undoes the step and calls `act` again.
+//   first  called in place of `act` the first time; empty: `act` is called
 void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
                         const std::function<void(Editor&)>& first = {});
 
-// Returns why the last operation cannot be adjusted now; "" when it can.
+// Returns why the user cannot change the fields of the last operation now; "" when it is possible.
 std::string why_not_redo(const Editor& editor);
-// Undoes the last operation and does it again with other fields. If it throws, the error is shown as a message and the
-// document stays as it was.
+// Undoes the last operation and performs it again with other fields. If the operation throws an error, shows the error
+// as a message and restores the document.
 void redo_last_operator(Editor& editor, const std::vector<FormField>& fields);
 
-// Draws the panel with the last operation's fields at the lower left of a view.
+// Draws the panel with the last operation's fields at the lower left corner of a view.
 void draw_last_operation(Editor& editor, const Rect& view);
 // Draws the panel with the last operation's fields as a popup, which opens at the pointer when
 // LastOperation::wanted_at_pointer is set.

@@ -116,8 +116,8 @@ class Reader final : public Dialog {
     column.space((y - top) / look.scale + 16);
   }
 
-  // Draws a block of the text word by word, wrapped between the x positions `left` and `right`. Returns the y of the
-  // block's lower end.
+  // Draws a block of the text word by word. Lines are wrapped between the x coordinates `left` and `right`. Returns the
+  // y coordinate of the block's lower end.
   float draw_block(Editor& editor, const Block& block, float left, float right, float y) {
     const Look& look = editor.look;
     const bool big = block.kind == Block::Kind::Title, heading = block.kind == Block::Kind::Heading;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kRecentFolders = 6;
 
-// Adds the disks and memory sticks that are mounted under /media, /run/media and /mnt, where desktops mount them.
+// Adds the disks and memory sticks that are mounted under /media, /run/media and /mnt, the folders where Linux desktops
+// mount them.
 void add_volumes(std::vector<Place>& places) {
   const char* user = std::getenv("USER");
   for (const Path& base : {user ? Path("/media") / user : Path("/media"),

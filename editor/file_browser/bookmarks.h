@@ -15,7 +15,7 @@ struct Place {
   std::string name;
   Path path;
 };
-std::vector<Place> places_of(const Editor& editor);  // folders that do not exist are left out
+std::vector<Place> places_of(const Editor& editor);  // returns the folders of the list that exist
 bool is_folder(const Path& path);
 
 }  // namespace limber::editor

@@ -19,15 +19,15 @@ using Clock = std::chrono::steady_clock;
 namespace {
 
 constexpr auto kPublishEvery = std::chrono::milliseconds(50);
-constexpr int kDicomTries = 16;  // at most this many files of a folder are opened to check for DICOM
+constexpr int kDicomTries = 16;  // upper limit on the files of a folder that are opened to check whether they are DICOM
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
 
-// Returns whether a file may be DICOM, judged by its name. Scanners write names without an extension, with digits as
-// the extension, or with the extension .dcm or .ima.
+// Returns true if the file's name is one that a scanner gives to DICOM images: a name without an extension, with digits
+// as the extension, or with the extension .dcm or .ima.
 bool may_be_dicom(const std::string& name) {
   const std::string end = lower(Path(name).extension().string());
   const bool number = end.size() > 1 && std::all_of(end.begin() + 1, end.end(), [](char c) {
@@ -57,7 +57,7 @@ struct DirectoryReader::Board {
   std::function<void()> on_change;
 
   // Makes the entries read so far available to DirectoryReader::news(). Returns false if the DirectoryReader has been
-  // destroyed.
+  // destroyed, so that its thread stops.
   bool publish(const DirectoryContents& now) {
     const std::lock_guard lock(mutex);
     if (stop) return false;
@@ -148,7 +148,7 @@ bool natural_less(const std::string& a, const std::string& b) {
     ++j;
   }
   if ((i < a.size()) != (j < b.size())) return i >= a.size();
-  return a < b;  // here the names differ only in case or in leading zeros
+  return a < b;  // the names are equal except for case and leading zeros
 }
 
 std::vector<int> shown_entries(const std::vector<DirectoryEntry>& entries, const DirectoryView& view) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads a folder's entries in a thread of its own, so that a slow disk or a hundred thousand files do not block the
-// editor. Also selects and sorts the entries that a file dialog shows: by type and name, and by a column.
+// editor. Also finds the entries that a file dialog shows (by file type and name), and sorts them by a column of its
+// list.
 #pragma once
 
 #include <condition_variable>
@@ -37,12 +38,12 @@ class DirectoryReader {
  public:
   // Starts to read the folder. `on_change` is called from the reader's thread whenever more entries have been read.
   explicit DirectoryReader(Path folder, std::function<void()> on_change = {});
-  ~DirectoryReader();  // does not wait for the reader's thread, since a disk may hang
+  ~DirectoryReader();  // tells the reader's thread to stop, but does not wait for it, because a disk may hang
   DirectoryReader(const DirectoryReader&) = delete;
   DirectoryReader& operator=(const DirectoryReader&) = delete;
 
   const Path& folder() const { return folder_; }
-  bool wait(double seconds) const;  // waits until the folder has been read; returns false when the time is over
+  bool wait(double seconds) const;  // waits until the folder has been read; returns false if that takes longer
   // Returns the contents read so far, or nothing if they have not changed since the last call.
   std::optional<DirectoryContents> news();
 
@@ -62,7 +63,7 @@ bool matches(const FileFilter& filter, const std::string& name);
 
 enum class SortBy { Name, Size, Time };
 struct DirectoryView {
-  const FileFilter* filter = nullptr;  // which files are shown (folders always are); null: all
+  const FileFilter* filter = nullptr;  // type of the files to show, in addition to all folders; null: all files
   std::string search;                  // text that shown names must contain, ignoring case
   bool hidden = false;
   bool folders_only = false;

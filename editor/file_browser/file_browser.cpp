@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kFirstWait = 0.08;  // longest wait for a folder's entries, s, so that most folders appear at once
+constexpr double kFirstWait = 0.08;  // longest wait for a folder's entries, s; most folders are read by then
 constexpr int kPage = 12;            // rows that PageUp and PageDown move by
 
 bool pressed(Key key, bool repeat = false) { return ImGui::IsKeyPressed(static_cast<int>(key), repeat); }
 bool pressed_return() { return pressed(Key::Return) || pressed(Key::NumEnter); }
 
-// Returns whether writing to this path would overwrite a file that the project was read from. If so, warns the user.
+// Returns true, and warns the user, if writing to this path would overwrite a file from which the project was read.
 bool refuses_to_write(Editor& editor, const Path& path, bool as_project) {
   std::vector<NamedFile> inputs = editor.inputs, outputs;
   if (!as_project && !editor.project_path.empty()) inputs.push_back({"the project", editor.project_path});
@@ -165,7 +165,8 @@ void FileBrowser::set_name(const std::string& name) {
   refocus_ = true;
 }
 
-// Replaces the ending of the name to save by the filter's first ending. Does nothing if the name's ending is unknown.
+// Replaces the ending of the proposed file name by the first ending of a file type. Does nothing if the name has an
+// ending that belongs to none of the dialog's file types.
 void FileBrowser::take_ending(const FileFilter& filter) {
   if (filter.ends.empty()) return;
   std::size_t longest = 0;

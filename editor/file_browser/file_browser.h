@@ -17,15 +17,16 @@ namespace limber::editor {
 struct FileRequest {
   enum class Kind { Open, OpenFolder, Save };
 
-  std::string purpose;  // what the file is for; the last folder is remembered for each purpose
+  std::string purpose;  // id of the file's purpose; the dialog opens in the last folder used for this purpose
   std::string title;
   std::string action;  // the label of the primary button
   Kind kind = Kind::Open;
-  std::vector<FileFilter> filters;  // file types to show; the first is active, "All files" is added; saving appends the
-                                    // active type's first ending
-  std::string name;                 // for saving: the proposed file name
-  bool takes_dicom = false;         // whether to offer to open a folder of DICOM images as one volume
-  Path folder;                      // folder to begin in if none was used for the purpose yet
+  // File types that the user can select; the first is active when the dialog opens. The dialog adds "All files" at the
+  // end. A saved file gets the first ending of the active type.
+  std::vector<FileFilter> filters;
+  std::string name;          // file name that a Save dialog proposes
+  bool takes_dicom = false;  // true: the dialog offers to open a folder of DICOM images as one volume
+  Path folder;               // initial folder if the user has not selected a file for this purpose before
   std::function<void(Editor&, const Path&)> chosen;
   std::function<void(Editor&)> left;  // called when the dialog is closed without a selection; may be empty
 };

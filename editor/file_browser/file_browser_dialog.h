@@ -25,7 +25,7 @@ class FileBrowser final : public Dialog {
   bool folders_only() const { return request_.kind == FileRequest::Kind::OpenFolder; }
 
   void go_to(Editor& editor, const Path& folder);
-  // Takes over the folder's entries that the reader has read since the last call, and updates the list's rows.
+  // Gets the folder's entries that the DirectoryReader has read so far, and updates the rows of the list.
   void follow(Editor& editor);
   void arrange_rows(Editor& editor);
   const DirectoryEntry* chosen() const { return row_ < std::ssize(rows_) ? &contents_.entries[rows_[row_]] : nullptr; }
@@ -35,8 +35,8 @@ class FileBrowser final : public Dialog {
   // Handles the pressed keys. The keyboard can do all that the mouse can.
   void take_keys(Editor& editor);
   void move_row(Editor&);
-  // Sets the text of the name field. The field gets a new ImGui id, since ImGui ignores a new text for a field that is
-  // being typed in.
+  // Sets the text of the name field. The field gets a new ImGui id, because ImGui ignores a new text while the user
+  // types in the field.
   void set_name(const std::string& name);
   void take_ending(const FileFilter& filter);
   void go_up(Editor& editor);
@@ -52,12 +52,12 @@ class FileBrowser final : public Dialog {
   void make_folder(Editor& editor);
 
   void draw_places(Editor& editor, const Rect& rect);
-  // Draws the folder's path as a row of buttons, one for each folder in it, and the search field at the right. If not
-  // all fit, the last folders of the path are drawn.
+  // Draws the path of the current folder as a row of buttons, one for each folder of the path, and the search field at
+  // the right. If there is not enough room, draws only the last folders of the path.
   void draw_path(Editor& editor, const Rect& rect);
   static std::string crumb(const Path& path);
   void draw_search(Editor& editor, const Rect& rect);
-  // Returns whether the dialog's text field should take the keyboard. It should whenever no other widget is in use.
+  // Returns true if the dialog's text field should get the keyboard, which is whenever no other widget is in use.
   bool wants_focus(Editor& editor);
   void draw_list(Editor& editor, const Rect& rect);
   // Draws the row of a file or folder. Returns true when the row was double clicked.
@@ -90,8 +90,8 @@ class FileBrowser final : public Dialog {
   bool falling_ = false, changed_ = true, reveal_ = false, refocus_ = true, row_moved_ = false, filter_open_ = false,
        focus_new_folder_ = false;
   bool text_was_empty_ = true;
-  bool seen_ = false;  // drawn in an earlier frame; before that, a pressed key may be the one that opened the dialog
-  bool had_error_ = false;  // true: an error message covered the dialog in the last frame and gets the keys
+  bool seen_ = false;       // false in the dialog's first frame, in which a pressed key may have opened the dialog
+  bool had_error_ = false;  // true: an error message covered the dialog in the last frame, so keys go to the message
 };
 
 }  // namespace limber::editor

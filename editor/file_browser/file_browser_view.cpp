@@ -220,7 +220,7 @@ void FileBrowser::column_head(Editor& editor, const char* title, const Rect& rec
   put_text(editor, look.fonts.small, by_ == by || state.hovered ? look.theme.text : look.theme.text2, rect, words,
            align);
   if (!state.clicked) return;
-  falling_ = by_ == by ? !falling_ : by != SortBy::Name;  // sizes and dates: largest and latest first
+  falling_ = by_ == by ? !falling_ : by != SortBy::Name;  // a first click sorts sizes and dates in descending order
   by_ = by;
   changed_ = reveal_ = true;
 }

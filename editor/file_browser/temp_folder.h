@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A temporary folder, which is empty at first. The destructor deletes it with its content. After a crash, the next
-// start of the program deletes it.
+// Makes a temporary folder, which the destructor deletes with its content. If the program crashes before that, its next
+// start deletes the folder.
 #pragma once
 
 #include <memory>

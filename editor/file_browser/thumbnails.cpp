@@ -19,8 +19,8 @@ std::string thumbnail_png(Editor& editor) {
   scene.outlined.reset();
   scene.dark_background = true;
   render::View3D picture(views.renderer);
-  // Each call advances the clock `now` by a second. The renderer so takes the view to be idle, and draws it in full
-  // detail.
+  // Advance the time given to the renderer by a second per call. The renderer refines the picture of a view that has
+  // not changed for a while; so it draws full detail without a real wait.
   for (double now = 0; now == 0 || !picture.complete(); now += 1)
     picture.draw(scene, views.body.camera, kThumbnailSize, now, 1);
   return render::png_of(picture.read());
@@ -58,7 +58,7 @@ void look_at_recents(Editor& editor) {
         if (!packed.empty()) one.picture = std::make_shared<render::Image>(render::parse_png(packed, path.string()));
         else if (!cache.empty())
           one.picture = std::make_shared<render::Image>(render::read_png(cached_thumbnail(cache, path)));
-      } catch (const Error&) {  // a picture that cannot be read is left out
+      } catch (const Error&) {  // ignored: the file is then listed without a picture
       }
     }
     return [facts](Editor& e) {

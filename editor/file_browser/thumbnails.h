@@ -16,15 +16,15 @@ inline constexpr glm::ivec2 kThumbnailSize{240, 160};  // pixels
 
 // Renders the body as the 3D view shows it now. Returns the picture as the bytes of a PNG file; "" without a volume.
 std::string thumbnail_png(Editor& editor);
-// Stores the current picture in the cache folder for the volume file at `path`, which cannot hold a picture itself.
-// Failures are ignored.
+// Renders the body and stores the picture in the cache folder, as the picture of the volume file at `path`. (A project
+// file contains its own picture.) Failures are ignored.
 void keep_thumbnail(Editor& editor, const Path& path);
-// Returns the path in the cache folder of the picture of the file at `path`. The picture's name changes whenever the
-// file changes.
+// Returns the path of a picture in the cache folder: the picture of the volume file at `path`. The path depends on the
+// time of the file's last change, so that no outdated picture is found.
 Path cached_thumbnail(const Path& cache, const Path& path);
 
-// Starts a background task that finds out which recent files still exist, reads their pictures, and sets
-// Editor::recent_facts.
+// Starts a background task that checks which recent files still exist, and reads their pictures. Its result is stored
+// in Editor::recent_facts.
 void look_at_recents(Editor& editor);
 
 }  // namespace limber::editor

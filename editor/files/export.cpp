@@ -66,7 +66,7 @@ void check_export(ExportKind kind, const Path& path) {
   else check_place(path);
 }
 
-// Draws the body in as many frames as a complete picture needs, and returns the picture.
+// Draws the body until the picture is complete, which may take several frames, and returns the picture.
 render::Image picture_of_body(Views& views, const render::Camera& camera, const glm::ivec2& size) {
   render::View3D picture(views.renderer);
   for (double now = 0; now == 0 || !picture.complete(); now += 1) picture.draw(views.scene, camera, size, now, 1);
@@ -174,7 +174,8 @@ void write_with(const Exporter& exporter, const Result& result, const TissueTabl
                path);
 }
 
-// Starts the task that writes the result. frequency: of the simulated field, Hz; only some exporters use it.
+// Starts the task that writes a result to a file.
+//   frequency  frequency of the field that another program will simulate, Hz; used by exporters of electric properties
 void start_export(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
   const Document& document = editor.document();
   const auto tissues = result->from_tissues ? result->from_tissues : document.tissues;

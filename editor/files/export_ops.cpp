@@ -21,7 +21,7 @@ std::string stem_of(const Editor& editor) {
 struct ExportFacts {
   const char *id, *label, *description;
   ExportKind kind;
-  std::vector<FileFilter> filters;  // formats; the first one's first ending is proposed
+  std::vector<FileFilter> filters;  // file formats; the proposed file name has the first ending of the first format
   const char* suffix;               // appended to the proposed file name
 };
 
@@ -75,8 +75,9 @@ std::string file_name_of(const Editor& editor, const Result& result) {
   return name;
 }
 
-// Asks for a file and writes the currently selected result to it, even if another result is selected when the user
-// accepts the file. name: proposed file name without its ending.
+// Opens the file browser and writes the result that is selected now to the file that the user names. This result is
+// also written if the user selects another result before accepting the file name.
+//   name  proposed file name without its ending
 void browse_for_result(Editor& editor, const std::string& title, const char* purpose, const std::string& name,
                        const std::vector<FileFilter>& filters,
                        void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {

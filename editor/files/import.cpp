@@ -62,8 +62,8 @@ void warn_of(Editor& editor, const Path& path, const std::vector<std::string>& w
   for (const std::string& warning : warnings) editor.messages.warn(path.filename().string(), warning);
 }
 
-// Returns a document that has the file's tissues and volume type. It has no rig or weights, because those of the
-// previous document were made for another volume.
+// Returns a new document with the file's tissues and volume type. The new document has no rig and no weights, because
+// the rig and weights of the open document were made for another volume.
 Document with_volume(const VolumeFile& file) {
   Document document;
   document.tissues = shared(merge_tissue_tables(file.tissues, nullptr));
@@ -98,12 +98,12 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
 
 // ---- reading in tasks, with a copy of the document made when the task began
 
-// The content of a volume file: labels, or a grey image. It is both if its values are whole numbers, as labels are, but
-// look like grey values.
+// The content of a volume file: labels, a grey image, or both. A file is read as both if its values are whole numbers,
+// which may be labels, but are distributed like grey values.
 struct ReadVolume {
   std::optional<VolumeFile> labels;
   std::shared_ptr<const GreyVolume> image;
-  std::string doubt;  // why the file seems to be a grey image and no label volume; "": it is labels
+  std::string doubt;  // why the file seems to be a grey image; "": it is a label volume
 };
 
 ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
@@ -120,7 +120,8 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   return read;
 }
 
-// Opens labels at once. Shows a grey image in a dialog first, and opens it as labels only if the user agrees.
+// Opens a label volume by calling `take`. If the file seems to be a grey image, first shows the image in a dialog, and
+// calls `take` only if the user agrees to open the image as labels.
 void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
   if (!read.image) return take(editor);
   show_grey_image(editor, {.image = read.image,
@@ -134,8 +135,8 @@ using Change = std::function<void(Document&)>;
 struct Import {
   Change change;
   std::vector<std::string> warnings;
-  double inside = 1;     // for a rig: fraction of its bone length inside tissue
-  ReadVolume read = {};  // for a volume: its content
+  double inside = 1;     // rigs only: fraction of the total bone length that is inside tissue
+  ReadVolume read = {};  // volumes only: the file's content
   std::vector<NamedFile> inputs = {};
 };
 
@@ -149,11 +150,12 @@ Import read_tissues(const Path& path, const Document& now) {
   return {[merged](Document& d) { d.tissues = merged; }};
 }
 
-// Least fraction of a rig's bone length that should lie inside tissue. Below it, the rig probably belongs to another
-// body or uses another unit of length.
+// Smallest fraction of a rig's total bone length that lies inside tissue if the rig fits the body. Below this fraction
+// the rig probably belongs to another body or uses another unit of length.
 constexpr double kMisplaced = 0.5;
 
-// Reads a rig. BVH files normally have y up; one with z up is rotated, so that the rig stands upright.
+// Reads a rig. In BVH files the y axis normally points up. If the z axis points up in a file, its rig is rotated to
+// stand upright.
 ArmatureFile read_upright(const Path& path) {
   if (extension_of(path) != ".bvh") return read_armature_file(path);
   Motion motion = read_bvh(path);
@@ -236,7 +238,8 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
           file.warnings, 1, std::move(read)};
 }
 
-// Returns whether the parts of the document that an import depends on are the same at its end (now) as at its start.
+// Returns true if the parts of the document that an import reads did not change during the import. `then` is the
+// document at the start of the import, `now` the document at its end.
 bool same_basis(FileKind kind, const Document& then, const Document& now) {
   if (kind == FileKind::Volume || kind == FileKind::Motion) return true;
   if (then.volume != now.volume) return false;
@@ -244,7 +247,7 @@ bool same_basis(FileKind kind, const Document& then, const Document& now) {
                                    : kind == FileKind::Rig || then.armature == now.armature;
 }
 
-// Opens the files one after another. Each waits until the one before it is part of the document.
+// Opens the files one after another. The next file is opened when the document contains the file before it.
 void open_in_order(Editor& editor, std::vector<std::pair<FileKind, Path>> files, Then then) {
   if (files.empty()) {
     if (then) then(editor);
@@ -288,7 +291,7 @@ FileKind kind_of(const Path& path) {
   if (end == ".vtk" || end == ".arm" || end == ".gltf" || end == ".glb") return FileKind::Rig;
   if (is_weights_path(path)) return FileKind::Weights;
   if (is_volume_path(path)) return FileKind::Volume;
-  // An unknown file counts as a volume, because the volume reader reports what is wrong with it.
+  // A file of an unknown kind is passed to the volume reader, whose error message says what is wrong with the file.
   return is_tissue_table(path) ? FileKind::Tissues : FileKind::Volume;
 }
 

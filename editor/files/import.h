@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Opens and imports files. The kind of a file is found from its content. Tasks read the files while the editor stays
-// responsive; a file changes the project only if it is complete and fits the project. A volume or a project replaces
-// the open one; any other file is imported as an edit of the open project.
+// Opens and imports files. The kind of a file is found from its name and content. Tasks read files while the editor
+// stays responsive; a file changes the project only if it is complete and fits the project. A volume or a project
+// replaces the open one; any other file is imported as an edit of the open project.
 #pragma once
 
 #include <string>
@@ -12,19 +12,19 @@
 
 namespace limber::editor {
 
-// Kinds of files. If several files are opened together, they are imported in this order.
+// Kinds of files. Files that are opened together are imported in the order of these kinds.
 enum class FileKind { Project, Volume, Tissues, Rig, Weights, Motion, Pose };
-// Returns the kind of a file. Throws Error if the file is missing or of no kind that can be read.
+// Returns the kind of a file. Throws Error if the file is missing or is not of one of these kinds.
 FileKind kind_of(const Path& path);
 
-// Opens files that were dropped, given on the command line, or selected in the Open dialog. Finds out their kinds
-// first.
+// Opens files that were dropped on the window, given on the command line, or selected in the Open dialog. Finds out the
+// kind of each file first.
 void open_files(Editor& editor, std::vector<Path> paths, Then then = {});
 void open_volume(Editor& editor, const Path& path, Then then = {});
 
-// Imports a file into the open project as one edit. A volume replaces the open one and removes everything made for it.
-// As in open_volume(), a grey image is first shown in a dialog (editor/volume/grey_image_panel.h), and becomes a label
-// volume only if the user agrees.
+// Imports a file into the open project as one edit. A volume replaces the open volume and removes the rig, weights and
+// other data made for the old volume. A grey image is first shown in a dialog (editor/volume/grey_image_panel.h), and
+// becomes a label volume only if the user agrees.
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then = {});
 
 enum class Sample { Arm, ArmXray, Body, BodyTissues };

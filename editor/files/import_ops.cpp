@@ -47,7 +47,7 @@ void import_dicom(Editor& editor) {
                   .chosen = [](Editor& e, const Path& path) { open_files(e, {path}); }});
 }
 
-// Imports a file of any kind. A volume replaces the open one; any other file is added to the project.
+// Imports a file of any kind. A volume replaces the open volume; any other file is added to the open project.
 void import_any(Editor& editor) {
   browse(editor, {.purpose = "import",
                   .title = "Import",

@@ -38,7 +38,8 @@ Project project_of(Editor& editor) {
   return project;
 }
 
-// Marks the revision as saved. Call it in the editor's thread after a save.
+// Updates the editor after a save: marks the saved revision in the history, and sets the project's path and name. Call
+// this in the editor's thread.
 void met_save(Editor& editor, const Path& path, std::int64_t revision, const std::string& remark) {
   editor.history.mark_saved(revision);
   editor.life.saved_at = seconds_now();
@@ -48,7 +49,8 @@ void met_save(Editor& editor, const Path& path, std::int64_t revision, const std
   if (!remark.empty()) editor.messages.info(path.filename().string(), remark);
 }
 
-// Writes the latest state to the session's journal, so that a save that fails loses no edits. Returns the session.
+// Writes the latest document to the session's journal and returns the session. Called before a save, so that no edits
+// are lost if the save fails.
 std::shared_ptr<Session> session_with_edits(Editor& editor) {
   auto session = session_of(editor);
   session->keep(editor.document(), editor.history.steps()[editor.history.position()].label);
@@ -75,8 +77,8 @@ void open_copy(Editor& editor, const Path& path, Then then) {
 void offer_copy(Editor& editor, const Path& path, Then then) {
   ask(editor,
       {.title = path.filename().string() + " is open in another Limber",
-       .lines = {"Only one editor can write a project. Close it there, or open a copy of its last save and save that "
-                 "under another name."},
+       .lines = {"Only one editor can write a project. Close the project there, or open a copy of its last save and "
+                 "save the copy under another name."},
        .icon = icon::kInfo,
        .answers = {{"Cancel", {}}, {"Open a copy", [path, then](Editor& e) { open_copy(e, path, then); }, true}}});
 }
@@ -115,8 +117,8 @@ void offer_leftover(Editor& editor, bool wanted) {
                .answers = {{"Discard", drop}, {"Recover", recover_into_open, true}}});
 }
 
-// Saves the project's file when the interval set in the preferences has passed. It is for users who want more than the
-// journal, which stores every edit anyway.
+// Saves the project's file when there have been unsaved edits for the interval set in the preferences. The journal
+// stores every edit in any case; autosave is for users who want the project's file to be up to date too.
 void autosave(Editor& editor) {
   ProjectLife& life = editor.life;
   if (!editor.history.unsaved() || editor.project_path.empty() || editor.preferences.autosave_minutes == 0)
@@ -131,7 +133,8 @@ void autosave(Editor& editor) {
 }  // namespace
 
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
-  // Before the file was read, the user agreed to discard the unsaved edits. If there are newer edits, ask again.
+  // The user agreed to discard unsaved edits before the new file was read. If the user has made edits since then, ask
+  // again.
   if (editor.history.unsaved() && editor.history.revision() != opened->agreed)
     return ask_about_unsaved(editor, [opened](Editor& e) {
       opened->agreed = e.history.revision();
@@ -280,7 +283,7 @@ void look_for_leftovers(Editor& editor) {
 void recover(Editor& editor, const Recoverable& leftover) {
   std::error_code ignored;
   const Path beside = leftover.project.empty() ? Path() : journal_path(leftover.project);
-  // If the project's file exists with its journal beside it, open the project and recover its edits there.
+  // If the project's file exists and the journal lies beside this file, opening the project recovers the edits.
   if (!leftover.project.empty() && std::filesystem::exists(leftover.project, ignored) && leftover.journal == beside)
     return open_project(editor, leftover.project, {}, Leftover::Recover);
   ask_about_unsaved(editor, [leftover](Editor& e) {

@@ -22,15 +22,15 @@ using Then = std::function<void(Editor&)>;
 struct Opened {
   Document document;
   std::string name;                        // project name in the top bar
-  std::string label;                       // label of the first step in the history
-  std::shared_ptr<Session> session;        // session of the project's file; null without a file
+  std::string label;                       // label of the first step in the undo history
+  std::shared_ptr<Session> session;        // keeps the journal of edits; null: started when needed
   std::string editor;                      // views and layout, as JSON (view_state_json.h)
   std::shared_ptr<const Extents> extents;  // bounding boxes of the tissues; null: computed when needed
-  bool unsaved = false;                    // true after a recovery: the project counts as unsaved
+  bool unsaved = false;                    // true: the project has unsaved edits, as after a recovery
   std::int64_t agreed = 0;                 // revision of the open project that the user agreed to replace
   bool recover = false;                    // true: recover edits left by a crash without asking
   Then then;                               // called after the project is open
-  std::vector<NamedFile> inputs;           // without a project file: the files that were read
+  std::vector<NamedFile> inputs;           // files that were read if there is no project file
 };
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened);
 
@@ -52,7 +52,7 @@ void look_for_leftovers(Editor& editor);
 void recover(Editor& editor, const Recoverable& leftover);
 void discard_leftover(Editor& editor, const Recoverable& leftover);
 
-// Passes new edits to the journal, and tells the user if they cannot be stored. Call once per frame.
+// Writes new edits to the journal, and shows a message if they cannot be stored. Call once per frame.
 void keep_edits(Editor& editor);
 
 }  // namespace limber::editor

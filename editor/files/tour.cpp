@@ -84,7 +84,7 @@ const std::vector<TourStep>& tour_steps() {
        "tools that prepare a volume.",
        "Steps/Prepare/Statistics", "prepare.statistics", counted},
       {"Let tissue follow the bones",
-       "Compute spreads weights from the bones through the flesh. You can go on working meanwhile.",
+       "Click Compute. It spreads weights from the bones through the tissue around them while you go on working.",
        "Steps/Skin/Compute", "skin.heat", weighted},
       {"Bend the elbow", "Flex turns a bone about its joint by an angle in degrees. Select Forearm.",
        "Steps/Pose/Flex...", "pose.flex", bent},

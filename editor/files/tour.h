@@ -13,7 +13,7 @@ namespace limber::editor {
 struct Editor;
 
 struct TourStep {
-  const char *title, *text, *widget, *operator_id;  // operator_id: the bubble shows its keys
+  const char *title, *text, *widget, *operator_id;  // operator_id: the bubble shows this operator's shortcut
   bool (*done)(const Editor&, const TourStart&);
 };
 const std::vector<TourStep>& tour_steps();

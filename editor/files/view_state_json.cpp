@@ -37,7 +37,7 @@ void take(const Json& json, const char* key, double low, double high, Number& va
   if (number >= low && number <= high) value = static_cast<Number>(number);
 }
 
-// Reads an enum value that is stored as a number. Ignores a number that is not in [0, count).
+// Reads an enum value that is stored as a number. A number outside [0, count) leaves `value` unchanged.
 template <class Choice>
 void take_choice(const Json& json, const char* key, int count, Choice& value) {
   int number = -1;

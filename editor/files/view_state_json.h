@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Writes and reads the state of the editor that a project's file stores beside the document: workspace, window
-// arrangement, cameras, display settings. It is JSON; a value that cannot be read leaves the editor's value unchanged.
+// arrangement, cameras, display settings. The format is JSON. For a value that cannot be read, the editor keeps its
+// own.
 #pragma once
 
 #include <string>

@@ -7,14 +7,14 @@ namespace limber::editor {
 
 namespace {
 
-// Returns whether a text field does nothing with the key but insert the key's character.
+// Returns true if the key only inserts its character into a text field.
 bool inserts(Key key, const Modifiers& held) {
   const bool printed =
       (key >= Key::A && key <= Key::Digit9) || key == Key::Space || (key >= Key::Comma && key <= Key::NumPlus);
   return printed && !held.ctrl && !held.alt;
 }
 
-// Summarizes the events that a frame has taken so far. fits() tells whether the frame can also take the given event.
+// Summarizes the events that a frame has taken so far. fits() tells whether the frame can also take a given event.
 struct Seen {
   KeysFor keys_for;
   Modifiers held;
@@ -44,8 +44,8 @@ struct Seen {
     if (event.key == Key::Ctrl) held.ctrl = event.down;
     if (event.key == Key::Alt) held.alt = event.down;
     const bool together = keys_for == KeysFor::Text && (event.key >= Key::Ctrl || inserts(event.key, held));
-    // A modifier key (Ctrl, Shift, ...) does not count as a key here, so that the key or button that it modifies still
-    // fits into the same frame.
+    // A modifier key (Ctrl, Shift, ...) does not count as a key here. The key or button that it modifies may then be
+    // taken in the same frame.
     if (event.key < Key::Ctrl && !together) any_key = true;
     keys[static_cast<std::size_t>(event.key)] = !together;
   }
@@ -86,8 +86,8 @@ void InputState::apply(const Event& event) {
     wheel_sideways += wheeled->sideways;
   }
   if (const auto* key = std::get_if<KeyChanged>(&event)) keys[static_cast<std::size_t>(key->key)] = key->down;
-  // The editor gets no event for keys and buttons that are released while another window has the focus. So all of them
-  // count as released when the focus is lost.
+  // While another window has the focus, the editor gets no event for keys and buttons that are released. All of them
+  // therefore count as released when the focus is lost.
   if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
     std::fill(std::begin(buttons), std::end(buttons), false);
     std::fill(std::begin(keys), std::end(keys), false);

@@ -28,7 +28,7 @@ struct ButtonChanged {
 };
 struct Wheeled {
   float steps;         // steps of the mouse wheel; positive: turned away from the user
-  float sideways = 0;  // the same for a sideways swipe on a touch pad; positive: to the left
+  float sideways = 0;  // steps of a sideways swipe on a touch pad; positive: to the left
 };
 struct KeyChanged {
   Key key;
@@ -61,9 +61,9 @@ class EventQueue {
   std::deque<Event> events_;
 };
 
-// The state of the keys, the mouse buttons and the pointer after the events that apply() was called with.
+// The state of the keys, the mouse buttons and the pointer after all events that were passed to apply().
 struct InputState {
-  glm::vec2 pointer{-1e6f};  // pixels of the window; at first outside of it
+  glm::vec2 pointer{-1e6f};  // pixels of the window; at first outside the window
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(Key::Count)] = {};
   float wheel = 0, wheel_sideways = 0;  // steps of the mouse wheel in this frame
@@ -77,7 +77,7 @@ struct InputState {
 // Passes a frame's events to the current ImGui context. `state` is the input state after these events. Call it before
 // ImGui::NewFrame.
 void tell_imgui(const std::vector<Event>& events, const InputState& state);
-// Tells the current ImGui context which Key each of ImGui's keys is. Call it once per context.
+// Tells the current ImGui context which Key corresponds to each of ImGui's keys. Call it once per context.
 void teach_imgui_keys();
 
 }  // namespace limber::editor

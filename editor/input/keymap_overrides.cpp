@@ -19,8 +19,8 @@ std::vector<Chord> chords_of(const Keymap& keymap, const std::string& context, c
 Keymap changed(Keymap keymap, const KeyChanges& changes) {
   for (const auto& [place, keys] : changes) {
     auto& bindings = keymap.contexts[place.first];
-    // The new keys are inserted where the old ones were: of two operators with the same key, the first in the list gets
-    // it.
+    // Inserts the new keys where the operator's old keys were: if two operators have the same key, the first in the
+    // list gets the key.
     const auto first = std::find_if(bindings.begin(), bindings.end(),
                                     [&, &id = place.second](const Binding& b) { return b.operator_id == id; });
     auto at = static_cast<std::size_t>(first - bindings.begin());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The user's changes of the key map: for an operator in a context, the keys that replace its original ones. After such
-// a change, two operators of a context may have the same key. The first of them gets the key, and clashes() reports
-// both.
+// The user's changes of the key map. A change replaces the original keys of an operator in a context by other keys.
+// After a change, two operators of a context may have the same key. The first of them gets the key, and clashes()
+// reports both operators.
 #pragma once
 
 #include <map>
@@ -13,20 +13,22 @@
 
 namespace limber::editor {
 
-using KeyChanges =
-    std::map<std::pair<std::string, std::string>, std::vector<std::string>>;  // (context, operator) -> keys
+using KeyChanges = std::map<std::pair<std::string, std::string>,
+                            std::vector<std::string>>;  // key: context and operator id; value: the chords that replace
+                                                        // the original ones
 
-// Returns the key map with these changes applied. Keys that cannot be read are left out.
+// Returns the key map after the changes. Keys that cannot be read are left out.
 Keymap changed(Keymap keymap, const KeyChanges& changes);
-// Records in `changes` that the operator has these chords in the context. If these are its original chords, the
-// operator's entry in `changes` is removed instead.
+// Records in `changes` that the operator has these chords in the context. If the operator has these chords in the
+// original key map, its entry in `changes` is removed instead.
 void rebind(KeyChanges& changes, const Keymap& original, const std::string& context, const std::string& operator_id,
             const std::vector<Chord>& chords);
 
 // Returns the changes that turn the key map `original` into `wanted`.
 KeyChanges differences(const Keymap& original, const Keymap& wanted);
 
-// Reads a JSON list of objects with context, operator and keys; entries that cannot be read are left out.
+// Reads the changes from a JSON list of objects with context, operator and keys. Entries that cannot be read are left
+// out.
 KeyChanges key_changes_from_json(const std::string& text);
 
 struct Clash {

@@ -38,8 +38,8 @@ struct Modifiers {
   bool operator==(const Modifiers&) const = default;
 };
 
-// A key, button press, drag or wheel step together with its modifiers. If a press and a drag of the same button are
-// both bound, the press runs its operator only when the button is released without a drag, as a click.
+// A key, button press, drag or wheel step, together with its modifiers. If both the press and the drag of a button are
+// bound, the press runs its operator only when the button is released without a drag, as a click.
 struct Chord {
   enum class Kind { Key, Press, Drag, Wheel } kind = Kind::Key;
   Modifiers modifiers;

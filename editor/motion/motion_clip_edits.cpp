@@ -38,8 +38,8 @@ std::string facts_of(const Motion& motion) {
   return text;
 }
 
-// Returns as text the most frequent rotation order of the joints and which joints have another order:
-// "ZXY; differs in 3 joints: Hips XYZ, ..."
+// Returns a text with the most frequent Euler angle order of the motion's joints, and with the joints that have another
+// order: "ZXY; differs in 3 joints: Hips XYZ, ..."
 std::string orders_of(const Motion& motion) {
   constexpr std::size_t kNamed = 4;
   std::map<std::string, std::vector<std::string>> joints;

@@ -12,17 +12,19 @@ namespace limber::editor {
 
 // The number of bones of the rig that a clip moves, and how certain their matches are.
 struct Matching {
-  int bones = 0, joints = 0;  // number of bones that the clip moves, and of joints that move them
-  int sure = 0;               // number of bones whose names match a joint with certainty
+  int bones = 0, joints = 0;  // bones that the clip moves; joints of the motion that move them
+  int sure = 0;               // bones that match a joint's name with certainty
 };
 Matching matching_of(const ClipOnRig& clip);
 int moved_bones(const ClipOnRig& clip);
-// Returns the retarget map that the clip uses: the map stored in the clip, or the match by names if the stored map has
-// no entries; empty when no name matches.
+// Returns the retarget map of the clip: for each bone of the rig, the joint of the motion that moves the bone. The map
+// is stored in the clip. If the stored map has no entries, joints and bones are matched by their names. Returns an
+// empty map when no name matches.
 RetargetMap map_in_use(const ClipOnRig& clip);
 
 // Returns a clip that begins at frame `start` and plays the motion at the motion's own frame rate. If the motion's
-// skeleton equals the document's rig in position and size, the clip moves the body exactly as far as the motion does.
+// skeleton equals the document's rig in position and size, the clip also moves the body along the ground as the motion
+// does. Otherwise the body stays at its rest position.
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
 void choose_clip(Editor& editor, int clip);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators on motion clips: how a clip moves the rig (retarget map, travel of the body, rest poses), renaming,
-// deleting, trimming and resampling.
+// Operators that rename, delete, trim and resample motion clips, and that set how a clip moves the rig: the joint that
+// moves each bone (retarget map), the root motion, and the rest poses of clip and rig.
 #include <algorithm>
 #include <cmath>
 
@@ -76,10 +76,10 @@ Operator reference(const char* id, const char* label, const char* description, R
       [which](const RetargetSettings& s) { return s.reference == which; });
 }
 
-// Returns an operator that sets how the arms are held in the rest pose of the clip or of the rig, such as a T-pose. It
-// discards the rest offsets that were read from a map file, because they would replace those that are computed for the
-// new rest pose.
-//   whose  member of RestStances: `source` is the clip, `rig` the rig
+// Returns an operator that sets the kind of rest pose of the clip or of the rig, such as a T-pose. The operator
+// discards the rotation offsets at rest that were read from a retarget map file. They would override the offsets that
+// are computed for the new rest pose.
+//   whose  which member of RestStances to set: `source` for the clip, `rig` for the rig
 Operator rest(const char* id, const char* label, const char* description, RestStance RestStances::*whose,
               RestStance which) {
   return {id,
@@ -154,8 +154,8 @@ void delete_clip(Editor& editor) {
   commit(editor, "Delete clip " + name, std::move(next));
 }
 
-// Trims the shown clip to its playing range. Frames of the motion outside the range are no longer used, and keys and
-// markers outside are deleted.
+// Trims the shown clip to its playing range. Frames of the motion outside the range are kept but not used; keys and
+// markers outside the range are deleted.
 void trim(Editor& editor) {
   edit_clip(editor, "Trim clip", PoseThen::FromClip, [](Clip& clip) {
     const int low = clip.range_start, high = std::max(low, clip.range_end);
@@ -236,14 +236,16 @@ std::vector<Operator> motion_clip_operators() {
       {"motion.map_by_names", "Match by names", "", "Motion", "Match joints and bones by the meaning of their names.",
        map_by_names, needs_both},
       {"motion.load_map", "Load map...", icon::kOpen, "Motion",
-       "Load from a file which joint moves each bone, as --map does on the command line.", load_map, needs_both},
+       "Load the joint that moves each bone from a retarget map file, as --map does on the command line.", load_map,
+       needs_both},
       {"motion.save_map", "Save map...", icon::kSave, "Motion",
-       "Save to a file which joint moves each bone, with the rotation offsets between them.", save_map, needs_both},
+       "Save the joint that moves each bone, and the rotation offsets between them, to a retarget map file.", save_map,
+       needs_both},
       travel("motion.travel_locked", "Locked", "Keep the body at its rest position.", Travel::Locked),
-      travel("motion.travel_in_place", "In place", "Let the body move up and down but walk on the spot.",
-             Travel::InPlace),
+      travel("motion.travel_in_place", "In place",
+             "Move the body up and down as in the clip, but not along the ground.", Travel::InPlace),
       travel("motion.travel_free", "Free",
-             "Let the body travel as in the clip, scaled to the length of the rig's legs.", Travel::Free),
+             "Move the body along the ground as in the clip, scaled to the length of the rig's legs.", Travel::Free),
       reference("motion.reference_found", "Most upright",
                 "Match the rig's rest pose to the frame of the clip in which the figure stands most upright.",
                 Reference::Found),
@@ -276,7 +278,7 @@ std::vector<Operator> motion_clip_operators() {
            "Treat the rig's palms as facing forward at rest; for rigs without fingers.", &RestStances::rig,
            RestStance::Anatomical),
       setting(
-          "motion.mirror", "Mirror", "Exchange left and right: the rig's left side moves as the clip's right side.",
+          "motion.mirror", "Mirror", "Swap left and right: the rig's left side moves as the clip's right side.",
           [](RetargetSettings& s) { s.mirror = !s.mirror; }, [](const RetargetSettings& s) { return s.mirror; }),
       {"motion.rename_clip", "Rename clip...", icon::kRename, "Motion", "Rename the shown clip.", ask_clip_name,
        needs_clip},

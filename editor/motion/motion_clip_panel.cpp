@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Panel of the Pose workspace that selects the shown clip and sets how it moves the rig: the match of joints and bones,
-// the travel of the body, and the rest poses of clip and rig.
+// Panel of the Pose workspace that selects the shown clip and sets how the clip moves the rig: the joint that moves
+// each bone, the root motion, and the rest poses of clip and rig.
 #include <cstdio>
 
 #include "editor/context/operator_button.h"
@@ -15,7 +15,7 @@ namespace limber::editor {
 namespace {
 
 // Draws a field that selects one of several operators, of which exactly one is checked.
-//   words  texts of the choices, shorter than the operators' labels; empty: the labels
+//   words  short texts of the choices; empty: the operators' labels are the texts
 void choice_of_operators(Editor& editor, const Rect& rect, const char* name, std::initializer_list<const char*> ids,
                          std::initializer_list<const char*> words = {}) {
   std::vector<std::string> labels;
@@ -55,15 +55,15 @@ void draw_match(Editor& editor, Column& column, const ClipOnRig& clip) {
   operator_button(editor, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");
 }
 
-// Draws a note that names the joints whose limbs were turned, because the clip file's rest pose differs from the rest
-// pose that the user selected.
+// Draws a note that names the joints whose rest rotation was changed to get the rest pose that the user selected, such
+// as a T-pose. They are changed where the rest pose in the motion's file differs from the selected one.
 void draw_turned(Editor& editor, Column& column) {
   const Look& look = editor.look;
   const ClipOnRig* clip = clip_on_rig(editor);
   if (!clip || !clip->retarget() || clip->retarget()->turned_joints().empty()) return;
   const std::vector<int>& turned = clip->retarget()->turned_joints();
   const std::string first = clip->clip()->motion->joints[turned.front()].name;
-  const std::string words = "Turned from the file's rest pose into this one: " + first +
+  const std::string words = "Turned from the file's rest pose into the selected one: " + first +
                             (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") + ".";
   const Rect row = column.row(34);
   put_wrapped(editor, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y},
@@ -91,7 +91,7 @@ void draw_motion(Editor& editor, Column& column) {
         bool mirrored = clip->retarget.mirror;
         const std::string problem = on_rig->problem();
         draw_match(editor, column, *on_rig);
-        choice_of_operators(editor, column.property("Travel"), "Travel",
+        choice_of_operators(editor, column.property("Root motion"), "Root motion",
                             {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
         choice_of_operators(editor, column.property("Reference"), "Reference",
                             {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});

@@ -138,7 +138,7 @@ void whole_range(Editor& editor) {
   });
 }
 
-// Returns the index of the last marker at or before the play head; nothing without such a marker.
+// Returns the index of the last marker at or before the play head; nothing when every marker is after it.
 std::optional<std::size_t> marker_here(const Editor& editor) {
   const Clip* clip = shown_clip(editor);
   std::optional<std::size_t> found;

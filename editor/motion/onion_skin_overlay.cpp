@@ -39,8 +39,9 @@ void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& arma
 
 // ---- Outlines of the body
 
-constexpr std::int64_t kMostVertices = 20'000;  // upper limit on the number of vertices of the surface
-constexpr float kCell = 2;                      // size of the grid cells of silhouette(), pixels at scale 1
+constexpr std::int64_t kMostVertices =
+    20'000;                 // upper limit on the vertices of the coarse surface that outlines are made of
+constexpr float kCell = 2;  // edge of the grid cells from which silhouette() finds outlines, pixels at scale 1
 // Time limit per drawn frame for new outlines. At least one missing outline is computed in each drawn frame.
 constexpr std::chrono::milliseconds kTime{8};
 constexpr std::size_t kMostKept = 1000;  // largest number of cached outlines

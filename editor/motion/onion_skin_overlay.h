@@ -16,11 +16,11 @@
 namespace limber::editor {
 
 struct OnionOutlines {
-  std::shared_ptr<const LabelVolume> volume;  // the volume of which `surface` is computed
+  std::shared_ptr<const LabelVolume> volume;  // the label volume from which `surface` is computed
   std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const SkinnedSurface> surface;  // null until the surface is computed
 
-  // Everything that the cached outlines depend on. A change of any of it discards them.
+  // The inputs of the cached outlines. When one of these inputs changes, the outlines are discarded.
   struct Seen {
     std::vector<double> view;
     std::shared_ptr<const Clip> clip;

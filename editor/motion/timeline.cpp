@@ -11,7 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWindowRate = 60;  // frames drawn per second above which playing never counts as slow
+constexpr double kWindowRate =
+    60;  // playing is never reported as slow at this drawing rate or above, frames per second
 
 std::shared_ptr<const Clip> clip_part(const Document& document) {
   return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];
@@ -24,8 +25,8 @@ std::shared_ptr<const Pose> pose_part(const Armature& armature, Pose pose) {
 // Returns whether the clip moves the rig, by a retargeted motion or by keys.
 bool moves(const ClipOnRig& clip) { return clip.retarget() || !clip.clip()->keys.empty(); }
 
-// Returns which frame of the playing range is shown after a playing time, from 0 to count - 1; nothing when playing has
-// reached the end and stops there.
+// Returns the frame to show after a playing time, counted from the start of the playing range: 0 to count - 1. Returns
+// nothing when the clip has played to the end of the range and stops there.
 //   frames  playing time since the start of the range, in frames
 //   count   number of frames of the range
 std::optional<int> frame_after(double frames, int count, AtEnd at_end) {
@@ -86,7 +87,8 @@ const ClipOnRig* clip_on_rig(Editor& editor) {
 void show_frame(Editor& editor, int frame) {
   editor.timeline->frame = frame;
   const ClipOnRig* clip = clip_on_rig(editor);
-  // At the document's frame the document's pose is shown instead of the clip's, because it has the user's changes.
+  // At the document's frame the views show the document's pose, not the clip's, because the user may have changed the
+  // document's pose.
   if (frame == editor.document().frame && !editor.timeline->play.on) drop_shown_pose(editor);
   else if (clip && moves(*clip)) show_pose(editor, clip->at(frame));
   editor.touch();

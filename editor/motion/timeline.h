@@ -38,8 +38,8 @@ struct Timeline {
     double since = 0, from = 0;  // time in s, and frame, at which playing began
     AtEnd at_end = AtEnd::Loop;
     double speed = 1;
-    // Measures slow drawing: the time at which counting drawn frames began, s, the measured frames per second (0:
-    // drawing is fast enough), and the number of frames drawn since then.
+    // The drawing rate while the clip plays. counted_since: time at which the count of drawn frames began, s; pictures:
+    // number of frames drawn since that time; pictures_per_second: measured rate, 0 if drawing is fast enough.
     double counted_since = 0, pictures_per_second = 0;
     int pictures = 0;
   } play;
@@ -52,7 +52,7 @@ struct Timeline {
   } onion;
   bool seconds = false;       // whether the ruler counts seconds instead of frames
   std::set<int> chosen;       // frames of the selected keys
-  std::map<int, int> moving;  // while keys are dragged: from each selected key's stored frame to its shown frame
+  std::map<int, int> moving;  // while keys are dragged: shown frame of each selected key, by its stored frame
   std::optional<Rect> box;    // the selection rectangle that the user draws around keys
   struct {                    // the curve of the active bone's angle over the shown frames
     const Clip* clip = nullptr;
@@ -62,9 +62,9 @@ struct Timeline {
 
   // The frames that the timeline shows: the frame at the ruler's left end (`low`) and the number of frames (`count`).
   struct {
-    std::string clip;  // name and frames of the clip to which the window was fitted
+    std::string clip;  // text with the name and frames of the clip to which the shown frames were fitted
     double low = 0, count = 250;
-    std::optional<int> followed;  // the frame of the play head for which the window was last checked or moved
+    std::optional<int> followed;  // play head's frame when follow_head() ran last
   } window;
   Rect ruler, marks, lane, keys, area;  // rectangles of the timeline's rows, pixels; empty: not shown
 
@@ -83,8 +83,8 @@ FrameRange playing_range(const Editor& editor);
 // Returns the smallest range of frames that contains the clip's motion, playing range, keys and markers.
 FrameRange all_frames(const Clip& clip);
 double frame_rate(const Editor& editor);
-// Returns the shown clip applied to the document's rig, so that it gives a pose for each frame; nullptr without a clip
-// or a rig.
+// Returns the shown clip retargeted to the document's rig, which gives the rig's pose at each frame; nullptr without a
+// clip or a rig.
 const ClipOnRig* clip_on_rig(Editor& editor);
 
 // ---- Going to another frame
@@ -96,22 +96,22 @@ void go_to_frame(Editor& editor, int frame);
 // ---- Playing
 void play(Editor& editor, int direction);
 void stop_playing(Editor& editor);
-// Both are called once per drawn frame. advance_time() is called before the views are drawn and goes to the playing
-// clip's current frame. await_next_frame() asks the editor to wake up when the next frame is due.
+// The editor calls these two functions once per drawn frame. advance_time(), called before the views are drawn, goes to
+// the playing clip's current frame. await_next_frame() asks the editor to wake up when the next frame is due.
 void advance_time(Editor& editor);
 void await_next_frame(Editor& editor);
 
 // ---- Edits
 
 // Returns the pose of the document's clip at the document's frame; the document's own pose when no clip moves the rig.
-//   prepared  receives the clip applied to the rig, so that the next call is faster; may be nullptr
+//   prepared  a cache, may be nullptr: receives the clip retargeted to the rig, which the next call then reuses
 std::shared_ptr<const Pose> pose_at_frame(const Document& document, std::unique_ptr<ClipOnRig>* prepared = nullptr);
 // Adds the clip to the document, makes it the shown clip and goes to its first frame.
 void add_clip(Document& document, Clip clip);
-// Changes the shown clip and commits this as one edit. Without a clip, adds a clip that has no motion first. FromClip:
-// takes the document's pose from the changed clip; Stays: keeps the document's pose, with the user's changes. When the
-// edit removes frames of the motion or changes the frame rate, the play head stays at its time, or moves to the nearest
-// remaining frame.
+// Changes the shown clip and commits the change as one edit. If there is no clip, first adds a clip without a motion.
+// FromClip: takes the document's pose from the changed clip; Stays: keeps the document's pose, with the user's changes.
+// When the edit removes frames of the motion or changes the frame rate, the play head keeps its time in seconds. If the
+// clip no longer has that time, the play head moves to the nearest frame of the clip.
 enum class PoseThen { FromClip, Stays };
 void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
 // Inserts keys at the document's frame for the bones in which `pose` differs from `before`.

@@ -175,7 +175,8 @@ class Transport {
     words("Frame");
     number("Frame", shown_frame(editor_), {}, [this](int frame) {
       stop_playing(editor_);
-      // A frame outside a motion is not allowed. A clip without a motion may have keys at any frame.
+      // A typed frame outside a clip that has a motion moves to the clip's nearest frame. A clip without a motion has
+      // no such limits, because keys may be set at any frame.
       const Clip* clip = shown_clip(editor_);
       const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
       go_to_frame(editor_, std::clamp(frame, all.low, all.high));
@@ -267,7 +268,7 @@ double round_step(double least) {
 std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
 
 // The drawn play head: a vertical line with a tab in the ruler. The tab shows the frame or the time in seconds,
-// whichever the ruler shows. While the line is outside the shown frames, the tab stays at that end of the ruler.
+// as the ruler does. While the line is left or right of the shown frames, the tab stays at that end of the ruler.
 struct Head {
   float x;
   int beyond;  // -1: left of the shown frames; 1: right of them; 0: visible
@@ -332,9 +333,9 @@ void draw_ruler(Editor& editor) {
   }
 }
 
-// Draws the markers with their names and returns the rectangles that they cover. A name is cut off before the next
-// marker. The name of the last shown marker is drawn on its left if it does not fit on the right and the left has more
-// room.
+// Draws the markers with their names and returns the rectangles that they cover. A marker's name stands on its right
+// and is cut off before the next marker. The name of the last shown marker is drawn on its left if it does not fit on
+// its right and there is more room on its left.
 std::vector<Rect> draw_markers(Editor& editor) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
@@ -374,7 +375,8 @@ float degrees_from_rest(const Pose& pose, int bone) {
   return static_cast<float>(glm::degrees(2 * std::atan2(std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z), std::abs(q.w))));
 }
 
-// Adds up to kAtOnce samples to the curve, and asks for another drawn frame until the curve is complete.
+// Adds up to kAtOnce samples to the curve of the active bone's angle. While samples are missing, asks the editor to
+// draw another frame, in which the next samples are added.
 void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
   Timeline& timeline = *editor.timeline;
   auto& curve = timeline.curve;
@@ -403,7 +405,7 @@ void draw_curve(Editor& editor, const Rect& bar) {
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
   const float low = bar.high.y - editor.look.px(5),
-              height = bar.height() - editor.look.px(32);  // the curve stays below the clip's name
+              height = bar.height() - editor.look.px(32);  // leaves room for the clip's name above the curve
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
   const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
@@ -522,7 +524,7 @@ void place_rows(Editor& editor, const Rect& rect) {
   };
   editor.timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
   timeline.ruler = row(look.px(kRuler));
-  // With little height the rows are thinner. With very little height there is no row of markers.
+  // If the timeline is low, its rows are thinner. If it is very low, the row of markers is left out.
   const float rest = rect.high.y - y;
   timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks))
                    : rest >= look.px(3 * kThinRow)  ? row(look.px(kThinRow))

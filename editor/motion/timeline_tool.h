@@ -19,7 +19,7 @@ void fit_window_to_keys(Editor& editor);  // needs selected keys
 // removes it) and drags the selected keys. Elsewhere, deselects all keys and shows the frame under the pointer while
 // the button is held.
 void press_timeline(Editor& editor);
-// Begins to draw a rectangle that selects the keys inside; with Shift, it adds them to the selection.
+// Begins to draw a rectangle that selects the keys inside. With Shift, these keys are added to the selection.
 void box_keys(Editor& editor);
 // Begins a modal tool that moves, scales or duplicates the selected keys by the pointer or a typed number.
 enum class KeyChange { Move, Scale, Duplicate };

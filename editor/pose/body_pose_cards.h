@@ -16,8 +16,8 @@ const PoseLibrary& body_pose_cards(const Editor& editor);
 // Returns the built-in poses for the open rig with their pictures. The pictures are drawn at the first call.
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor);
 
-// Returns the name by which TransformSettings::library_pose refers to a built-in pose. It differs from the name of any
-// pose of the user.
+// Returns the name by which TransformSettings::library_pose refers to a built-in pose. No pose of the user can have
+// this name.
 std::string library_name(const NamedPose& body_pose);
 bool is_body_pose(const std::string& library_name);
 

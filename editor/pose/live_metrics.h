@@ -28,8 +28,10 @@ struct DenseWish {
   std::shared_ptr<const SkinWeights> weights;
   Pose pose;
   Blend blend = Blend::DualQuaternion;
-  std::shared_ptr<const Seams> seams = nullptr;       // the document's edited seams; null: the automatic seams
-  std::shared_ptr<const BoneMap> bone_map = nullptr;  // the document's bone map; null: none
+  std::shared_ptr<const Seams> seams =
+      nullptr;  // surfaces where limbs touch at rest, edited by the user; null: found automatically
+  std::shared_ptr<const BoneMap> bone_map =
+      nullptr;  // user's choice of the rig bone that each bone label follows; null: none
 
   bool operator==(const DenseWish&) const = default;
 };
@@ -39,9 +41,9 @@ struct PoseMetrics {
     std::string name;
     glm::vec3 colour{0};
     double mm3_before = 0, mm3_after = 0;
-    std::optional<double> change_percent() const;  // nothing if mm3_before is 0
+    std::optional<double> change_percent() const;  // volume change; nothing if mm3_before is 0
   };
-  std::vector<Row> tissues;  // largest volume first; one row for all bone tissues together
+  std::vector<Row> tissues;  // by volume, the largest first; all bone tissues share one row
   Row total;
   std::int64_t overlap_voxels = 0;
 };
@@ -49,9 +51,10 @@ PoseMetrics measure(const DenseWish& wish, Progress& progress = no_progress());
 
 class LiveMetrics {
  public:
-  // Called once per drawn frame. Starts to measure, and stops when the pose changes or no panel shows the numbers.
-  //   wish     the body and the pose to measure; nothing: none
-  //   settled  whether the pose has stopped changing; measuring starts only then
+  // Called once per drawn frame. Starts measuring when the pose has stopped changing. Stops measuring when the pose
+  // changes or no panel shows the numbers.
+  //   wish     the body and the pose to measure; nothing: nothing is measured
+  //   settled  whether the pose has stopped changing
   void follow(Editor& editor, const std::optional<DenseWish>& wish, bool settled);
   void want() { wanted_ = true; }  // called by a panel in each drawn frame that shows the numbers
   // Returns the metrics of the shown pose; null until measuring has ended.
@@ -64,7 +67,7 @@ class LiveMetrics {
  private:
   void stop(Editor& editor);
 
-  DenseWish of_;  // the body and pose measured now or last, also if that failed
+  DenseWish of_;  // the body and pose of the current or last measurement, also of a failed one
   PoseMetrics metrics_;
   std::shared_ptr<const LabelVolume> metrics_of_;
   bool is_known_ = false, wanted_ = false;

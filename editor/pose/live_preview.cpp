@@ -37,9 +37,9 @@ bool same_bones(const Armature& a, const Armature& b) {
   return std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
 }
 
-// Appends to `motions` the motion from rest of each bone of the weights, in the order of the weights, which may differ
-// from the rig's. Returns false when a bone of the weights is not in the rig.
-//   posed  motions of the rig's bones from rest
+// Appends to `motions` the rest-to-posed transform of each bone that the weights name. The weights' order of bones may
+// differ from the rig's order. Returns false when the weights name a bone that the rig does not have.
+//   posed  rest-to-posed transforms of the bones, in the rig's order
 bool motions_of_weights(const SkinWeights& weights, const Armature& armature, const std::vector<RigidTransform>& posed,
                         std::vector<RigidTransform>& motions) {
   for (const std::string& name : weights.bones()) {
@@ -51,7 +51,7 @@ bool motions_of_weights(const SkinWeights& weights, const Armature& armature, co
   return true;
 }
 
-// A body that is prepared for computing its preview maps (PreviewMap) at one node spacing.
+// A body, and the data that computing a preview map (PreviewMap) of this body reuses for every pose.
 struct ReadyBody {
   PosedBody body;
   std::unique_ptr<LivePreview> preview;
@@ -70,7 +70,8 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
           std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};
 }
 
-// Returns the motions from rest of the rig's bones in the part of the target pose that a running FEM solve has reached.
+// Returns the rest-to-posed transforms of the rig's bones in the pose that a running FEM solve has reached. The solve
+// moves the bones step by step from rest to the target pose.
 std::vector<RigidTransform> motions_of_rig(const Solve& solve, const SolveFeed::Seen& seen) {
   const Armature& armature = *solve.from.armature;
   std::vector<RigidTransform> motions = posed_from_rest(armature, part_of_pose(*solve.from.pose, seen.reached));
@@ -136,7 +137,8 @@ void MapMaker::work() {
         }
         made.map = ready.preview->update(made.wish.motions, made.wish.blend, made.wish.mesh);
       };
-      // After a brush stroke the user may already paint the next one, so the preview map is computed at low priority.
+      // After a brush stroke the preview map is computed at low priority, so that it does not slow down the next
+      // stroke.
       const bool is_painted =
           ready.body.volume == made.wish.body.volume && ready.body.weights != made.wish.body.weights;
       if (is_painted || made.wish.mesh.rest) in_background(make);
@@ -185,9 +187,9 @@ void LivePose::follow(const Solve& solve, double now) {
   }
 }
 
-// Selects the preview map that the views show. Returns the body and the pose in which tissue volumes are to be
-// measured; nothing at rest, in the Skin workspace, during a finite element solve, and when the volume cannot follow
-// the pose.
+// Selects the preview map that the views show. Returns the body and the pose in which LiveMetrics measures the tissue
+// volumes; nothing at rest, in the Skin workspace, during a finite element solve, and when the volume cannot follow the
+// pose.
 std::optional<DenseWish> LivePose::choose(Editor& editor) {
   shown_ = nullptr;
   seen_ = {};

@@ -33,8 +33,9 @@ struct PosedBody {
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const Armature> armature;  // rig from whose bone names the limbs are found; null: none
-  std::shared_ptr<const Seams> seams;        // the document's edited seams; null: the automatic seams
-  std::shared_ptr<const BoneMap> bone_map;   // the document's bone map; null: none
+  std::shared_ptr<const Seams>
+      seams;  // surfaces where limbs touch at rest, edited by the user; null: found automatically
+  std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
 
   bool operator==(const PosedBody&) const = default;
 };
@@ -42,11 +43,11 @@ struct PosedBody {
 // A request for a preview map (PreviewMap): a body and the pose to show it in.
 struct PoseWish {
   PosedBody body;
-  std::vector<RigidTransform> motions;  // motion of each bone of the weights from rest
+  std::vector<RigidTransform> motions;  // rest-to-posed transform of each bone that the weights name
   Blend blend = Blend::DualQuaternion;
-  MeshPose mesh = {};  // a deformed tet mesh that moves tissue instead of the bones; empty: none
-  std::vector<RigidTransform> rig_motions = {};  // motion from rest in which each bone of the rig is drawn
-  Pose pose = {};                                // the rig's pose; empty while a tet mesh moves the tissue
+  MeshPose mesh = {};  // a FEM solve's tet mesh, from which tissue is deformed; empty: deformed by skinning
+  std::vector<RigidTransform> rig_motions = {};  // rest-to-posed transform of each drawn bone of the rig
+  Pose pose = {};                                // the rig's pose; empty while a FEM solve is shown
 
   bool operator==(const PoseWish&) const;
 };
@@ -60,13 +61,13 @@ class MapMaker {
   };
 
   // Starts a thread that computes preview maps.
-  //   divisor  the maps' node spacing is the body's default spacing divided by this
-  //   wake     called from that thread when take() has a new result
+  //   divisor  the body's default node spacing is divided by this number to get the spacing of the maps
+  //   wake     called from the new thread when a result is ready for take()
   MapMaker(int divisor, std::function<void()> wake);
   ~MapMaker();
 
   void ask(const PoseWish& wish);  // replaces a request that still waits; ignores a repeated request
-  std::optional<Made> take();      // returns the newest result once, then nothing until the next result
+  std::optional<Made> take();      // returns a new result; nothing if there is none since the last call
   bool busy() const;
 
  private:
@@ -91,15 +92,15 @@ class LivePose {
   // Returns the preview map to show: the map of the shown pose, or of an earlier pose until that map is computed; null
   // at rest and when the volume cannot follow the pose.
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
-  // Returns the motions from rest in which the rig's bones are drawn. They belong to the pose of the shown preview map,
-  // so that bones and body match; empty (rest) before the first map. If no volume follows the pose, they belong to the
-  // newest pose.
+  // Returns the rest-to-posed transforms with which the rig's bones are drawn. Their pose is the pose of the shown
+  // preview map, so that bones and body match. Before the first map is computed, the result is empty: bones are drawn
+  // at rest. If no volume follows the pose, their pose is the newest pose.
   const std::vector<RigidTransform>& rig_motions() const { return seen_.rig_motions; }
   const Pose& pose() const { return seen_.pose; }
   // Returns why the volume does not follow the pose, such as "No weights yet"; "" when it follows or the rig is at
   // rest.
   const std::string& trouble() const { return trouble_; }
-  bool posed() const { return posed_; }  // whether the volume is to follow a pose other than rest
+  bool posed() const { return posed_; }  // true if the views show the volume in a pose other than rest
   LiveMetrics& metrics() { return metrics_; }
   bool busy() const { return swift_.busy() || thorough_.busy(); }
 
@@ -109,7 +110,7 @@ class LivePose {
   void show(const MapMaker::Made& made);
 
   MapMaker swift_, thorough_;
-  MapMaker::Made coarse_, fine_;  // newest preview map of swift_ and of thorough_
+  MapMaker::Made coarse_, fine_;  // newest map of swift_ (coarse, fast) and of thorough_ (fine, slow)
   PoseWish wish_;
   double since_ = 0;  // Editor::now when wish_ changed last, s
   std::shared_ptr<const PreviewMap> shown_;

@@ -41,7 +41,7 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
   const Pose turned = next;
   for (int bone = 0; bone < std::ssize(pairs); ++bone) {
     const int other = pairs[bone];
-    // When the bones of both sides were turned, each keeps its own rotation.
+    // If both bones of a left-right pair were turned, each of them keeps its own rotation.
     if (other == bone || turned.rotation[bone] == before.rotation[bone] ||
         turned.rotation[other] != before.rotation[other])
       continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the document's pose, to which X-mirror and joint limits are applied, and access to the pins and poles by
-// which inverse kinematics holds limbs.
+// Edits of the document's pose, with X-mirror and joint limits applied. Also returns the document's pins and poles:
+// pins keep the ends of limbs in place during inverse kinematics, and limbs bend towards their poles.
 #pragma once
 
 #include <memory>
@@ -16,12 +16,12 @@ namespace limber::editor {
 // preview is computed. Gizmos and marks are drawn at this pose.
 Pose seen_pose(const Editor& editor);
 
-// Returns the number of bones of the limb that ends in this bone. Going up from the bone, the limb ends below the first
+// Returns the number of bones of the limb whose last bone is `bone`. The limb's first bone is the child of the nearest
 // ancestor that has more than one child, so that an arm does not include the trunk.
 int limb_of(const Armature& armature, int bone);
 
-// With X-mirror on, returns `next` with every rotation that differs from `before` also applied, mirrored, to the bone
-// of the other side of the body. With X-mirror off, returns `next` unchanged.
+// With X-mirror on, returns `next` with each rotation that differs from `before` also applied, as a mirror image, to
+// the bone's counterpart on the other side of the body. With X-mirror off, returns `next` unchanged.
 Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 
 // Returns the pose with the rotations of `bones` restricted to their joint limits; unchanged while Keep to joint limits

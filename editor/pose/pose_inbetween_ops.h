@@ -12,8 +12,8 @@ namespace limber::editor {
 
 std::vector<Operator> pose_neighbour_operators();
 
-// Returns a blend whose amount goes from the selected bones' last key before the shown frame to their first key after
-// it; nothing when either key is missing.
+// Returns a blend of the selected bones from their last key before the shown frame (amount 0) to their first key after
+// the shown frame (amount 1); nothing when one of these keys is missing.
 std::optional<Blend> between_keys(Editor& editor);
 
 }  // namespace limber::editor

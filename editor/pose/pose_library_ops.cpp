@@ -26,7 +26,7 @@ std::string needs_chosen(const Editor& editor) {
          : editor.document().poses.empty() ? "Add a pose to the library first"
                                            : "Select a pose of the library first";
 }
-// Returns why the selected pose cannot be renamed or deleted; "" when it can. Built-in poses cannot.
+// Returns why the selected pose cannot be renamed or deleted, such as that the pose is built in; "" when it can.
 std::string needs_own(const Editor& editor) {
   if (const std::string why = needs_chosen(editor); !why.empty()) return why;
   return is_body_pose(editor.transform_settings->library_pose) ? "This pose is built in and cannot be changed" : "";
@@ -38,8 +38,8 @@ std::size_t place_of(const PoseLibrary& library, const std::string& name) {
       library.begin());
 }
 
-// Returns a PNG picture of the shown pose as seen in the 3D view: of the body, or also of the bones when the body does
-// not follow the pose. Returns "" without a volume.
+// Returns a PNG picture of the shown pose as seen in the 3D view; "" without a volume. The picture shows the body. When
+// the body does not follow the pose, the picture also shows the bones.
 std::string picture_of_pose(Editor& editor) {
   Views& views = *editor.views;
   if (!editor.document().volume) return "";

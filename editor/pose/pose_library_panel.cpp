@@ -105,7 +105,7 @@ void draw_card(Editor& editor, const NamedPose& pose, const Rect& rect, std::str
 }
 
 // Draws the cards of the poses in rows.
-//   describe  returns the description of the pose with an index
+//   describe  called with a pose's index in the library; returns the pose's description
 template <class Describe>
 void draw_cards(Editor& editor, Column& column, const PoseLibrary& library, const Describe& describe) {
   const Look& look = editor.look;

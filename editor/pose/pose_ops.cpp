@@ -35,9 +35,9 @@ void ask_flex(Editor& editor) {
   std::vector<std::string> names;
   for (const Bone& bone : editor.document().armature->bones) names.push_back(bone.name);
   int chosen = editor.selection.bone.value_or(-1);
-  // Without a selected bone, the dialog begins with a bone that can bend.
+  // If no bone is selected, the dialog proposes a bone that can bend.
   if (chosen < 0 || chosen >= std::ssize(names)) {
-    // Selects the first bone with a hinge joint, such as a forearm, else the first bone that has a parent.
+    // Proposes the first bone with a hinge joint, such as a forearm. Without a hinge, proposes the first child bone.
     const auto& bones = editor.document().armature->bones;
     const auto child = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.parent >= 0; });
     chosen = child == bones.end() ? 0 : static_cast<int>(child - bones.begin());
@@ -54,7 +54,9 @@ void ask_flex(Editor& editor) {
     const JointLimits& limits = e.document().armature->bones[fields[0].chosen].limits;
     if (limits.type != JointLimits::Type::Hinge)
       return std::string(
-          "Not a hinge: it turns about the axis at right angles to it and its parent. The angle is added to its pose.");
+          "Not a hinge. The bone turns about the axis at right angles to the bone and its parent. The angle is added "
+          "to "
+          "its current pose.");
     char text[96];
     std::snprintf(text, sizeof text, "A hinge, from %.0f\u00b0 to %.0f\u00b0. The angle is added to its current pose.",
                   glm::degrees(limits.minimum), glm::degrees(limits.maximum));
@@ -103,7 +105,8 @@ void copy_pose(Editor& editor) {
   for (int bone : chosen_bones(editor)) editor.posing.copied[armature.bones[bone].name] = pose.rotation[bone];
 }
 
-// Applies the copied rotations to the bones of the same names, or with `flip`, mirrored to the bones of the other side.
+// Applies each copied rotation to the bone of the same name. If `flip`, applies it as a mirror image to the bone's
+// counterpart on the other side of the body.
 void paste_pose(Editor& editor, bool flip) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   Pose copied = rest_pose(*armature);
@@ -235,8 +238,8 @@ glm::dvec3 pole_of(const Editor& editor, int bone) {
   return middle + glm::normalize(out) * std::max(20.0, std::sqrt(squared) / 2);
 }
 
-// Returns the bone, which ends a limb. With X-mirror on, also returns its counterpart on the other side if that bone
-// ends a limb of two bones or more.
+// Returns `bone`. With X-mirror on, also returns the bone's counterpart on the other side of the body if the
+// counterpart is the last bone of a limb with at least two bones.
 std::vector<int> limbs_of(const Editor& editor, int bone) {
   std::vector<int> bones = with_other_sides(editor, {bone});
   std::erase_if(bones, [&](int other) { return other != bone && limb_of(*editor.document().armature, other) < 2; });
@@ -319,7 +322,7 @@ std::vector<Operator> pose_operators() {
        "Paste the copied rotations mirrored to the bones of the other side.", [](Editor& e) { paste_pose(e, true); },
        needs_copy},
       {"pose.flip", "Flip pose", icon::kMirror, "Pose",
-       "Exchange the poses of the left and the right side of the body, mirrored.", flip_pose, needs_pose},
+       "Swap the poses of the left and the right side of the body, mirrored.", flip_pose, needs_pose},
       {"pose.push", "Push pose", "", "Pose",
        "Exaggerate the pose of the selected bones away from rest, with the pointer or by percent.", push, needs_pose},
       {"pose.relax", "Relax pose", "", "Pose",
@@ -355,7 +358,7 @@ std::vector<Operator> pose_operators() {
        [](Editor& e) { e.transform_settings->auto_ik = !e.transform_settings->auto_ik; }, nullptr,
        [](const Editor& e) { return e.transform_settings->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit",
-       "Apply every change of a bone to its counterpart on the other side too, mirrored.",
+       "Also apply every change of a bone, mirrored, to its counterpart on the other side.",
        [](Editor& e) { e.transform_settings->x_mirror = !e.transform_settings->x_mirror; }, nullptr,
        [](const Editor& e) { return e.transform_settings->x_mirror; }},
       space_operator("space.global", "Global axes", "Align gizmos and axis locks with the axes of the world.",

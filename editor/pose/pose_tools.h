@@ -9,27 +9,27 @@
 
 namespace limber::editor {
 
-// Returns the axes about which the gizmo's rings at a bone's head turn, as columns. These are the axes of the space.
-// For a hinge that keeps its limits, they are rotated so that the nearest of them lies on the hinge's axis: dragging
-// this ring by an angle then turns the hinge by the same angle.
+// Returns the axes of the gizmo's three rings at a bone's head, as columns: the axes of the coordinate space `space`.
+// If the bone's joint is a hinge and joint limits are kept, the axes are rotated so that the axis nearest to the
+// hinge's axis coincides with it. Dragging this ring by an angle then turns the hinge by the same angle.
 glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
                          const ViewProjection& view);
-// Begins to turn the selected bones. If the user drags a ring of the gizmo, the angle is measured along the ring as the
-// view shows it.
+// Begins to turn the selected bones. If the user drags a ring of the gizmo, the angle is measured in the plane of the
+// ring.
 std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip = {});
 // Begins to drag the tail of the active bone while the bones of its limb follow. Dragging the root bone moves the whole
 // body. Pinned tails keep their positions.
 std::unique_ptr<TransformTool> begin_dragging(Editor& editor, const Grip& grip = {});
 
-// A blend of the selected bones between two poses: `from` at share 0, `to` at share 1. The share is base + slope *
-// amount. The pointer changes the amount; a typed number is the amount in percent.
+// A blend of the selected bones between two poses. At share 0 the bones have the pose `from`, at share 1 the pose `to`.
+// The share is base + slope * amount. The pointer changes the amount; a typed number is the amount in percent.
 struct Blend {
   std::string label;  // name of the edit in the undo history
   std::string words;  // text shown beside the amount
   Pose from, to;
   double base = 0, slope = 1;
   double begin = 0, most = 1;     // initial amount; largest amount that the pointer can set
-  std::optional<Pose> back = {};  // the pose to which negative amounts blend, instead of `to`
+  std::optional<Pose> back = {};  // pose that negative amounts blend towards; none: amounts are not negative
 };
 std::unique_ptr<TransformTool> begin_blending(Editor& editor, const Blend& blend);
 // Begins to drag the pole of the active bone's limb. The limb's middle joint turns towards the pole.

@@ -35,8 +35,8 @@ int nearest_axis(const glm::dmat3& axes, const glm::dvec3& direction) {
 }
 constexpr double kSnapDegrees = 5, kSnapFine = 1;  // snapping steps in degrees: Ctrl, Ctrl + Shift
 constexpr double kTrackballPerPixel = 0.01;        // trackball: turn per pixel of pointer motion at scale 1, radians
-constexpr double kNearLimit = 5;                   // an angle closer to its limit is drawn as a warning, degrees
-constexpr double kHeld = 0.1;     // a bone further than this from the asked rotation is stopped by a limit, degrees
+constexpr double kNearLimit = 5;  // angles closer than this to a limit have the warning colour, degrees
+constexpr double kHeld = 0.1;     // a bone counts as stopped by a limit above this error of its rotation, degrees
 constexpr double kLimitArc = 96;  // radius of the arc that shows the limits, pixels at scale 1
 
 class Turning final : public TransformTool {
@@ -156,11 +156,11 @@ class Turning final : public TransformTool {
     return next;
   }
 
-  // Returns whether a joint limit stops the bone before it reaches the rotation that the user asks for. A hinge that is
-  // turned about another axis than its own always stays short of it; it counts as stopped only when it does not turn at
-  // all or has reached an end of its range.
-  //   asked  the pose that the user asks for, without limits
-  //   kept   the pose with limits applied
+  // Returns whether a joint limit keeps the bone from the rotation that the user asks for. A hinge that the user turns
+  // about another axis than the hinge's own axis never reaches the asked rotation. Therefore a hinge counts as stopped
+  // only when it does not turn at all or has reached an end of its range.
+  //   asked  the pose that the user asks for, before joint limits are applied
+  //   kept   the pose after joint limits are applied
   bool is_held(int index, const Pose& asked, const Pose& kept) const {
     const auto apart = [&](const glm::dquat& a, const glm::dquat& b) {
       return glm::degrees(2 * std::acos(std::min(1.0, std::abs(glm::dot(a, b))))) > kHeld;
@@ -213,13 +213,13 @@ class Turning final : public TransformTool {
     commit_pose(editor, "Rotate " + what, std::move(next));
   }
 
-  // Returns the active joint's angle in a pose, with its limits, measured about the axis of this turn; nothing when the
-  // joint has no limits about this axis.
+  // Returns the active joint's angle and limits in a pose. Both are measured about the axis that the tool turns about.
+  // Returns nothing when the joint has no limits about this axis.
   std::optional<JointReading> reading(const Pose& pose) const {
     return read_joint(armature_->bones[active_], pose.rotation[active_], glm::conjugate(above_) * axis(), at_rest_);
   }
 
-  // Returns the angle that the active joint would have after the turn without its limits, radians.
+  // Returns the angle that the active joint would have after this turn if it had no limits, radians.
   //   start  the joint's angle and limits before the turn
   double asked(const JointReading& start) const { return start.angle + start.sense * glm::radians(shown_); }
 
@@ -252,15 +252,15 @@ class Turning final : public TransformTool {
   std::vector<int> bones_;
   int active_ = 0;
   bool trackball_;
-  bool by_ring_, on_hinge_ = false;  // whether a ring is dragged; whether this ring lies on the hinge
+  bool by_ring_, on_hinge_ = false;  // true if a ring is dragged; true if the ring's axis is the hinge's
   glm::dmat3 ring_axes_{1};
   float scale_;
   AngleDrag drag_;
-  const glm::dvec3 at_rest_;       // turn of the active joint from the anatomical position to rest, radians
+  const glm::dvec3 at_rest_;       // active joint's rotation from the anatomical position to rest, axis * radians
   std::optional<int> held_;        // the bone that a joint limit stops; the active bone if several
   glm::dquat above_{1, 0, 0, 0};   // rotation of the active bone's parent from rest
   glm::dvec2 rolled_{0};           // trackball: turns about the view's up and right axes, radians
-  double shown_ = 0, turned_ = 0;  // degrees: turn about the axis; trackball's total turn
+  double shown_ = 0, turned_ = 0;  // angle about the axis; total angle of the trackball, degrees
 };
 
 }  // namespace

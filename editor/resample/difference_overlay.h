@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Marks in the 3D view and in slices where the compared volumes A and B differ. A voxel of A at whose position B has
-// another tissue or none gets a colour of A, and the other way round; all other voxels are dimmed. The renderer gets
-// the colours as a field of one colour per voxel. A task computes them once for a pair of volumes.
+// another tissue or none gets a colour of A. A differing voxel of B gets a colour of B. All other voxels are dimmed.
+// The renderer gets one colour per voxel. A task computes the colours once for a pair of volumes.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@
 
 namespace limber::editor {
 
-// One of the two compared volumes: its differing voxels and their colours.
+// One of the two compared volumes, with its differing voxels and the colours of all its tissue voxels.
 struct ComparedSide {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueVoxels> tissue;
   DifferingSide differing;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
 };
 struct ComparedVolumes {
   ComparedSide a, b;
-  std::shared_ptr<const TissueTable> tissues;  // voxels that do not differ have these colours, dimmed
+  std::shared_ptr<const TissueTable> tissues;  // tissue colours, drawn dimmed at voxels that do not differ
 
   const ComparedSide& side(bool of_a) const { return of_a ? a : b; }
 };
@@ -35,8 +35,8 @@ struct DifferenceView {
   std::optional<int> task;
 };
 
-// Colours of the marked voxels of volume A or B, sRGB. air: the other volume has no tissue at the voxel; tissue: it has
-// another tissue.
+// Colours of the marked voxels of volume A or B, sRGB. `air` is for voxels where the other volume has no tissue,
+// `tissue` for voxels where the other volume has another tissue.
 struct MarkColours {
   glm::vec3 air, tissue;
 };
@@ -51,8 +51,8 @@ void show_difference_overlay(Editor& editor, bool on);
 void show_difference(Editor& editor);
 // Returns the comparison of the current volumes A and B; null: not computed yet.
 const ComparedVolumes* compared_volumes(const Editor& editor);
-// Returns the tissue that the other volume has at the voxel under the pointer, "in B: Fat"; "" if the difference is not
-// shown.
+// Returns the tissue that the other volume has at the voxel under the pointer, such as "in B: Fat"; "" if the
+// difference is not shown.
 std::string other_side_text_at(const Editor& editor, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

@@ -21,7 +21,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // most meshes in the cache: both sides of a comparison, with two measures each
+constexpr std::size_t kRemembered = 4;  // cached meshes at most: two sides of a comparison times two measures
 
 // Colours of the volume ratio: blue is compressed, red is swollen. Darker colours mean a stronger change.
 constexpr std::array<glm::vec3, 5> kChange = {render::srgb(0x15294F), render::srgb(0x2C5CA6), render::srgb(0xC9CDD4),
@@ -40,8 +40,8 @@ std::optional<ShownMesh> mesh_of(const std::shared_ptr<const Result>& result) {
   return ShownMesh{result->volume, {solved, &solved->mesh}, {solved, &solved->V}, false};
 }
 
-// Returns the mesh that the views show; if `other_side`, the mesh of side A of the comparison. None: there is no mesh,
-// or the workspace shows none.
+// Returns the mesh that the views show. If `other_side`, returns the mesh of side A of the comparison. Returns nothing
+// when there is no mesh, and in workspaces other than Resample and Pose.
 std::optional<ShownMesh> shown_mesh(const Editor& editor, bool other_side) {
   if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose) return std::nullopt;
   if (other_side) return mesh_of(result_named(editor.document(), editor.comparison.a));
@@ -52,8 +52,8 @@ std::optional<ShownMesh> shown_mesh(const Editor& editor, bool other_side) {
   return mesh_of(shown_result(editor));
 }
 
-// Computes the colours of a mesh by a measure. If `before` is the same mesh with other node positions or another
-// measure, reuses what does not depend on these.
+// Computes the colours of a mesh for a measure such as the volume ratio. If `before` is the same mesh with other node
+// positions or another measure, reuses its faces and its tet of each voxel.
 std::shared_ptr<const MeasuredMesh> measured(const ShownMesh& of, const std::optional<FemMeasure>& measure,
                                              const std::shared_ptr<const MeasuredMesh>& before) {
   auto made = std::make_shared<MeasuredMesh>();
@@ -87,8 +87,8 @@ std::shared_ptr<const MeasuredMesh> measured(const ShownMesh& of, const std::opt
   return made;
 }
 
-// Returns the newest cached mesh with these colours: one with the current node positions, or else one with earlier
-// positions, because a running solve still moves the nodes.
+// Returns the newest cached mesh that has colours of the overlay's measure and the current node positions. If there is
+// none, returns a cached mesh with earlier node positions, because a running solve moves the nodes at every step.
 std::shared_ptr<const MeasuredMesh> known(const FemOverlay& overlay, const ShownMesh& of) {
   const auto fits = [&](const auto& made, bool behind) {
     return made->of.volume == of.volume && made->of.rest == of.rest && (behind || made->of.posed == of.posed) &&
@@ -162,7 +162,7 @@ double place_on(const FemScale& scale, double value) {
 }
 
 glm::vec3 colour_at(FemMeasure measure, double place) {
-  // Smaller gaps are brighter, so that skin that presses on skin stands out.
+  // A smaller gap between skin surfaces gets a brighter colour, so that skin that presses on skin stands out.
   return measure == FemMeasure::VolumeRatio
              ? between(kChange, place)
              : between(render::kWeightRamp, measure == FemMeasure::Gap ? 1 - place : place);

@@ -28,20 +28,20 @@ struct FemScale {
 const FemScale& scale_of(FemMeasure measure);
 double place_on(const FemScale& scale, double value);   // position of the value on the scale: 0 at low, 1 at high
 glm::vec3 colour_at(FemMeasure measure, double place);  // sRGB
-glm::vec3 colour_of(FemMeasure measure, float value);   // sRGB; grey for joint tets and, as gap, where no skin is near
+glm::vec3 colour_of(FemMeasure measure, float value);   // sRGB; grey for tets of joints and for a gap with no skin near
 std::string text_of(FemMeasure measure, float value);   // the value as text: "0.93", "joint"
 
-// A mesh and the volume whose voxels have the colours of its tets.
+// A tet mesh, and the label volume whose voxels are coloured by the tets that they lie in.
 struct ShownMesh {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const FemMesh> rest;
   std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V node positions, world, mm
-  bool settling = false;  // true: a running solve; `volume` is the rest volume, drawn as deformed
+  bool settling = false;  // true: a solve is running; `volume` is at rest and is drawn deformed by the mesh
 
   bool operator==(const ShownMesh&) const = default;
 };
 
-// A mesh with the colours of its voxels by one measure.
+// A tet mesh with its values of one measure, such as the volume ratio, and the voxel colours of these values.
 struct MeasuredMesh {
   ShownMesh of;
   std::optional<FemMeasure> measure;
@@ -49,8 +49,8 @@ struct MeasuredMesh {
   std::shared_ptr<const TissueVoxels> tissue;
   std::shared_ptr<const std::vector<std::int32_t>> tets;  // #tissue voxels: index of the tet at the voxel; -1: none
   std::vector<float> values;                              // #T: the measure of each tet; empty: no measure
-  float least = 0, most = 0;                              // range of `values` in soft tissue
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
+  float least = 0, most = 0;                              // least and largest of `values` in soft tissue
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
 };
 
 std::string range_text(const MeasuredMesh& shown);  // range of the values as text: "0.17 \u2013 3.30", "up to 12"
@@ -62,14 +62,14 @@ struct FemOverlay {
   std::optional<int> task;
 };
 
-// Returns why there is no mesh to show; "" when there is one.
+// Returns why there is no FEM mesh to show, such as "Resample by FEM first"; "" when there is a mesh.
 std::string why_no_fem_overlay(const Editor& editor);
-// Puts the colours and tets into the scenes of this frame. Call it after the result or the watched solve was put into
-// them.
+// Puts the FEM colours and tets into the scenes of this frame. Call it after show_posed(), which puts the result or the
+// watched solve into the scenes.
 void show_fem(Editor& editor);
 // Returns the mesh whose colours the views show; null: none.
 const MeasuredMesh* shown_measure(const Editor& editor);
-// Returns the measure's value at a voxel of the shown volume, "det F 0.93"; "" if no measure is shown.
+// Returns the shown measure's value at a voxel of the shown volume, such as "det F 0.93"; "" if no measure is shown.
 std::string measure_text_at(const Editor& editor, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

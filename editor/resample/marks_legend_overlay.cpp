@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws over a view the legend of marked voxels with their counts. For a difference, it counts for each of the volumes
-// A and B the voxels where the other volume has no tissue or another one, in total and for the tissue under the
-// pointer. For an overlap, it counts the posed voxels that two points of the body map to.
+// Draws over a view the legend of marked voxels with their counts. The legend of a difference has a row for volume A
+// and a row for volume B, with two counts: voxels where the other volume has no tissue, and voxels where the other
+// volume has another tissue. A further row has the counts of the tissue under the pointer. The legend of an overlap
+// counts the posed voxels to which two points of the body move.
 #include <algorithm>
 #include <array>
 
@@ -20,8 +21,8 @@ constexpr float kWidth = 340, kRow = 22, kPad = 10, kMargin = 8, kNumber = 92;
 
 struct Row {
   std::string letter, name;
-  std::optional<std::array<std::int64_t, 2>> counts;  // counts of the two columns; none: not computed yet
-  std::optional<std::array<glm::vec3, 2>> marks;      // colour swatches of the two columns, sRGB; none: no swatches
+  std::optional<std::array<std::int64_t, 2>> counts;  // voxel counts in the legend's two columns; none: not computed
+  std::optional<std::array<glm::vec3, 2>> marks;      // swatch colours in the two columns, sRGB; none: no swatches
 };
 struct Legend {
   std::string title;
@@ -77,7 +78,8 @@ bool draw_legend(Editor& editor, const Rect& view, const Legend& legend) {
   return true;
 }
 
-// Draws the legend of the difference. It always has four lines, so that it keeps its size while the pointer moves.
+// Draws the legend of the difference. The legend always has four lines, so that its size stays the same while the
+// pointer moves.
 bool draw_difference(Editor& editor, const Rect& view) {
   const ComparedVolumes* made = compared_volumes(editor);
   const Comparison& comparison = editor.comparison;

@@ -15,7 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // most results in the cache: both sides of this comparison and of the last one
+constexpr std::size_t kRemembered = 4;  // cached results at most: the two sides of this and of the last comparison
 
 std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::shared_ptr<const TissueTable>& tissues) {
   auto made = std::make_shared<MarkedOverlap>(MarkedOverlap{

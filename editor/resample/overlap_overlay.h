@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Marks the posed voxels to which two different points of the body at rest map (core/resample). They are coloured in
-// the 3D view and in slices, and all other tissue is dimmed. The renderer gets the colours as one colour per voxel.
+// Marks the posed voxels to which two different points of the body at rest move (core/resample). These voxels are
+// coloured in the 3D view and in slices, and all other tissue is dimmed. The renderer gets one colour per voxel.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@
 
 namespace limber::editor {
 
-// A result's overlap, with the colours that mark it.
+// A result's overlapping voxels, with the colours of all tissue voxels that mark the overlap.
 struct MarkedOverlap {
   std::shared_ptr<const Overlap> overlap;
   std::shared_ptr<const LabelVolume> volume;
-  std::shared_ptr<const TissueTable> tissues;  // voxels without overlap have these colours, dimmed
+  std::shared_ptr<const TissueTable> tissues;  // tissue colours, drawn dimmed at voxels without overlap
   std::shared_ptr<const TissueVoxels> tissue;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: the colour of each
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
 };
 
 struct OverlapView {
@@ -27,10 +27,11 @@ struct OverlapView {
   std::optional<int> task;
 };
 
-// Returns the colour, sRGB, of voxels where two bones overlap (of_bones), or of voxels where other tissue overlaps.
+// Returns the colour that marks overlap, sRGB. There are two colours: `of_bones` is for voxels where two bones overlap,
+// the other one for voxels where other tissue overlaps.
 glm::vec3 mark_of_overlap(bool of_bones);
 
-// Returns why there is no overlap to show; "" when there is one.
+// Returns why there is no overlap to show, such as "Resample a pose first"; "" when there is an overlap.
 std::string why_no_overlap(const Editor& editor);
 bool shows_overlap(const Editor& editor);
 // Turns the overlay on or off. Turning it on turns off the other overlays that colour voxels.

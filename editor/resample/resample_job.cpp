@@ -25,7 +25,7 @@ namespace {
 struct Request {
   Document from;  // the document to resample; has a pose
   std::string method;
-  double spacing = 0;  // voxel spacing of the posed volume, mm; 0: that of the rest volume
+  double spacing = 0;  // voxel spacing of the posed volume, mm; 0: same as the volume at rest
   bool bones_apart = false, mass_exact = false, contact = false;
   std::string quality;  // FEM only: "draft", "normal" or "fine"
   std::string scratch;
@@ -115,7 +115,7 @@ class StepReader {
   std::shared_ptr<const FemMesh> rest_;
 };
 
-// Returns the solved mesh; null if the pose bends no joint, in which case no mesh is solved.
+// Reads the solved FEM mesh. Returns null if the pose bends no joint, because no mesh is solved in this case.
 std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
   auto mesh = read_fem_mesh(name);
   auto step = read_fem_step(name);

@@ -10,9 +10,9 @@
 
 namespace limber::editor {
 
-// Starts the job. Needs a volume, tissues, an armature and weights.
+// Starts the job that resamples the current pose. The document must have a volume, tissues, an armature and weights.
 void start_resampling(Editor& editor);
-// Returns what is missing for resampling; "" when nothing is.
+// Returns what is missing for resampling, such as "Import a rig first"; "" when nothing is missing.
 std::string why_no_resampling(const Editor& editor);
 
 // Returns the ids of the operators that select a deformation method, in the order of deformation_methods().

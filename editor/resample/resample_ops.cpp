@@ -63,8 +63,8 @@ Operator colours_operator(const char* id, const char* label, const char* descrip
 
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
 
-// If the comparison has no two valid sides, sets side B to the last result. If this is not enough, sets side A to the
-// volume at rest.
+// If the comparison lacks a valid side A or B, sets side B to the last result. If the comparison is still not valid,
+// sets side A to the volume at rest.
 void choose_sides(Editor& editor) {
   if (!why_no_comparison(editor).empty()) editor.comparison.b = editor.document().results.back()->name;
   if (!why_no_comparison(editor).empty()) editor.comparison.a.clear();
@@ -78,7 +78,7 @@ void show_side(Editor& editor, bool a) {
   editor.comparison.shows_a = a;
 }
 
-// Shows both sides of the comparison as `views` says; for Views::One, shows only side B.
+// Shows both sides of the comparison, with a dividing line or side by side. For Views::One, shows only side B.
 void show_sides(Editor& editor, Comparison::Views views) {
   stop_watching(editor);
   choose_sides(editor);
@@ -112,7 +112,8 @@ void toggle_overlap(Editor& editor) {
   show_overlap_overlay(editor, on);
 }
 
-// Shows the other side of the comparison while the key is held. If the views show both sides, swaps them.
+// Shows the other side of the comparison while the user holds the operator's key. If the views show both sides next to
+// each other, swaps A and B.
 class Flicker final : public Modal {
  public:
   explicit Flicker(Editor& editor) : key_(Key::F) {
@@ -224,7 +225,7 @@ std::vector<Operator> resample_operators() {
        "Mark and count the voxels whose tissue differs between A and B.", toggle_difference, needs_result,
        shows_difference},
       {"result.overlap", "Overlap", icon::kOverlap, "Result",
-       "Mark and count the posed voxels into which two parts of the body move at once.", toggle_overlap, why_no_overlap,
+       "Mark and count the voxels into which the pose moves two parts of the body.", toggle_overlap, why_no_overlap,
        shows_overlap},
       {"compare.flicker", "Flicker", "", "Result", "Show the other side of the comparison while the key is held.",
        [](Editor& e) { e.modal = std::make_unique<Flicker>(e); }, needs_result},
@@ -246,7 +247,7 @@ std::vector<Operator> resample_operators() {
        [](Editor& e) { e.fem_overlay->tets = !e.fem_overlay->tets; }, why_no_fem_overlay,
        [](const Editor& e) { return e.fem_overlay->tets; }},
       {"fem.display_pie", "Colours by", icon::kVisible, "Finite elements",
-       "Open a menu at the pointer to select by what FEM results are coloured.",
+       "Open a menu at the pointer that selects what the colours of FEM results show.",
        [](Editor& e) { e.open_popup = "Finite elements"; }, why_no_fem_overlay},
       {"view.results", "Results", icon::kTable, "View", "Open or close the table of results below the views.",
        toggle_results, nullptr, results_seen},

@@ -62,7 +62,7 @@ void draw_resample(Editor& editor, Column& column) {
       tooltip(
           editor, apart, "Keep bones apart",
           "Shift each bent joint just enough that its bones do not overlap, by up to 5 percent of the shorter bone's "
-          "length. Off: by one voxel at most, so that the result matches the view. Bones keep their directions.");
+          "length. Off: shift by one voxel at most, so that the result matches the preview. Shifts do not turn bones.");
     const Rect exact = column.property("Volumes");
     checkbox(editor, "Mass-exact", exact, "Mass-exact", settings.mass_exact);
     if (ImGui::IsItemHovered())

@@ -83,8 +83,8 @@ std::int64_t count(const Json& json, const char* key) {
   return static_cast<std::int64_t>(number(json, key).value_or(0));
 }
 
-// Returns whether two tissue tables are equal in what resampling reads. stiffness: compare the stiffness too, which
-// only FEM reads.
+// Returns true if two tissue tables have equal labels, kinds and priorities, which resampling reads.
+//   stiffness  true: also compares the Young's modulus and Poisson ratio, which only FEM reads
 bool same_tissues(const std::shared_ptr<const TissueTable>& a, const std::shared_ptr<const TissueTable>& b,
                   bool stiffness) {
   if (a == b || !a || !b) return true;
@@ -257,7 +257,8 @@ void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, 
 
 namespace {
 
-// Puts a result into the scene. Null: puts the volume at rest, or posed in the current pose.
+// Puts a result into the scene. If `result` is null, the scene shows the document's volume, deformed by the current
+// pose or by the watched FEM solve, if any.
 void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
   const Document& document = editor.document();
   scene.posed_from_rest.clear();

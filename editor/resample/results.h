@@ -23,14 +23,14 @@ struct ResultTissue {
   std::int64_t overlap_voxels = 0;
 };
 struct ResultFacts {
-  double seconds = 0;                    // run time of the method, without weights, files and report
-  std::optional<double> change_percent;  // volume change of all tissue
+  double seconds = 0;                    // run time of the deformation method alone, s
+  std::optional<double> change_percent;  // change of the total tissue volume
   std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
   std::optional<std::int64_t> inverted;  // FEM only: inverted tets of the mesh
   std::vector<ResultTissue> tissues;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;
-  // The provenance as lines of text. A line has a name and a value.
+  // One line of the result's provenance (method, settings, inputs, times): a name and a value.
   struct Line {
     std::string name, value, whole;  // `whole`: the full value if `value` is shortened
   };
@@ -38,7 +38,7 @@ struct ResultFacts {
   std::string version;
   std::optional<double> peak_memory_mb;
 };
-ResultFacts facts_of_report(const std::string& json);  // figures missing in the report stay empty
+ResultFacts facts_of_report(const std::string& json);  // a figure that the report lacks stays empty
 
 std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
 // Returns the report as readable text, 100 columns wide: gates, tissues, provenance.
@@ -46,8 +46,8 @@ std::string text_of_report(const std::string& name, const ResultFacts& facts);
 
 // Returns the display name of a method: "lbs" -> "LBS".
 std::string method_name(const std::string& method);
-// Returns which input of the result has changed in the document since, "weights changed"; "" if none has. The pose is
-// not compared, because a result belongs to the pose that it was made from.
+// Returns which input of the result has changed in the document since the result was made, such as "weights changed";
+// "" if none has. The pose is not compared, because a result belongs to the pose that it was made from.
 std::string stale_reason(const Document& document, const Result& result);
 bool is_of_this_pose(const Document& document, const Result& result);
 // Returns a name for a pose: "Forearm 90 deg", "Forearm 90 deg and 2 more" (with a degree sign), "Rest".

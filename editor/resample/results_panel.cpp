@@ -39,7 +39,7 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>
     put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
     right -= width;
   }
-  // Width of the method's name, px: enough for "FEM with contact", or in a narrow row for the start of it.
+  // Width of the method's name, px: enough for "FEM with contact", or in a narrow row for the start of this name.
   const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);
   put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
   put_text(editor, first, colours[0],
@@ -166,7 +166,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
 
 void draw_results(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
-  const auto results = editor.document().results;  // a copy, because renaming commits an edit that replaces it
+  const auto results = editor.document().results;  // a copy, because renaming a result replaces the document's list
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
   fill(head, look.theme.head);
   fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
@@ -192,7 +192,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   for (const char* id : {"compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(editor, id);
     const float width =
-        // The width in the pressed style, so that the buttons do not move when one of them is pressed.
+        // The label is wider in the pressed style. This width keeps the buttons in place when one of them is pressed.
         width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});
     operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label,
                     op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);

@@ -90,7 +90,7 @@ void offer_fit(Editor& editor, const std::string& file, double inside) {
   ask(editor, {.title = "This rig does not lie in the body",
                .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
                              " may belong to another body or use other units.",
-                         "Fitting finds the joints of its bones in the volume, if it recognises the bones' names."},
+                         "Fitting finds the rig's joints in the volume if it recognises the names of the bones."},
                .icon = icon::kWarning,
                .answers = {{"Leave it", {}},
                            {"Only place and scale", place},

@@ -14,8 +14,8 @@ namespace limber::editor {
 inline constexpr char kAutoFitIcon[] = "\uf0d0";
 inline constexpr char kFitAxisIcon[] = "\uf140";
 
-// Each opens a dialog: the first starts the automatic fit, the second places a template when the user confirms. Both
-// need an open volume.
+// ask_auto_fit() opens a dialog that starts the automatic fit of a skeleton. ask_template() opens a dialog that places
+// a template skeleton in the tissue. A volume must be open.
 void ask_auto_fit(Editor& editor);
 void ask_template(Editor& editor);
 

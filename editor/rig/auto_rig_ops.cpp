@@ -44,7 +44,7 @@ std::vector<Operator> rig_fit_operators() {
        ask_template, needs_volume},
       {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig",
        "Find the axis about which the selected bone's hinge bends without bones entering each other, "
-       "and show where they still do.",
+       "and show where bones still do.",
        start_joint_fit, needs_joint_in_tissue},
       shows_proposed("rig.joint_fit_before", "Collisions before the fit",
                      "Show which bones enter each other when the joint turns about its current axis.", false),

@@ -84,7 +84,7 @@ void draw_parent(Editor& editor, const Rect& rect, int index) {
 // tail. Disconnecting moves the head a little along the bone, so that the head and the parent's tail can then be moved
 // independently.
 void draw_connected(Editor& editor, const Rect& rect, int index) {
-  // The head moves by this share of the bone's length, but not by more than kMostBack, mm.
+  // The head moves by the share kBack of the bone's length, but by kMostBack mm at most.
   constexpr double kBack = 0.05, kMostBack = 5;
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const Bone& bone = rig->bones[index];
@@ -108,7 +108,7 @@ void draw_connected(Editor& editor, const Rect& rect, int index) {
 void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& end) {
   const Look& look = editor.look;
   const std::string which = end.tail ? "Tail" : "Head";
-  // Three coordinates need more width than a property's field has.
+  // This field is wider than the fields of other properties, because it shows three coordinates.
   Rect rect = column.property(which + ", mm");
   rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
   const glm::dvec3 place = end.tail ? bone.tail : bone.head;
@@ -128,7 +128,8 @@ void draw_end(Editor& editor, Column& column, const Bone& bone, const BoneEnd& e
   }
 }
 
-// Choices for the axis about which a hinge turns in the positive direction: the bone's local axes and their opposites.
+// Choices for the axis of a hinge: the bone's local axes and their opposites. Positive angles turn the hinge about this
+// axis by the right-hand rule.
 const std::vector<std::string> kAxes = {"Local X",       "Local Y",       "Local Z",
                                         "Local \u2212X", "Local \u2212Y", "Local \u2212Z"};
 constexpr int kOtherAxis = 6;
@@ -147,8 +148,9 @@ Armature with_limits(const Armature& rig, int bone, const JointLimits& limits) {
   return next;
 }
 
-// Draws the fields for the lower and the upper limit of an angle. The limits are stored relative to the rest pose and
-// shown with `at_rest` added. The fields keep the rest pose within the limits.
+// Draws the fields for the lower and the upper limit of a joint angle, in degrees. The stored limits are relative to
+// the rest pose; the shown limits have `at_rest`, the angle in the rest pose, added. The fields do not accept limits
+// that exclude the rest pose.
 void draw_range(Editor& editor, Column& column, const Bone& bone, int index, const std::string& label,
                 double JointLimits::*low, double JointLimits::*high, double at_rest) {
   const double zero = glm::degrees(at_rest);

@@ -13,8 +13,8 @@ namespace limber::editor {
 
 namespace {
 
-// Returns whether two sources have the same volume, tissues, rig and bone map. Their seams are not compared, because
-// seams do not change the bone table.
+// Returns true if the inputs of two bone tables are the same: volume, tissues, rig and bone map. Seams (surfaces where
+// limbs touch at rest) are not compared, because the bone table does not depend on them.
 bool same_source(const SeamSource& a, const SeamSource& b) {
   return a.volume == b.volume && a.tissues == b.tissues && a.armature == b.armature && a.bone_map == b.bone_map;
 }
@@ -76,7 +76,7 @@ const BoneTable::Known* bone_table(Editor& editor) {
           };
         },
         [source](Editor& e, const std::string& error) {
-          // An empty table keeps the failed task from starting again for the same body.
+          // After a failure the table is set to an empty one, so that the task does not start again for the same body.
           e.bone_table->known =
               BoneTable::Known{.source = source, .rows = {}, .left_out = {}, .tissue = nullptr, .field = nullptr};
           e.messages.show_error(error, "Bone map");

@@ -22,7 +22,7 @@ struct BoneTable {
   struct Known {
     SeamSource source;
     std::vector<MappedLabel> rows;
-    std::vector<std::string> left_out;  // keys of bone map entries that name a missing tissue or bone
+    std::vector<std::string> left_out;  // keys of the bone map's entries whose tissue or bone does not exist
     std::shared_ptr<const TissueVoxels> tissue;
     std::shared_ptr<const std::vector<glm::u8vec3>> field;  // colour of each tissue voxel, sRGB
   };
@@ -37,9 +37,8 @@ const BoneTable::Known* bone_table(Editor& editor);
 // Returns why no bone table can be computed, such as "Import a rig first"; "" when it can.
 std::string why_no_bone_table(const Editor& editor);
 
-// Commits one edit after which a label of bone tissue, or its voxels on one side of the body, follows a bone of the
-// rig.
-//   side  side of the body; nothing: the whole label
+// Sets the rig bone that a label of bone tissue follows, and commits this change of the bone map as one edit.
+//   side  sets the bone for the label's voxels on this side of the body only; nothing: for the whole label
 //   bone  index into the rig's bones; nothing: the bone is found automatically
 void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::optional<int> bone);
 void clear_bone_map(Editor& editor);

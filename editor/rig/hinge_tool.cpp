@@ -58,8 +58,8 @@ class HingeTool final : public TransformTool {
 
   // Returns the hinge's new axis, a unit vector. A typed number turns the old axis by that many degrees about the
   // locked axis, or about the line of sight when no axis is locked. Without a number, the new axis is the locked axis
-  // or its opposite, whichever is nearer to the old axis. With neither, it points to the pointer; Ctrl snaps it to the
-  // nearest of the bone's local axes.
+  // or its opposite, whichever is nearer to the old axis. Without a number and a locked axis, the new axis points at
+  // the pointer; Ctrl snaps the axis to the nearest of the bone's local axes.
   glm::dvec3 pointed_at(Editor& editor) {
     if (number_.typed())
       return glm::angleAxis(glm::radians(number_.value()), lock_.axis >= 0 ? lock_axis() : view_.towards_eye) * before_;

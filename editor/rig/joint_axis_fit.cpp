@@ -52,7 +52,7 @@ void propose(Editor& editor, ProposedJoint proposed) {
                                 "The rig or the volume was changed meanwhile: start the fit again");
   if (proposed.fit.overlap_before == 0)
     return editor.messages.ok("Joint axis of " + proposed.bone,
-                              "Bones do not enter each other within its range: the axis can stay");
+                              "The bones do not enter each other within the joint's range: the axis can stay");
   editor.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
   editor.touch();
 }
@@ -64,7 +64,7 @@ void start_joint_fit(Editor& editor) {
   const Document from = editor.document();
   const int bone = *editor.selection.bone;
   const JointLimits& limits = from.armature->bones[bone].limits;
-  // A joint of another type is fitted as a hinge about its flexion axis, over the default range of FitJoint.
+  // A joint that is not a hinge is fitted as a hinge about its flexion axis, over the default range of FitJoint.
   FitJoint settings;
   if (limits.type == JointLimits::Type::Hinge)
     settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};

@@ -14,19 +14,22 @@
 namespace limber::editor {
 
 struct ProposedJoint {
-  std::shared_ptr<const LabelVolume> volume;  // for which the axis was fitted; another volume ends the proposal
+  std::shared_ptr<const LabelVolume>
+      volume;  // volume in which the axis was fitted; the proposal ends when the volume changes
   std::shared_ptr<const Armature> from, fitted;
   std::string bone;
   FittedJoint fit;
   std::shared_ptr<const TissueVoxels> tissue;
   std::array<std::shared_ptr<const std::vector<glm::u8vec3>>, 2>
-      colours;  // sRGB colour of each tissue voxel, with collisions marked: before and after the fit
+      colours;  // colour of each tissue voxel, sRGB, with colliding bones marked: before, after the fit
   bool shows_after = false;
 };
 
-// Starts a job that fits the axis of the active bone's hinge and ends in a proposal.
+// Starts a job that fits the axis of the active bone's hinge. The result is a proposal that the user accepts or
+// rejects.
 void start_joint_fit(Editor& editor);
-// Returns the proposal; null when there is none, when volume or rig have changed since, or outside the Rig workspace.
+// Returns the proposed joint axis; null when there is none, when the volume or the rig has changed since the fit, and
+// outside the Rig workspace.
 const ProposedJoint* proposed_joint(const Editor& editor);
 // Shows the proposed axis and the collisions in the scene of this frame.
 void show_proposed_joint(Editor& editor);

@@ -18,8 +18,9 @@ struct ViewProjection;
 struct LeavingBone {
   int bone = 0;
   double share = 1;                 // share of the bone's length in tissue, [0, 1]
-  bool head = false, tail = false;  // whether this end of the bone is outside the tissue
-  glm::dvec3 place{0};              // an end outside the tissue, else the middle of the longest stretch outside, mm
+  bool head = false, tail = false;  // true if the bone's head, or its tail, is outside the tissue
+  glm::dvec3 place{
+      0};  // position of an end outside the tissue; if both ends are inside: middle of the longest stretch outside, mm
 };
 
 struct KnownRigCheck {
@@ -29,13 +30,14 @@ struct KnownRigCheck {
   std::vector<LeavingBone> bones;  // in the rig's order
 };
 
-// Returns the result of the check for the shown rig; null without a rig or a volume, or outside the Rig workspace.
+// Returns the result of the rig check for the rig that the views show; null without a rig or a volume, and outside the
+// Rig workspace.
 const KnownRigCheck* rig_check(const Editor& editor);
 
 // Selects the bone, or its end that lies outside the tissue, and centres every view on `leaving.place`.
 void show_leaving(Editor& editor, const LeavingBone& leaving);
-// Selects and shows the next bone after the active one that lies partly outside the tissue. Continues with the first
-// such bone after the last.
+// Selects and shows the next bone outside the tissue: the first one after the active bone in the rig's order. After the
+// rig's last bone the search starts again at the first.
 void show_next_leaving(Editor& editor);
 
 // Draws marks over a view on the stretches and ends of bones that lie outside the tissue.

@@ -22,8 +22,8 @@ std::vector<std::string> names_of(const Armature& armature) {
   return names;
 }
 
-// Returns, for each bone of the old rig, the index of the new rig's bone that takes over its weights: the same bone, or
-// its nearest ancestor that remains; -1: none.
+// Returns for each bone of the old rig the index of the bone in the new rig that takes over the old bone's weights.
+// This is the old bone itself or, if the edit removed it, its nearest ancestor in the new rig; -1: there is none.
 //   from  for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
   std::vector<int> to(before.bones.size(), -1);
@@ -36,8 +36,8 @@ std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
 
 using Follow = std::function<void(Document&, const Armature& before, const Armature& after)>;
 
-// Commits the new rig as one edit that keeps pose and weights, and selects the bones of `chosen`.
-//   from    for each bone of `next`, its index in the old rig; -1: a new bone
+// Commits the rig `next` as one edit that keeps pose and weights, and selects the bones `chosen`.
+//   from    for each bone of `next`, its index in the old rig; -1: the edit added the bone
 //   follow  updates the parts of the document that refer to bones by name
 void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from,
                      const std::vector<int>& chosen, const Follow& follow = {}) {

@@ -60,7 +60,7 @@ void extrude(Editor& editor) {
   begin_tool(editor, begin_rig_change(editor, change));
 }
 
-// Adds a bone at the cross-hair that points up. Its length is an eighth of the volume's height.
+// Adds a bone that points up from the cross-hair. The bone's length is an eighth of the volume's height.
 void add(Editor& editor) {
   const Armature armature = editor.document().armature ? *editor.document().armature : Armature{};
   const Box box = world_box(editor.document());
@@ -113,7 +113,7 @@ void duplicate(Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   const std::vector<int> bones = bones_chosen_last(editor);
   RigChange change{RigChange::Kind::Move, naming_chosen(editor, "Duplicate"), duplicated(*armature, bones), {}, {}};
-  // duplicated() appends the copies to the rig's bones.
+  // The copies are the last bones of change.start, because duplicated() appends them to the rig's bones.
   for (int copy = static_cast<int>(armature->bones.size()); copy < std::ssize(change.start.bones); ++copy) {
     change.ends.insert(change.ends.end(), {{copy, false}, {copy, true}});
     change.chosen.push_back(copy);
@@ -277,7 +277,7 @@ void ask_names(Editor& editor) {
         text_of("Find", "The text to find in each name.", ""),
         text_of("Replace with", "The text that replaces the found text.", ""),
         text_of("Prefix", "Text added before each name.", ""), text_of("Suffix", "Text added after each name.", ""),
-        choice_of("Side", "Whether left and right are exchanged: Arm.L becomes Arm.R.", {"Keep", "Exchange"})},
+        choice_of("Side", "Whether to swap left and right in the names: Arm.L becomes Arm.R.", {"Keep", "Swap"})},
        outcome,
        act}));
 }
@@ -293,9 +293,9 @@ Operator edit_operator(const char* id, const char* label, const char* icon, cons
           needs_rig_bone};
 }
 
-// Moves the selected joint, or both ends of every selected bone, to the positions that `to` returns for them. An end
-// for which `to` returns nothing keeps its position. Throws Error when `to` returns nothing for every end.
-//   to  called with the bone and the end's current position, mm
+// Moves the selected joint, or both ends of every selected bone. Throws Error when no end has a new position.
+//   to  called with a bone and the current position of one of its ends, mm. Returns the end's new position, or nothing
+//       for an end that keeps its position
 void put_joints(Editor& editor, const char* verb,
                 const std::function<std::optional<glm::dvec3>(const Bone&, const glm::dvec3&)>& to) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
@@ -396,8 +396,8 @@ std::vector<Operator> rig_operators() {
       edit_operator("rig.clear_parent", "Clear parent", "", "Remove the parent of the selected bones.",
                     "Clear parent of", unparented),
       edit_operator("rig.flip_direction", "Flip direction", "",
-                    "Exchange head and tail of the selected bones. A chain then runs the other way.",
-                    "Flip direction of", with_flipped_direction),
+                    "Swap head and tail of the selected bones. A chain then runs the other way.", "Flip direction of",
+                    with_flipped_direction),
       {"rig.mirror", "Mirror", icon::kMirror, "Bone",
        "Move the selected bones to the other side of the body, with their weights and keys.",
        [](Editor& e) { mirror_bones(e, bones_chosen_last(e), naming_chosen(e, "Mirror")); }, needs_rig_bone},
@@ -420,13 +420,13 @@ std::vector<Operator> rig_operators() {
        "select it.",
        ask_motion_range, needs_rig_bone},
       {"rig.batch_rename", "Rename bones...", icon::kRename, "Bone",
-       "Change the names of many bones: replace text, add a prefix or suffix, exchange sides.", ask_names,
+       "Change the names of many bones: replace text, add a prefix or suffix, swap left and right.", ask_names,
        needs_rig_in_workspace},
       {"rig.snap_pie", "Snap menu", icon::kSnap, "Bone",
        "Open a menu at the pointer in which you select what moved joints snap to.",
        [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},
       {"rig.joints_to_bone", "Joint to bone middle", "", "Bone",
-       "Move each selected joint to the middle of the bone tissue around it, at right angles to its bone.",
+       "Move each selected joint, at right angles to its bone, to the middle of the bone tissue around the joint.",
        joints_to_bone, needs_joint_in_volume},
       {"rig.joints_to_voxels", "Joint to voxel", "", "Bone",
        "Move the selected joints to the centres of the nearest voxels.", joints_to_voxels, needs_joint_in_volume},
@@ -437,12 +437,12 @@ std::vector<Operator> rig_operators() {
        "Move the cross-hair and the slices to the selected joint.", cross_hair_to_joint, needs_joint_in_volume},
       {"rig.next_leaving", "Next bone outside tissue", "", "Bone",
        "Select and show the next bone that lies partly outside the tissue.", show_next_leaving, needs_leaving},
-      {"view.rig_check", "Where the rig leaves tissue", "", "View",
+      {"view.rig_check", "Bones outside tissue", "", "View",
        "Mark bones and joints outside the tissue in the Rig workspace.",
        [](Editor& e) { e.transform_settings->rig_check_marks = !e.transform_settings->rig_check_marks; }, nullptr,
        [](const Editor& e) { return e.transform_settings->rig_check_marks; }},
       {"rig.snap", "Snap without Ctrl", icon::kSnap, "Bone",
-       "Snap while moving, rotating and scaling. Hold Ctrl to not snap.",
+       "Snap while moving, rotating and scaling. Hold Ctrl to move freely.",
        [](Editor& e) { e.transform_settings->snapping = !e.transform_settings->snapping; }, nullptr,
        [](const Editor& e) { return e.transform_settings->snapping; }},
       snap_operator("snap.steps", "Snap to steps",

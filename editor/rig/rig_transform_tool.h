@@ -13,7 +13,7 @@ struct RigChange {
   enum class Kind { Move, Turn, Scale, Roll } kind = Kind::Move;
   std::string label;          // name of the edit in the undo history
   Armature start;             // the rig before the change, with the bones that the edit adds
-  std::vector<BoneEnd> ends;  // bone ends that move; the first is the pivot of turning and scaling, and snaps
+  std::vector<BoneEnd> ends;  // bone ends that move; the first end snaps, and is the pivot for turning and scaling
   std::vector<int> chosen;    // bones of `start` that are selected after the edit
 };
 
@@ -24,8 +24,8 @@ std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange&
 // sight when no axis is locked.
 std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip = {});
 
-// Returns a change of the selected bones, with a label such as "Move Forearm". A move may act on one selected joint;
-// the other kinds act on whole bones.
+// Returns a change of the selected bones, with a label such as "Move Forearm". If a single joint is selected, a move
+// acts on this joint only. The other kinds of change act on whole bones.
 RigChange chosen_change(const Editor& editor, RigChange::Kind kind);
 // Returns the change that adds a bone at the selected joint and moves the new bone's tail.
 RigChange extrusion(const Editor& editor);

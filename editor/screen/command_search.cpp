@@ -15,15 +15,17 @@ namespace limber::editor {
 namespace {
 
 constexpr int kMostRows = 8, kLastUsed = 5;
-// Score penalties of a match in the category, or in the description, instead of the label.
+// Amounts subtracted from a command's score if the query matches the command's category (kPlacePenalty) or description
+// (kSentencePenalty) instead of its label.
 constexpr int kPlacePenalty = 30, kSentencePenalty = 60;
-constexpr std::size_t kLeastForSentence = 3;  // letters; a shorter query does not search descriptions
+constexpr std::size_t kLeastForSentence = 3;  // smallest length of a query that searches descriptions, letters
 
 bool can_be_searched(const Editor& editor, const Operator& op) {
   return op.id != "search.commands" && !needs_pointer(editor, op);
 }
 
-// Returns the command's sort key in the list that is shown without a query; the smallest is first.
+// Returns the sort key of a command in the list that is shown while the query is empty. Commands with smaller keys come
+// first: those used last, then those used often, then unused commands.
 std::size_t place_by_use(const Preferences& preferences, const std::string& id) {
   const auto& recent = preferences.recent_commands;
   const auto last = recent.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(kLastUsed, recent.size()));
@@ -33,7 +35,7 @@ std::size_t place_by_use(const Preferences& preferences, const std::string& id) 
   return count == preferences.command_counts.end() ? 2'000'000 : static_cast<std::size_t>(1'100'000 - count->second);
 }
 
-// Returns whether every word of the query is the beginning of a word of the text.
+// Returns true if every word of the query matches the beginning of a word in the text.
 bool begins_words(const std::string& query, const std::string& text) {
   const auto match = fuzzy_match(query, text);
   if (!match) return false;
@@ -85,7 +87,7 @@ bool CommandSearch::key(Editor&, const Chord& chord) {
     case Key::Up: move(-1); return true;
     case Key::PageDown: move(kMostRows); return true;
     case Key::PageUp: move(-kMostRows); return true;
-    // Enter is noted here and acts later, after the text field has read the text that was typed before Enter.
+    // Only remember that Enter was pressed. draw() runs the command, after the text field has read all typed letters.
     case Key::Return:
     case Key::NumEnter: accept_ = true; return true;
     case Key::K: assign_ = chord.modifiers.ctrl; return assign_;
@@ -119,7 +121,8 @@ void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
            Align::Right);
 }
 
-// Draws the label with the letters that match the query in bold; returns the x coordinate of its right end.
+// Draws a command's label, with the letters that match the query in bold. Returns the x coordinate of the label's right
+// end.
 float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, bool chosen) {
   const Look& look = editor.look;
   const std::string& label = command.op->label;

@@ -15,8 +15,8 @@ struct FoundCommand {
   std::vector<std::size_t> letters;  // byte offsets of the label's letters that match the query
   std::string reason;                // why the command cannot run now; "": it can
 };
-// Returns the commands that match the query, the best match first; commands that cannot run now come last. Without a
-// query, returns the five used last, then the others by number of uses, then unused ones in the order of the menus.
+// Returns the commands that match the query, the best match first; commands that cannot run now come last. If the query
+// is empty, returns all commands: the five used last, then the others by number of uses, then those never used.
 std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query);
 // Returns the number of commands that the search can find.
 int count_commands(const Editor& editor);

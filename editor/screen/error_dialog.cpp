@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the dialog for an error that an action of the user caused: what happened, where, and what to do. The dialog
-// stays until the user closes it. Its details can be copied.
+// Draws the dialog for an error that an action of the user caused. The dialog says what happened, where, and what to
+// do, and stays until the user closes it. The user can copy its text with details for a bug report.
 #include <cstdio>
 
 #include "editor/context/panels.h"

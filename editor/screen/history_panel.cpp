@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the list of edits, oldest first. A click on an edit, or the arrow keys, set the project to its state after that
-// edit.
+// Draws the list of edits, the oldest edit first. When the user clicks an edit or moves to it with the arrow keys, the
+// project goes back (or forward) to its state after this edit.
 #include "editor/context/panels.h"
 #include "editor/ui/list_navigation.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the running jobs in a slot of the status bar. The slot opens a list of all jobs, with the stage, the time left
-// and a Cancel button of each.
+// Draws the progress of the running jobs in a slot of the status bar. A click on the slot opens a list of all jobs. A
+// row of the list shows a job's stage and its time left, and has a Cancel button.
 #include "editor/screen/job_progress.h"
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFirstEstimate = 3;  // s; a job's time left is shown after it has run this long
-constexpr double kQuickEnd = 0.1;     // s; a cancelled job that ends sooner is never shown as stopping
-constexpr double kSpin = 1.0 / 12;    // time between two steps of the spinner, s
-constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // px at scale 1; a FEM solve has a second line
+constexpr double kFirstEstimate = 3;                    // running time of a job after which its time left is shown, s
+constexpr double kQuickEnd = 0.1;                       // delay from Cancel until a job is shown as stopping, s
+constexpr double kSpin = 1.0 / 12;                      // time between two steps of the spinner, s
+constexpr float kRowHeight = 62, kSolveRowHeight = 80;  // height of a job's row; of a FEM solve's row; px at scale 1
 
 std::vector<JobStatus> at_work(const Editor& editor) {
   std::vector<JobStatus> jobs = editor.jobs.statuses();
@@ -30,7 +30,8 @@ float row_height(const Editor& editor, const JobStatus& job) {
   return editor.fem->solves.contains(job.id) ? kSolveRowHeight : kRowHeight;
 }
 
-// Returns the time left, from the FEM solve's own estimate if there is one, else from the job's stage.
+// Returns the time left of a job, s. A FEM solve estimates this time itself; for other jobs, and for a solve without an
+// estimate yet, the job's own estimate is returned.
 std::optional<double> seconds_left(const Editor& editor, const JobStatus& job) {
   const auto solve = editor.fem->solves.find(job.id);
   if (solve != editor.fem->solves.end())

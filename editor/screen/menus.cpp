@@ -12,7 +12,7 @@ namespace {
 
 using Entry = std::vector<std::string>::const_iterator;
 
-// Returns the entry "<" that ends the submenu that begins at `entry`. Submenus may be nested.
+// Returns the entry "<" that ends the submenu whose title is `entry`. A submenu may contain other submenus.
 Entry end_of(Entry entry, Entry end) {
   int depth = 0;
   for (; entry != end; ++entry) {
@@ -50,7 +50,7 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
       if (!submenu) operator_menu_item(editor, *entry);
       else {
         const std::string title = entry->substr(2);
-        // The row of a submenu gets the height of the other rows: 22 px plus the spacing.
+        // Give the row that opens a submenu the same height as the other rows: 22 px plus the spacing between rows.
         const float above = std::round((editor.look.px(22) - ImGui::GetFontSize()) / 2),
                     spacing = ImGui::GetStyle().ItemSpacing.y;
         ImGui::SetCursorPos({ImGui::GetCursorPosX() + editor.look.px(34), ImGui::GetCursorPosY() + above});
@@ -74,7 +74,7 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
 
 }  // namespace
 
-// Without this, clang-format would put each operator's id on its own line.
+// clang-format is off here, because it would put the id of each operator on a line of its own.
 // clang-format off
 std::vector<Menu> menus() {
   std::vector<Menu> all = {

@@ -15,12 +15,13 @@ struct Menu {
   std::vector<std::string> entries;
 };
 std::vector<Menu> menus();
-// Returns the menu of this name, which opens at the pointer. "context" is the view's context menu. Operators open
-// "Views", "Display", "Snap", "Similar" and "Workspaces". "Bone" and "Posed bone" are for the selected bones; "Volume",
-// "Tissue", "Armature" and "Result" are for rows of the outliner.
+// Returns a menu that opens at the pointer, by its name. "context" is the context menu of the view `view`. "Bone" and
+// "Posed bone" are menus for the selected bones. "Volume", "Tissue", "Armature" and "Result" belong to rows of the
+// outliner. "Views", "Display", "Snap", "Similar" and "Workspaces" are opened by operators.
 Menu pointer_menu(const std::string& name, ViewId view);
 
-// Draws a menu's rows into an open popup. Omits ids to which no operator belongs, and submenus without any operator.
+// Draws the rows of a menu into an open popup. Leaves out the ids of unknown operators, and submenus that would be
+// empty.
 void draw_menu(Editor& editor, const Menu& menu);
 
 }  // namespace limber::editor

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the outliner, a tree of the project: the volume with its tissues, the bones under their parents, the results. A
-// row has a triangle that folds it and an eye that shows or hides it. A double-click or F2 renames it; the right button
-// opens a menu. In the Rig workspace, dragging a bone onto another one makes the other its parent. A search shows the
-// rows that it finds and the parents of these rows.
+// row has a triangle that folds its children away, and an eye that shows or hides the tissues, bones or result that the
+// row names. A double-click or F2 renames the row; the right button opens a menu. In the Rig workspace, the user drags
+// a bone onto a row to give the bone a new parent. A search shows the rows that match and the parents of these rows.
 #include <algorithm>
 
 #include <imgui_internal.h>
@@ -24,18 +24,18 @@ namespace limber::editor {
 namespace {
 
 constexpr const char kList[] = "outliner";
-constexpr int kManyBones = 24;  // in a rig with more bones, only the root bones are unfolded at first
-constexpr int kDeepest = 8;     // deeper levels are indented like this one
-constexpr float kRow = 24;      // px at scale 1
-// Height left free below the list for the active bone's numbers, px at scale 1. The list shows at least kFewestRows
-// rows, even if less height is then left.
+constexpr int kManyBones = 24;  // in a rig with more bones than this, only the root bones are unfolded at first
+constexpr int kDeepest = 8;  // largest indentation of a row, in levels of the tree; deeper rows are not indented more
+constexpr float kRow = 24;   // height of a row, px at scale 1
+// kBoneSection: height left free below the list for the active bone's numbers, px at scale 1. kFewestRows: smallest
+// number of rows that the list shows, even if less height than kBoneSection is then left.
 constexpr float kBoneSection = 204, kFewestRows = 4;
 
 struct Row {
   enum class Kind { Volume, Tissues, Tissue, Armature, Bone, Results, Result } kind;
   std::string key, name, count;
   const char* icon = "";
-  int depth = 0, index = 0;  // index: in the document's list of this kind
+  int depth = 0, index = 0;  // level in the tree; index in the document's list of tissues, bones or results
   bool folds = false, open = false, chosen = false;
   std::optional<bool> visible;  // state of the eye; none: the row has no eye
   std::optional<Colour> swatch;
@@ -121,11 +121,11 @@ class Tree {
     }
   }
 
-  // Keeps the rows that match the search, and the parents of these rows. Goes from the last row to the first, so that
-  // it knows which parents to keep when it comes to them.
+  // Removes all rows except those that match the search and the ancestors of these rows. The loop runs from the last
+  // row to the first, so that all children of a row have been visited before the row itself.
   void keep_found() {
     std::vector<Row> kept;
-    int needed = 0;  // the next row above that has a smaller depth is a parent of a kept row
+    int needed = 0;  // depth of the last kept row; the next row with a smaller depth is its parent
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
       const bool found = contains_ignoring_case(row->name, editor_.outliner.search);
       if (!found && row->depth >= needed) continue;
@@ -137,7 +137,7 @@ class Tree {
 
   const Editor& editor_;
   const Document& document_;
-  std::vector<std::vector<int>> children_;  // [bone + 1]: children of the bone; [0]: bones without a parent
+  std::vector<std::vector<int>> children_;  // indices of the children of each bone, at [bone + 1]; [0]: the root bones
 };
 
 // ---- actions on a row
@@ -226,9 +226,9 @@ void draw_eye(Editor& editor, const Row& row, const Rect& rect) {
   if (eye.clicked) toggle_eye(editor, row, editor.input.down(Key::Ctrl));
 }
 
-// Returns the bones that a dragged row moves: its bone, or all selected bones if its bone is selected. If the row is
-// dropped on a bone, they become this bone's children; if it is dropped on the armature, they lose their parent. Escape
-// cancels the drag.
+// Returns the bones that get a new parent when the user drags a bone's row: all selected bones if the dragged bone is
+// selected, otherwise only the dragged bone. The row on which the user drops them becomes their parent; on the
+// armature's row, they lose their parent. Escape cancels the drag.
 std::vector<int> dragged_bones(const Editor& editor) {
   const auto bone = editor.document().armature->find(editor.transform_settings->row_drag.bone);
   if (!bone) return {};
@@ -244,7 +244,7 @@ void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
     drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
 }
 
-// Draws a text beside the pointer that says what happens if the dragged row is dropped here.
+// Draws a text beside the pointer. It tells what would happen if the user dropped the dragged row at the pointer.
 void draw_dragged(Editor& editor, const std::string& words) {
   const Look& look = editor.look;
   const glm::vec2 size = text_size(look.fonts.regular, words) + glm::vec2(look.px(16), look.px(8));
@@ -374,7 +374,8 @@ void unfold_to(Editor& editor, int bone) {
     editor.outliner.open["bone " + bones[above].name] = true;
 }
 
-// Returns the bone that was selected or created since the last frame. The list scrolls to this bone.
+// Returns the active bone if another bone was active in the last frame, so that the list scrolls to it. Otherwise
+// returns nothing.
 std::optional<int> newly_chosen(const Editor& editor) {
   const auto bone = editor.selection.bone;
   const std::shared_ptr<const Armature> rig = editor.document().armature;
@@ -384,15 +385,15 @@ std::optional<int> newly_chosen(const Editor& editor) {
   return std::exchange(last, now) != now && known ? bone : std::nullopt;
 }
 
-// Returns the height of the list, px at scale 1: the height of its rows. In the Rig workspace the list may be less
-// high, so that the active bone's numbers fit below it.
+// Returns the height of the list, px at scale 1. This is the height of all rows (`whole`). In the Rig workspace the
+// list may be lower, so that the numbers of the active bone fit below it.
 float height_of_list(const Editor& editor, const Column& column, float whole) {
   const Look& look = editor.look;
   if (editor.workspace != Workspace::Rig || !editor.document().armature) return whole;
   const float top = column.head().high.y + ImGui::GetScrollY() - editor.layout.sidebar.low.y +
                     (editor.outliner.searching ? look.px(32) : 0);
   const float room = std::floor((editor.layout.sidebar.height() - top) / look.scale - kBoneSection);
-  // While the pointer is over the sidebar, keep the list's height, even if content above the list changes.
+  // While the pointer is over the sidebar, the list keeps its height, so that nothing moves under the pointer.
   float& rows = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("rows"), -1);
   float& height = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("height"), -1);
   if (rows == whole && (editor.layout.sidebar.contains(editor.input.pointer) || editor.input.down(MouseButton::Left)))
@@ -401,7 +402,7 @@ float height_of_list(const Editor& editor, const Column& column, float whole) {
   return height = std::min(whole, std::max(kRow * kFewestRows, room));
 }
 
-// Scrolls the row to the middle of the list, unless it is already visible.
+// Scrolls the list so that a row is in its middle. Does nothing if the row is already visible.
 void scroll_to_row(const Look& look, int row, float height) {
   const float top = look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
   if (top < scroll || top + look.px(kRow) > scroll + height)

@@ -39,8 +39,8 @@ class PreferencesDialog final : public Dialog {
   void draw_jobs(Editor& editor, Column& column);
   void draw_folders(Editor& editor, Column& column);
 
-  // Each of these draws a row. labelled() draws only the label, with the description as its tooltip, and returns the
-  // area left for the field.
+  // Functions that draw a row of the dialog, with a label and a field. labelled() draws only the label, whose tooltip
+  // is the description, and returns the area for the field.
   Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& description);
   void number(Editor& editor, Column& column, const std::string& label, const std::string& description, double low,
               double high, const char* format, const char* unit, const std::function<double&(Preferences&)>& value);
@@ -51,7 +51,7 @@ class PreferencesDialog final : public Dialog {
 
   PreferencesPage page_;
   KeymapPage keys_;
-  std::string edited_;  // label of the number being dragged or typed
+  std::string edited_;  // label of the number field that the user drags or types into; "": none
   double edited_value_ = 0;
 };
 
@@ -131,7 +131,8 @@ void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
   check(editor, column, "Reduce motion",
         "Switch the view at once instead of turning it, and do not fade anything in or out.",
         editor.preferences.reduce_motion);
-  check(editor, column, "Advanced steps", "Show all tools of each step in the list of steps, not only the main one.",
+  check(editor, column, "Advanced steps",
+        "Show all tools of each workflow step in the sidebar, not only its main tool.",
         editor.preferences.advanced_steps);
 }
 
@@ -171,7 +172,7 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
 void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
   whole_number(
       editor, column, "Memory for undo",
-      "Memory for undo steps. When edits need more, the oldest edits can no longer be undone. The history says so.",
+      "Memory for undo steps. When edits need more memory than this, the oldest edits can no longer be undone.",
       &Preferences::undo_limit_mb, 64, 65536, "MB");
   const History& history = editor.history;
   note(editor, column,

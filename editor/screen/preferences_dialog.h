@@ -11,7 +11,8 @@ namespace limber::editor {
 
 enum class PreferencesPage { Interface, Keymap, View, Undo, Jobs, Folders };
 
-// Returns the dialog, opened at a page. search: initial search text of the keymap page.
+// Makes the preferences dialog, which opens at the page `page`.
+//   search  initial search text of the keymap page
 std::unique_ptr<Dialog> open_preferences(PreferencesPage page = PreferencesPage::Interface,
                                          const std::string& search = "");
 
@@ -20,8 +21,8 @@ class KeymapPage {
  public:
   explicit KeymapPage(std::string search) : search_(std::move(search)) {}
   void draw(Editor& editor, const Rect& rect);
-  bool key(Editor& editor, const Chord& chord);  // true: the page used the key
-  bool stop_waiting();                           // false: the page was not waiting
+  bool key(Editor& editor, const Chord& chord);  // returns true if the page was waiting for a key and has used this key
+  bool stop_waiting();                           // returns true if the page was waiting for a key
 
  private:
   struct Row {
@@ -36,7 +37,7 @@ class KeymapPage {
   std::string waiting_context_, waiting_operator_;  // the command that waits for a new key; empty: none
 };
 
-// Returns the title of a keymap context: "3D view".
+// Returns the title of a keymap context, which is the part of the window where keys work, such as "3D view".
 std::string title_of_context(const std::string& context);
 
 }  // namespace limber::editor

@@ -40,7 +40,7 @@ std::string others_of(const Editor& editor, const Clash& clash, const std::strin
   return others;
 }
 
-// Returns whether the texts are equal, ignoring case. Case is ignored because users type "ctrl+z" for Ctrl+Z.
+// Returns true if two texts are equal except for upper and lower case, because users type "ctrl+z" for Ctrl+Z.
 bool same_ignoring_case(const std::string& a, const std::string& b) {
   return a.size() == b.size() && contains_ignoring_case(a, b);
 }
@@ -67,7 +67,7 @@ std::vector<KeymapPage::Row> KeymapPage::rows(const Editor& editor) const {
   for (const auto& [context, title] : kContexts) {
     if (const auto bindings = editor.keymap.contexts.find(context); bindings != editor.keymap.contexts.end())
       for (const Binding& binding : bindings->second) add(context, binding.operator_id);
-    for (const auto& [place, keys] : editor.preferences.keys)  // commands whose keys the user removed
+    for (const auto& [place, keys] : editor.preferences.keys)  // also list commands whose keys the user has removed
       if (place.first == context) add(context, place.second);
   }
   for (const Operator& op : editor.operators)
@@ -85,8 +85,8 @@ bool KeymapPage::stop_waiting() { return !std::exchange(waiting_operator_, "").e
 
 bool KeymapPage::key(Editor& editor, const Chord& chord) {
   if (waiting_operator_.empty()) return false;
-  // The new key replaces the command's keys, but not its mouse buttons and wheel. Delete or Backspace without modifiers
-  // only removes the command's keys.
+  // Replace all keys of the command by the new key, and keep its mouse buttons and wheel. If the new key is Delete or
+  // Backspace without modifiers, only remove the command's keys.
   std::vector<Chord> chords = chords_of(editor.keymap, waiting_context_, waiting_operator_);
   std::erase_if(chords, [](const Chord& old) { return old.kind == Chord::Kind::Key; });
   const bool clear = chord.modifiers == Modifiers{} && (chord.key == Key::Delete || chord.key == Key::Backspace);
@@ -135,7 +135,7 @@ void KeymapPage::draw_head(Editor& editor, const Rect& rect) {
   }
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     tooltip(editor, restore, "Restore all",
-            custom ? "Discard all your changes of the keymap." : "You have not changed any key.");
+            custom ? "Discard all your changes to the keymap." : "You have not changed any key.");
 }
 
 void KeymapPage::draw_row(Editor& editor, Column& column, int index, const Row& row,

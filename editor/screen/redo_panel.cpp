@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the settings of the last operation, so that the user can adjust them afterwards. They are shown in a box that
-// unfolds in the view, or in a form at the pointer.
+// Draws the settings of the last operation, so that the user can adjust them afterwards. The settings are drawn in a
+// box that unfolds in the view, or in a form that opens at the pointer.
 #include <utility>
 
 #include "editor/context/operator_button.h"

@@ -35,7 +35,7 @@ void draw_sidebar(Editor& editor) {
   if (rect.empty()) return;
   begin_region(editor, Region::Sidebar, "sidebar", rect, editor.look.theme.panel);
   const float shift = sidebar_shift() / editor.look.scale;
-  ImGui::PushID(static_cast<int>(editor.workspace));  // each workspace keeps its own scroll position
+  ImGui::PushID(static_cast<int>(editor.workspace));  // so that each workspace has its own scroll position
   {
     Column column(editor, "sections", rect);
     column.space(shift);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws over a slice: its name and number, orientation letters, the crosshair, the slice bar and the scale bar.
+// Draws the overlays of a slice view: the slice's name and number, orientation letters, the crosshair, the slice bar (a
+// slider that selects the slice) and the scale bar.
 #include <cmath>
 
 #include "editor/context/panels.h"
@@ -28,12 +29,13 @@ void draw_letters(Editor& editor, const render::SliceFrame& frame, const Rect& r
   };
   const glm::vec2 middle = rect.centre();
   put({rect.low.x + look.px(15), middle.y}, -frame.right);
-  put({rect.high.x - look.px(44), middle.y}, frame.right);  // leaves room for the slice bar
+  put({rect.high.x - look.px(44), middle.y}, frame.right);  // 44 px from the edge, because the slice bar is beside it
   put({middle.x, rect.low.y + look.px(14)}, -frame.down);
   put({middle.x, rect.high.y - look.px(14)}, frame.down);
 }
 
-// Draws the crosshair. Each line has its axis's colour, and leaves a gap of 24 px at the centre.
+// Draws the crosshair. Each of its two lines marks a position on a world axis and has the colour of this axis. The
+// lines have a gap of 24 px at the centre.
 void draw_cross_hair(Editor& editor, const render::SliceCamera& camera, const render::SliceFrame& frame,
                      const Rect& rect) {
   if (!editor.views->show_cross_hair) return;
@@ -48,7 +50,8 @@ void draw_cross_hair(Editor& editor, const render::SliceCamera& camera, const re
   fill({{std::max(at.x + gap, rect.low.x), at.y}, {rect.high.x, at.y + line}}, level);
 }
 
-// Returns the grid axis closest to the slice's normal. The slice moves by steps along this axis.
+// Returns the grid axis that is closest to the slice's normal. The slice bar moves the slice along this axis, voxel by
+// voxel.
 int grid_axis_of(const Grid& grid, const glm::dvec3& normal) {
   int nearest = 0;
   for (int axis = 1; axis < 3; ++axis)
@@ -69,7 +72,7 @@ void draw_slice_bar(Editor& editor, const Grid& grid, int axis, const Rect& rect
   glm::dvec3 voxel = voxel_from_world(grid) * editor.views->cross_hair;
   const double last = std::max(grid.size[axis] - 1, 1);
   const bool upward = glm::dot(glm::dvec3(grid.direction[axis]), glm::dvec3(1)) >
-                      0;  // the axis points to the body's left, back or head
+                      0;  // true: the grid axis points to the body's left, back or head
   if (pressed.held) {
     const double share =
         glm::clamp(static_cast<double>((editor.input.pointer.y - track.low.y) / track.height()), 0.0, 1.0);

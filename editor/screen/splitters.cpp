@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the splitters between regions and lets the user drag them. The user can grip a splitter on a strip 6 px wide;
-// a coloured line marks it when the pointer rests there. A double-click restores the default size.
+// Draws the splitters between the regions of the window, and lets the user drag them. A splitter can be dragged by a
+// strip 6 px wide; when the pointer rests on the strip, a coloured line appears. A double-click restores the default
+// size.
 #include "editor/context/panels.h"
 
 namespace limber::editor {
 
 namespace {
 
-constexpr float kGrip = 6;            // width of the strip that can be gripped, px at scale 1
+constexpr float kGrip = 6;            // width of the strip by which a splitter can be dragged, px at scale 1
 constexpr double kShownAfter = 0.15;  // time that the pointer rests on the strip before the line is shown, s
 
 const char* name_of(SplitterId id) {

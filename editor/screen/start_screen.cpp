@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the start screen, which is shown while nothing is open: buttons to begin, samples, recent files, edits to
-// recover after a crash, and the four steps of the work. The menus above it still work. Escape closes the start screen;
-// the key of a command closes it and runs the command.
+// Draws the start screen, which is shown while nothing is open. It has buttons to begin, sample bodies, recent files,
+// edits to recover after a crash, and the four steps of the work. The menus stay usable. Escape closes the start
+// screen, and the key of any command closes it and runs the command.
 #include <ctime>
 
 #include "editor/context/operator_button.h"
@@ -18,12 +18,12 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 1100, kHeight = 716, kPadding = 32, kMargin = 8;
-constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // px at scale 1; a smaller window gets the compact layout
-constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights of samples, px at scale 1
+constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // smallest window with the full layout, px at scale 1
+constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights of sample buttons, px at scale 1
 constexpr float kRecentRow = 52, kRecovery = 58;
 constexpr float kSampleAspect = 504.0f / 232;
 
-// The layout of the start screen's card.
+// The layout of the card, which is the panel in the middle of the start screen.
 struct Plan {
   Rect card;
   bool small = false, steps = true;
@@ -48,13 +48,14 @@ Plan plan_of(const Editor& editor) {
   return plan;
 }
 
-// Draws a picture that fills the rectangle. picture: the picture's width divided by its height.
+// Draws a picture that fills the rectangle.
+//   picture  the picture's aspect ratio, which is its width divided by its height
 void draw_picture(Editor& editor, unsigned texture, const Rect& rect, float picture, float rounding) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   canvas.AddRectFilledMultiColor(im(rect.low), im(rect.high), editor.look.theme.view_top, editor.look.theme.view_top,
                                  editor.look.theme.view_bottom, editor.look.theme.view_bottom);
   if (!texture) return;
-  // Cut off what is too wide or too high in the picture, so that the picture fills the rectangle undistorted.
+  // Crop the picture to the rectangle's aspect ratio, so that it fills the rectangle undistorted.
   const float aspect = rect.width() / rect.height();
   const glm::vec2 cut =
       aspect > picture ? glm::vec2(0, (1 - picture / aspect) / 2) : glm::vec2((1 - aspect / picture) / 2, 0);
@@ -109,7 +110,8 @@ float draw_head(Editor& editor, const Plan& plan) {
   return y + look.px(34);
 }
 
-// Draws a sample's button. facts_too: also draws a line about the sample's content.
+// Draws the button that opens a sample body.
+//   facts_too  true: also draws a line of text about the sample's content
 void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool facts_too) {
   const Look& look = editor.look;
   const SampleFacts& facts = facts_of(sample);
@@ -133,8 +135,8 @@ void draw_sample(Editor& editor, Sample sample, const Rect& rect, bool facts_too
   if (state.clicked) open_sample(editor, sample);
 }
 
-// Draws the samples in two rows if two rows fit above `bottom`, else in one row. Returns the y coordinate of their
-// lower end.
+// Draws the buttons of the samples, in two rows if these fit above the y coordinate `bottom`, else in one row. Returns
+// the y coordinate of the buttons' lower end.
 float draw_samples(Editor& editor, const Plan& plan, float y, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.left, y}, "Samples");
@@ -201,7 +203,8 @@ void dashed_outline(const Rect& rect, Colour colour, float dash, float width) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const auto side = [&](const glm::vec2& from, const glm::vec2& to) {
     const float length = glm::distance(from, to);
-    // Dashes and gaps alternate in an odd number of equal parts, so that both corners have a dash.
+    // Dashes and gaps alternate. Their total number is odd, so that the side of the rectangle begins and ends with a
+    // dash.
     const int parts = 2 * std::max(1, static_cast<int>(length / (2 * dash))) + 1;
     for (int i = 0; i < parts; i += 2)
       canvas.AddLine(im(glm::mix(from, to, float(i) / parts)), im(glm::mix(from, to, float(i + 1) / parts)), colour,
@@ -213,7 +216,7 @@ void dashed_outline(const Rect& rect, Colour colour, float dash, float width) {
   side({rect.low.x, rect.high.y}, rect.low);
 }
 
-// Draws a hint how to open the first file; it is shown while there are no recent files.
+// Draws a hint that explains how to open a file, in place of the list of recent files while this list is empty.
 void draw_first_file(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const Operator* op = find_operator(editor, "file.open");
@@ -238,7 +241,8 @@ void draw_first_file(Editor& editor, const Rect& rect) {
   if (state.clicked && op) run(editor, *op);
 }
 
-// Draws the list of recent files, or a hint how to open the first file. first_end: y coordinate where the hint ends.
+// Draws the list of recent files. If there are none, draws a hint that explains how to open a file.
+//   first_end  y coordinate where the hint ends
 void draw_recents(Editor& editor, const Plan& plan, float y, float first_end, float bottom) {
   const Look& look = editor.look;
   put_text(editor, look.fonts.semibold, look.theme.text, {plan.second, y}, "Recent");

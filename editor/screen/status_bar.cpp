@@ -25,7 +25,8 @@ namespace {
 
 constexpr std::size_t kFewHints = 5, kMostHints = 8;
 
-// Returns hints for the held modifier keys: what each key or mouse button does together with them in this context.
+// Returns key hints while modifier keys (Ctrl, Shift, Alt) are held. Each hint tells what a key or mouse button does
+// together with the held modifiers in the area under the pointer.
 std::vector<KeyHint> held_hints(const Editor& editor) {
   std::vector<KeyHint> all;
   std::vector<Chord> seen;
@@ -42,7 +43,7 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
       Chord alone = binding.chord;
       alone.modifiers = {};
       all.push_back({key_caps(alone), op->label});
-      // A left click and a left drag do different things, so the hint of a left drag says "drag".
+      // Add "drag" to the hint of a drag with the left button, because a click with this button does something else.
       if (alone.kind == Chord::Kind::Drag && alone.button == MouseButton::Left) all.back().caps.back() += " drag";
     }
   }
@@ -131,7 +132,7 @@ void draw_hints(Editor& editor, const Rect& bar, float right) {
   }
 }
 
-// Icon and text that tell whether the project is saved.
+// The icon, its colour, the text and the tooltip that tell whether the project is saved.
 struct SavedState {
   const char* icon;
   Colour colour;
@@ -159,14 +160,14 @@ SavedState saved_state(const Editor& editor) {
   return {icon::kTick, theme.ok, words, editor.project_path.string()};
 }
 
-// Draws a slot of the bar that ends at the x coordinate `right`, like the functions below. Returns the x coordinate
-// where the next slot, left of this one, ends.
+// Draws a slot of the status bar that tells whether the project is saved. The slot ends at the x coordinate `right`.
+// Returns the x coordinate at which the next slot to the left must end; the functions below do the same.
 float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
   const SavedState state = saved_state(editor);
   const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y},
-                  {right, bar.high.y}};  // the widest text gives every state the same width
+                  {right, bar.high.y}};  // the width of the widest text, so that the slot keeps its width
   if (*state.icon)
     put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
   put_text(editor, look.fonts.small, look.theme.text2,
@@ -207,7 +208,8 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   return left;
 }
 
-// Draws the volume change by the pose, the most important figure of a pose, if the sidebar that shows it is closed.
+// Draws how much the pose changes the volume of all tissue, which is the most important figure of a pose. Draws nothing
+// while the sidebar is open, because the sidebar shows this figure too.
 float draw_volume_change(Editor& editor, const Rect& bar, float right) {
   LivePose& live = *editor.live;
   if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty())

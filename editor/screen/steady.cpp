@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-// Ids of the values that are stored in the state storage of the sidebar's ImGui window.
+// Keys of the values that this file stores in the state storage of the sidebar's ImGui window.
 constexpr ImGuiID kShift = 1, kWidget = 2, kLow = 3, kHigh = 4, kScroll = 5, kState = 6, kHead = 7, kSection = 8,
                   kEnd = 9;
 
@@ -56,14 +56,14 @@ ImGuiID section_of(const Widget& widget) {
   return ImHashStr(rest.substr(0, rest.find('/')).c_str());
 }
 
-// Returns by how many pixels a widget has moved down since note() stored its position. If the sidebar's top edge clips
-// the widget, measures at the widget's lower end.
+// Returns the distance that a widget has moved down since note() stored its position, pixels. The distance is measured
+// at the widget's upper end, or at its lower end if the sidebar's top edge clips the widget.
 float way_of(const Widget& widget, const ImGuiStorage& noted, const Rect& sidebar) {
   const bool clipped = widget.rect.low.y <= sidebar.low.y || noted.GetFloat(kLow) <= sidebar.low.y;
   return clipped ? widget.rect.high.y - noted.GetFloat(kHigh) : widget.rect.low.y - noted.GetFloat(kLow);
 }
 
-// Stores the widget that must stay where it is, and its position. Null: no widget must stay.
+// Stores the widget that must not move on the screen, with its current position. Null: any widget may move.
 void note(ImGuiStorage& noted, const Widget* widget, float scroll) {
   noted.SetInt(kWidget, widget ? static_cast<int>(id_of(*widget)) : 0);
   noted.SetFloat(kScroll, scroll);
@@ -91,7 +91,7 @@ bool has_moved_under_pointer(Editor& editor) {
   ImGuiStorage& noted = window->StateStorage;
   const Rect& rect = editor.layout.sidebar;
   const float shift = noted.GetFloat(kShift), scroll = scroll_of(*window);
-  // If the workspace or the sidebar's size has changed, reset the shift.
+  // Reset the shift if the workspace or the sidebar's size has changed, or if the pointer has left the sidebar.
   const int state =
       static_cast<int>(editor.workspace) + 8 * static_cast<int>(rect.width()) + 65536 * static_cast<int>(rect.height());
   const bool same = noted.GetInt(kState) == state, held = editor.input.down(MouseButton::Left);
@@ -106,7 +106,7 @@ bool has_moved_under_pointer(Editor& editor) {
   const Widget* widget = id != 0 && !scrolled ? with_id(editor, id) : nullptr;
   const ImGuiID section = static_cast<ImGuiID>(noted.GetInt(kSection));
   float way = widget ? std::round(way_of(*widget, noted, rect)) : 0;
-  // If the widget is not drawn any more, use the movement of its section's heading.
+  // If the stored widget is not drawn any more, use the distance that the heading of its section has moved.
   if (id != 0 && !scrolled && !widget && section != 0)
     way = std::round(noted.GetFloat(section) - noted.GetFloat(kHead));
   if (way != 0) {

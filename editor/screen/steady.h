@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the sidebar's widget under the pointer in place. If content above the widget appears, disappears or grows, all
-// sections are shifted by the change in height. The shift ends when the pointer leaves the sidebar or another workspace
-// is shown.
+// Keeps the sidebar's widget under the pointer at its place on the screen. If content above this widget appears,
+// disappears or grows, all sections of the sidebar are shifted to compensate for the change in height. The shift ends
+// when the pointer leaves the sidebar, or when another workspace is shown.
 #pragma once
 
 namespace limber::editor {
 
 struct Editor;
 
-// Returns the distance from the sidebar's top to the first section, pixels. Call within the sidebar's window.
+// Returns the shift of the sidebar's sections, which is the distance from the sidebar's top to the first section,
+// pixels. Call within the sidebar's ImGui window.
 float sidebar_shift();
-// Returns the height of the empty space to leave below the sections, pixels. It prevents scrolling when content above
-// disappears. end: lower end of the sections, measured from the start of the scrolled content, pixels.
+// Returns the height of the empty space to leave below the sidebar's sections, pixels. Without this space, ImGui would
+// scroll when content disappears.
+//   end  lower end of the sections, measured from the start of the scrolled content, pixels
 float sidebar_rest(float end);
-// Returns whether the widget under the pointer has moved, so that the panels must be drawn again. Call once after the
-// panels are drawn.
+// Updates the shift of the sidebar's sections. Returns true if the shift has changed, so that the panels must be drawn
+// again. Call once after the panels are drawn.
 bool has_moved_under_pointer(Editor& editor);
 // Stores the widget under the pointer. Call once after a button press was handled, so that the pressed widget stays in
 // place even if the pointer came to it in the same frame.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws toasts, which are short messages at the bottom right of the 3D view. Infos stay 4 s, warnings 8 s, errors until
-// the user closes them. At most three toasts are visible, or one if only slices are shown; a line above them counts the
-// older ones. While the pointer is over the toasts, none disappears and new ones wait.
+// the user closes them. At most three toasts are visible, or one if only slices are shown; a line above the toasts
+// tells how many older messages there are. While the pointer is over a toast, no toast disappears and no new toast
+// appears.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/ui/icons.h"
@@ -20,10 +21,10 @@ double life_of(Severity severity) {
   return severity == Severity::Error ? 1e300 : severity == Severity::Warning ? 8 : 4;
 }
 
-// The texts of a toast and their sizes, pixels.
+// The texts of a toast (message and label of its button), with their sizes in pixels.
 struct Shape {
   std::string line, action;
-  float words = 0, action_width = 0;  // widths of the text and the action's button
+  float words = 0, action_width = 0;  // width of the area for the message; width of the button, 0: no button
   float line_height = 0, height = 0;
 };
 
@@ -98,7 +99,7 @@ bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Re
   return closed;
 }
 
-// Draws the number of older toasts; a click on it opens the console.
+// Draws the number of older messages that are not shown as toasts. A click on the number opens the console.
 void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
   const Look& look = editor.look;
   const std::string words = "+" + std::to_string(count) + " more";
@@ -127,7 +128,7 @@ Rect place_of_toasts(const Editor& editor) {
   return place;
 }
 
-// Returns whether the pointer is over a toast, by the positions in the last frame.
+// Returns true if the pointer is over a toast, at the position where the toast was drawn in the last frame.
 bool points_at_toasts(const Editor& editor) {
   const auto& widgets = editor.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
@@ -143,7 +144,8 @@ void draw_toasts(Editor& editor) {
   const Look& look = editor.look;
   const bool held = points_at_toasts(editor);
   for (Toast& toast : toasts) {
-    // A new message waits while the pointer is over the toasts. A repeated one does not, because it is already visible.
+    // While the pointer is over a toast, new messages wait. A message that is repeated does not wait, because its toast
+    // is visible already.
     if (toast.since < 0 && (!held || toast.times > 1)) toast.since = editor.now;
     if (held && toast.since >= 0) toast.since = std::max(toast.since, editor.now - kFadeIn);
   }
@@ -162,7 +164,7 @@ void draw_toasts(Editor& editor) {
   std::size_t shown = 0;
   for (; shown < most && (shown == 0 || bottom > views.centre().y); ++shown) {
     const std::size_t at = seen[shown];
-    const Toast toast = toasts[at];  // a copy, because a button in it may add toasts
+    const Toast toast = toasts[at];  // a copy, because a button of this toast may add toasts to the list
     const Shape shape = shape_of(editor, toast, width);
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
     if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;

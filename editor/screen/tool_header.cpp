@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the tool header, the bar below the top bar: display of the body, options of the workspace, clipping, and layout
-// of the views.
+// Draws the tool header, which is the bar below the top bar. It has buttons for the display of the body, the options of
+// the workspace, clipping, and the layout of the views.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/resample/resample_job.h"
@@ -16,7 +16,7 @@ namespace {
 
 class Header {
  public:
-  // drawn: if false, nothing is drawn, and only the groups of buttons that fit are found.
+  //   drawn  false: draws nothing, and only finds which groups of buttons fit into the header
   Header(Editor& editor, bool drawn, bool short_labels)
       : editor_(editor),
         bar_(editor.layout.tool_header),
@@ -24,8 +24,8 @@ class Header {
         drawn_(drawn),
         short_labels_(short_labels) {}
 
-  // Draws a segmented bar of operators, one of which is active. words: draws labels in place of icons, if labels are
-  // not short.
+  // Draws a row of adjacent buttons, one for each operator, of which one is active.
+  //   words  true: draws labels in place of icons, unless the header has room only for icons
   void segments(std::initializer_list<const char*> ids, bool words = false) {
     segments(std::vector<std::string>(ids.begin(), ids.end()), words);
   }
@@ -52,10 +52,11 @@ class Header {
     x_ += px(6);
   }
 
-  // Draws a drop-down list of operators, one of which is active. Its button is as wide as the longest label.
+  // Draws a button that shows the active one of several operators, and opens a list of all of them. The button is as
+  // wide as the longest label.
   void choice(const char* name, std::initializer_list<const char*> ids) {
     const Operator* chosen =
-        find_operator(editor_, *ids.begin());  // shown if none is active; another button then shows the active one
+        find_operator(editor_, *ids.begin());  // the first operator is shown if none of this list is active
     float width = 0;
     for (const char* id : ids) {
       const Operator* op = find_operator(editor_, id);
@@ -103,7 +104,7 @@ class Header {
     x_ += px(width + 10);
   }
 
-  // Draws the main action of the workspace as a primary button.
+  // Draws an operator that is the main action of the workspace, as a primary (coloured) button.
   void action(const char* id) {
     const Operator* op = find_operator(editor_, id);
     const ButtonLook face{op->icon, op->label};
@@ -152,10 +153,12 @@ class Header {
     ImGui::EndPopup();
   }
   bool dropped_any() const { return !dropped_.empty(); }
-  // Returns the width of a toggle button, px at scale 1. labelled: its width with a label.
+  // Returns the width of a toggle button in this header, px at scale 1.
+  //   labelled  the button's width with a label, for a header that has room for labels
   float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
-  // Returns whether a group of operators of this width (px at scale 1) fits. If not, adds its operators to the menu of
-  // the "..." button.
+  // Returns true if a group of buttons still fits into the header. If the group does not fit, adds its operators to the
+  // menu of the "..." button.
+  //   width  width of the group, px at scale 1
   bool fits(float width, std::initializer_list<const char*> ids) {
     return fits(width, std::vector<std::string>(ids.begin(), ids.end()));
   }
@@ -186,7 +189,7 @@ class Header {
   std::vector<std::string> dropped_;
 };
 
-// Draws the display of the body and the options of the workspace.
+// Draws the buttons for the display of the body and for the options of the workspace.
 void put_options(Editor& editor, Header& header) {
   header.layouts();
   header.to_left();
@@ -273,7 +276,8 @@ void draw_tool_header(Editor& editor) {
   begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
   fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
-  // If not all groups fit with labels, the labels are omitted before any group moves into the menu of "...".
+  // First measure whether all groups of buttons fit with labels. If they do not, draw the buttons without labels.
+  // Groups that still do not fit go into the menu of the "..." button.
   Header measured(editor, false, editor.layout.short_labels);
   put_options(editor, measured);
   Header header(editor, true, editor.layout.short_labels || measured.dropped_any());

@@ -27,7 +27,7 @@ void draw_tool_strip(Editor& editor) {
   if (editor.workspace == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.scale", "-",
              "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane"};
-  // In a window of small height the buttons are less high, so that all fit.
+  // Compute the height of a button. In a low window the buttons are lower, so that all of them fit.
   const auto lines = static_cast<float>(std::count(tools.begin(), tools.end(), "-"));
   const float rows = static_cast<float>(tools.size()) - lines;
   const float room = std::floor((rect.height() - look.px(8) - lines * look.px(11)) / rows) - look.px(1);

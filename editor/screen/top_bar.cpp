@@ -32,7 +32,7 @@ float draw_menus(Editor& editor, float x, const Rect& bar) {
     const Pressed pressed = press_area(editor, menu.title, rect);
     if (pressed.hovered || open) fill(rect, open ? look.theme.active : look.theme.hover, look.px(4));
     put_text(editor, look.fonts.regular, look.theme.text, rect, menu.title, Align::Centre);
-    // A menu opens when its title is pressed. While another menu is open, pointing at the title is enough.
+    // A menu opens when the user presses its title, or points at its title while another menu is open.
     const bool from_neighbour =
         !open && !editor.open_menu.empty() && editor.open_menu != menu.title && rect.contains(editor.input.pointer);
     if (pressed.activated || from_neighbour) ImGui::OpenPopup(popup.c_str());
@@ -75,7 +75,7 @@ float draw_workspaces(Editor& editor, float x, const Rect& bar) {
   return x;
 }
 
-// Draws the project's name between `left` and `right`.
+// Draws the project's name in the top bar, between the x coordinates `left` and `right`.
 void draw_project_name(Editor& editor, float left, float right, const Rect& bar) {
   const Look& look = editor.look;
   const bool open = editor.document().volume || !editor.project_path.empty();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the tour's bubble beside the widget it explains, with an arrow to the widget.
+// Draws the bubble of the guided tour: a box with text beside the widget that the text explains, with an arrow to the
+// widget.
 #include "editor/files/tour.h"
 
 #include "editor/context/panels.h"
@@ -12,8 +13,8 @@ namespace {
 
 constexpr float kWidth = 320, kPadding = 14, kArrow = 10;
 
-// The position of the bubble: below, right or left of the widget, wherever there is room. If the widget is as large as
-// a view, the bubble is inside the widget.
+// The position of the tour's bubble. The bubble is below, right or left of the widget that it explains, depending on
+// the free room. If the widget is as large as a view, the bubble is inside the widget.
 struct Place {
   Rect rect;
   glm::vec2 tip, base;  // ends of the arrow: its tip at the widget, its base at the bubble

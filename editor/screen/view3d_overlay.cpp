@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws over the 3D view: its title, the axis ball, the scale bar and legends.
+// Draws the overlays of the 3D view: its title, the axis ball, the scale bar and legends.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kBall = 34, kEnd = 9;  // px at scale 1: radius of the axis ball; radius of the discs at its axes' ends
+// Radius of the axis ball, which shows the direction of view, and of the discs at its axes' ends, px at scale 1.
+constexpr float kBall = 34, kEnd = 9;
 
 struct AxisEnd {
   const char* letter;
@@ -53,7 +54,7 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
     order[i] = {seen.z, i};
   }
   std::sort(order.begin(), order.end());
-  // If the discs of two axis ends overlap, the nearer one takes the click and hides the other.
+  // If the discs of two axis ends overlap, only the disc that is nearer to the eye can be clicked.
   const float radius = look.px(kEnd);
   std::array<Pressed, 6> presses;
   for (auto nearest = order.rbegin(); nearest != order.rend(); ++nearest) {
@@ -117,7 +118,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   const BodyView& body = editor.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   if (editor.layout.by_sides) draw_side_chip(editor, place);
-  if (place.side_a) {  // side A of a comparison has only these; side B has all overlays
+  if (place.side_a) {  // in a side-by-side comparison, the view of side A has only its title and these two overlays
     draw_clip_handles(editor, rect);
     return draw_scale_bar(editor, rect, visible_height / rect.height());
   }
@@ -130,7 +131,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);
   draw_proposed_joint(editor, rect);
-  Rect above = rect;  // the part of the view above the legend
+  Rect above = rect;  // the part of the view above the legends at its lower edge
   if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
   above.high.y -= editor.look.px(draw_marks_legend(editor, rect));
   if (!proposed_joint(editor)) draw_last_operation(editor, above);

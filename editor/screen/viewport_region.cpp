@@ -41,8 +41,8 @@ void draw_picture(Editor& editor, const ViewPlace& place) {
   ImGui::PopClipRect();
 }
 
-// Lets the user drag the divider between sides A and B of a comparison. least: smallest fraction of the view's width
-// that is left for either side.
+// Lets the user drag the divider between sides A and B of a comparison.
+//   least  smallest fraction of the width of `rect` that is left for each side
 Pressed press_divider(Editor& editor, const std::string& name, float x, const Rect& rect, float least) {
   Comparison& comparison = editor.comparison;
   const float half = editor.look.px(4);
@@ -57,7 +57,7 @@ Pressed press_divider(Editor& editor, const std::string& name, float x, const Re
   return pressed;
 }
 
-// Draws the divider in the gap between two views that are side by side.
+// Draws the divider in the gap between the views of a side-by-side comparison.
 void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
   const Look& look = editor.look;
   const Rect both{a.low, b.high};
@@ -72,8 +72,8 @@ void draw_divider(Editor& editor, const Rect& a, const Rect& b) {
   put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
 }
 
-// Draws the line between sides A and B of a comparison that share a view, with the names of both results. In a low view
-// it draws only the letters, because names would cover the picture.
+// Draws the line that divides a view between sides A and B of a comparison, with the names of both results. In a low
+// view, only the letters A and B are drawn, because the names would cover too much of the picture.
 void draw_wipe(Editor& editor, const Rect& rect) {
   if (!editor.views->other_scene || editor.layout.by_sides) return;
   const Look& look = editor.look;
@@ -118,7 +118,7 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point =
       world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const render::Scene& scene = scene_at_pointer(editor, place);  // of the comparison's side under the pointer
+  const render::Scene& scene = scene_at_pointer(editor, place);  // of the compared result at the pointer
   const auto voxel = voxel_shown_at(scene, hover.point);
   if (!voxel) return;
   hover.voxel = *voxel;
@@ -126,7 +126,7 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   hover.inside = hover.label != 0;
 }
 
-// Returns the title of the menu for the selected bones.
+// Returns the title of the context menu for the selected bones: the name of a single bone, or the number of bones.
 std::string title_of_bones(const Editor& editor) {
   const std::size_t count = editor.selection.bones.size();
   return count == 1 ? editor.document().armature->bones[*editor.selection.bones.begin()].name
@@ -159,8 +159,8 @@ void draw_pointer_menu(Editor& editor) {
   ImGui::EndPopup();
 }
 
-// Draws a row of the pick list with a colour swatch at the left and the text `right` at its right end. Returns true if
-// the row was clicked.
+// Draws a row of the pick list, which lists the bones and tissues under the pointer. The row has a colour swatch at the
+// left and the text `right` at its right end. Returns true if the user clicked the row.
 template <class Swatch>
 bool pick_row(Editor& editor, const std::string& key, const std::string& name, const std::string& right, bool chosen,
               const Swatch& draw_swatch) {
@@ -180,7 +180,7 @@ bool pick_row(Editor& editor, const std::string& key, const std::string& name, c
   return pressed.clicked;
 }
 
-// Draws the pick list, a popup that lists everything under the pointer, nearest first.
+// Draws the pick list, a popup that lists the bones and tissues under the pointer, nearest first.
 void draw_pick_list(Editor& editor) {
   if (editor.open_pick_list) {
     ImGui::OpenPopup("pick list");
@@ -244,7 +244,7 @@ void draw_side_chip(Editor& editor, const ViewPlace& place) {
     std::snprintf(words, sizeof words, facts->seconds < 10 ? "%.1f s" : "%.0f s", facts->seconds);
   const float high = look.px(26), text_left = look.px(54),
               seconds = *words ? text_size(look.fonts.regular, words).x + look.px(10) : 0;
-  // Width available for the title, px. On the right, room is kept free for the axis ball.
+  // Width available for the title, px. In the view of side B, some width is left free for the axis ball.
   const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));
   if (result && text_left + text_size(look.fonts.semibold, title).x + look.px(12) > room)
     title = method_name(result->method);
@@ -277,7 +277,7 @@ void draw_view_title(Editor& editor, const Rect& rect, const std::string& title,
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel) {
   if (!editor.views->scale_bar || millimetres_per_pixel <= 0) return;
   const Look& look = editor.look;
-  // The bar is 60 to 120 px long and stands for 1, 2, 4, 5, 10, 15 or 20 mm, cm or m, or for 1 to 400 micrometres.
+  // Find a round length whose bar is 60 to 120 px long: 1, 2, 4, 5, 10, 15 or 20 mm, cm or m, or 1 to 400 micrometres.
   const double low = look.px(60) * millimetres_per_pixel, high = look.px(120) * millimetres_per_pixel;
   constexpr std::pair<double, const char*> kUnits[] = {{0.001, "\u00b5m"}, {1, "mm"}, {10, "cm"}, {1000, "m"}};
   double length = 0, number = 0;

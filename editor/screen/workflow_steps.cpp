@@ -14,7 +14,8 @@ namespace limber::editor {
 
 namespace {
 
-// Returns text about the running job of a step, "Heat diffusion, weights"; "" if none runs.
+// Returns a text that names the running job of a workflow step and the job's stage, such as "Heat diffusion, weights".
+// Returns "" if no job of this step is running.
 std::string at_work(const Editor& editor, StepOfWork step) {
   for (const JobStatus& job : editor.jobs.statuses()) {
     const auto known = editor.step_of_job.find(job.id);
@@ -80,7 +81,8 @@ Step resample_step(const Editor& editor) {
             "resample.run", "Resample",       method_operators(Methods::All)};
   step.more.push_back("result.toggle");
   const Document& document = editor.document();
-  // Use the newest result of this pose whose inputs have not changed, or else the newest result of this pose.
+  // Describe the newest result of this pose that is up to date. If all results of this pose are stale (an input has
+  // changed since), describe the newest of them.
   for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
     const auto& result = *at;
     if (!is_of_this_pose(document, *result)) continue;
@@ -138,7 +140,7 @@ void draw_step(Editor& editor, Column& column, const Step& step, int number) {
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);
 }
 
-// Draws a step's further operators as small buttons, in as many rows as needed.
+// Draws the operators that a step has besides its main button, as small buttons in as many rows as needed.
 void draw_more(Editor& editor, Column& column, const Step& step) {
   const Look& look = editor.look;
   const PathScope path(editor, step.title + " more");

@@ -15,13 +15,13 @@ enum class StepState { Done, Next, Later, Working, Warning };
 struct Step {
   std::string title;
   StepState state = StepState::Later;
-  std::string line;               // text that says what exists, or what is missing
+  std::string line;               // text that tells what the step has produced, or what is missing for it
   std::string operator_id;        // operator of the step's main button
   std::string button;             // label of the main button
   std::vector<std::string> more;  // operators shown while Advanced steps is on
 };
-// Returns the five steps Prepare, Rig, Skin, Pose, Resample. At most one has the state Next: the first step that is not
-// done.
+// Returns the five steps Prepare, Rig, Skin, Pose and Resample. At most one step has the state Next, which marks the
+// first step that is not done.
 std::vector<Step> steps(const Editor& editor);
 
 }  // namespace limber::editor

@@ -10,8 +10,8 @@ namespace limber::editor {
 
 namespace {
 
-// A rectangle of voxel faces that lie in the plane `plane` across the axis `axis`. Coordinates count voxel corners:
-// voxel v reaches from corner v to corner v + 1.
+// A rectangle of voxel faces in a plane perpendicular to the grid axis `axis`. All coordinates are indices of voxel
+// corners: voxel v reaches from corner v to corner v + 1. plane: the plane's coordinate along `axis`.
 struct Rectangle {
   int axis, plane;
   glm::ivec2 low, high;  // x: along axis (axis + 1) % 3; y: along axis (axis + 2) % 3
@@ -25,8 +25,8 @@ glm::ivec3 corner_of(const Rectangle& r, bool second, bool third) {
   return corner;
 }
 
-// The voxel faces of one plane, grouped by row. The key is a row's coordinate along axis (axis + 2) % 3; the value
-// lists the coordinates of its faces along axis (axis + 1) % 3.
+// The voxel faces of a seam that lie in one grid plane (see Rectangle), grouped by row. The key is the row's coordinate
+// along the grid axis (axis + 2) % 3; the value lists the coordinates of the row's faces along (axis + 1) % 3.
 using Plane = std::map<int, std::vector<int>>;
 
 std::vector<std::pair<int, int>> runs_of(std::vector<int> places) {
@@ -38,9 +38,10 @@ std::vector<std::pair<int, int>> runs_of(std::vector<int> places) {
   return runs;
 }
 
-// Merges runs of consecutive faces that are equal in neighbouring rows into rectangles.
+// Merges the voxel faces of one plane into rectangles. A rectangle consists of runs of consecutive faces that begin and
+// end at the same coordinates in neighbouring rows.
 void merge(int axis, int plane, const Plane& rows, std::vector<Rectangle>& rectangles) {
-  std::map<std::pair<int, int>, int> open;  // unfinished rectangles: from the run of faces to the first row
+  std::map<std::pair<int, int>, int> open;  // rectangles that may still grow; key: begin and end of the run, value: row
   const auto close = [&](const std::pair<int, int>& run, int begin, int end) {
     rectangles.push_back({axis, plane, {run.first, begin}, {run.second, end}});
   };
@@ -59,8 +60,8 @@ void merge(int axis, int plane, const Plane& rows, std::vector<Rectangle>& recta
   for (const auto& [run, begin] : open) close(run, begin, last + 1);
 }
 
-// Collects the rim of a sheet of voxel faces: the voxel edges that belong to an odd number of the faces. Edges are
-// grouped by the grid line on which they lie.
+// Collects the rim of a sheet of voxel faces, which consists of the voxel edges that belong to an odd number of the
+// sheet's faces. Edges on the same grid line are stored together.
 class Rims {
  public:
   void add(const glm::ivec3& lower, int axis) {
@@ -105,7 +106,7 @@ class Rims {
 }  // namespace
 
 SeamSheet sheet_of(const Seams& seams, const Grid& grid) {
-  std::map<std::pair<int, int>, Plane> planes;  // key: axis across the plane, and the plane along it
+  std::map<std::pair<int, int>, Plane> planes;  // key: axis perpendicular to the plane, its coordinate on this axis
   Rims rims;
   seams.for_each([&](const glm::ivec3& lower, int axis) {
     planes[{axis, lower[axis] + 1}][lower[(axis + 2) % 3]].push_back(lower[(axis + 1) % 3]);

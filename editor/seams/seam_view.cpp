@@ -15,10 +15,11 @@ namespace limber::editor {
 
 namespace {
 
-// Colour of seams, ABGR (RGB: D6FF4B): no tissue has it. Under each line a wider line is drawn in black at 55 %.
+// Colour of seams, ABGR (RGB: D6FF4B); no tissue has this colour. kUnder: colour of the wider line that is drawn under
+// each line of a seam, black with an opacity of 55 %.
 constexpr Colour kSeam = 0xFF4BFFD6, kUnder = 0x8C000000;
 constexpr float kSheet = 0.22f;                  // opacity of a seam in the 3D view, [0, 1]
-constexpr std::size_t kMostRectangles = 15'000;  // a seam of more rectangles is drawn in 3D by its rims only
+constexpr std::size_t kMostRectangles = 15'000;  // if seams have more rectangles, the 3D view draws only their rims
 
 const SeamSheet& drawn_sheet(Editor& editor, const std::shared_ptr<const Seams>& seams, std::int64_t strokes) {
   auto& drawn = editor.seams->drawn;
@@ -49,8 +50,8 @@ void draw_in_body(const Look& look, const ViewProjection& seen, const SeamSheet&
   }
 }
 
-// Returns the two ends of the line in which the plane of a slice cuts a rectangle; nothing when it does not cut it.
-//   point, normal  a point of the slice's plane, and the plane's normal
+// Returns the two ends of the line segment in which a slice cuts a rectangle; nothing if the slice does not cut it.
+//   point, normal  a point in the plane of the slice, and the plane's normal
 std::optional<std::array<glm::dvec3, 2>> crossing(const std::array<glm::dvec3, 4>& corners, const glm::dvec3& point,
                                                   const glm::dvec3& normal) {
   std::array<glm::dvec3, 2> ends;
@@ -135,7 +136,7 @@ const std::vector<SeamPair>* counted_pairs(Editor& editor) {
         };
       },
       [source, seams = *shown](Editor& e, const std::string& error) {
-        // An empty result keeps the failed task from starting again for the same seams.
+        // Store an empty count for these seams. Without it, the failed task would start again in the next frame.
         e.seams->counted = {source, seams, {}};
         e.messages.show_error(error, "Counting seams");
       });

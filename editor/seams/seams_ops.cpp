@@ -9,12 +9,11 @@ namespace limber::editor {
 std::vector<Operator> seam_operators() {
   return {
       {"skin.find_seams", "Find seams", icon::kSearch, "Weights",
-       "Find the seams: faces at which limbs touch but are not joined. Seams that were changed by hand are discarded.",
+       "Find the seams: voxel faces at which limbs touch but are not joined. Your own changes of seams are discarded.",
        find_seams_again, why_no_seams},
       {"skin.seam_brush", "Seam brush", icon::kSeam, "Brush",
        "Cut a seam with a stroke, as deep as the brush's radius. Hold Ctrl to erase seams. Select any other brush to "
-       "paint "
-       "weights again.",
+       "paint weights again.",
        [](Editor& e) { e.seams->brush = !e.seams->brush, e.seams->shown |= e.seams->brush; },
        [](const Editor& e) {
          return e.workspace == Workspace::Skin ? std::string() : std::string("Switch to the Skin workspace first");
@@ -23,7 +22,7 @@ std::vector<Operator> seam_operators() {
       {"skin.show_seams", "Show seams", icon::kVisible, "Weights", "Show seams in the views of the Skin workspace.",
        [](Editor& e) { e.seams->shown = !e.seams->shown; }, nullptr, [](const Editor& e) { return e.seams->shown; }},
       {"skin.clear_seams", "Remove seams", icon::kTrash, "Weights",
-       "Remove all seams, so that all tissue that touches is joined.", clear_seams,
+       "Remove all seams, so that tissue that touches counts as joined.", clear_seams,
        [](const Editor& e) {
          const auto seams = shown_seams(e);
          return !e.document().volume                      ? "Open a volume first"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Panel of the seams. It lists the pairs of body parts that touch at a seam, with the seam's number of voxel faces. A
-// click on a row moves the cross-hair to the seam.
+// Draws the list of seams in the sidebar. Each row names two body parts that touch at a seam without being joined, and
+// the number of the seam's voxel faces. A click on a row moves the crosshair to the seam.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/seams/seam_view.h"
@@ -53,7 +53,7 @@ void draw_list(Editor& editor, Column& column) {
   if (!counted)
     return put_text(editor, look.fonts.regular, look.theme.text3, column.row(24),
                     editor.document().armature ? "Counting faces" : "Import a rig to list body parts", Align::Centre);
-  const std::vector<SeamPair> pairs = *counted;  // copied, because drawing a row may change the list
+  const std::vector<SeamPair> pairs = *counted;  // a copy, so that the list stays valid if a row changes the count
   const ListKey key = list_key(editor, kList, static_cast<int>(pairs.size()));
   if (!pairs.empty() && (key == ListKey::Moved || key == ListKey::Activate))
     go_to(editor, pairs[static_cast<std::size_t>(editor.list_focus.row)]);

@@ -14,11 +14,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kSamples = 16;                            // a bone is tested at kSamples + 1 points from head to tail
-constexpr float kRadius = 24, kLeast = 4, kMost = 400;  // first, smallest, largest circle radius, pixels at scale 1
+constexpr int kSamples = 16;                            // intervals of a bone: kSamples + 1 points of it are tested
+constexpr float kRadius = 24, kLeast = 4, kMost = 400;  // initial, smallest, largest circle radius, pixels at scale 1
 constexpr float kGrowth = 1.15f;                        // factor by which a wheel step changes the circle radius
 
-// A bone as the view shows it: the visible ones of its tested points, from head to tail, pixels.
+// A bone in the view, represented by points that are spaced evenly from its head to its tail. `points` are the pixels
+// of those points that are visible.
 struct SeenBone {
   int bone;
   std::vector<glm::dvec2> points;
@@ -65,9 +66,9 @@ class AreaSelection : public Modal {
  protected:
   virtual bool ends_by_key() const { return false; }
 
-  // Adds the bones that have a tested point in the area to the selection; with Shift, removes them from it. The active
-  // bone stays active as long as it is selected.
-  //   inside  returns whether a pixel lies in the area
+  // Adds to the selection all bones that have a visible point in the area, or removes them while Shift is held. The
+  // active bone stays active as long as it is selected.
+  //   inside  returns true if a pixel lies in the area
   template <class Inside>
   void take(Editor& editor, const Inside& inside) {
     Selection& selection = editor.selection;

@@ -14,17 +14,18 @@ namespace limber::editor {
 
 namespace {
 
-// All lengths below are in pixels at scale 1.
-constexpr float kShortest = 40;  // shorter bones are labelled only while selected
+// Sizes of the names, the gizmo and the drawn axes, pixels at scale 1.
+constexpr float kShortest = 40;  // a bone that looks shorter has a name only while it is selected
 constexpr float kBeside = 10, kHeight = 16, kPad = 4;
-constexpr float kGizmo = 114, kJointGizmo = 136;        // radius of the gizmo; with joint handles
-constexpr double kAxisShare = 0.25, kLongestAxis = 36;  // drawn axis: share of the bone's length; upper limit
+constexpr float kGizmo = 114, kJointGizmo = 136;  // radius of the gizmo without and with joint handles
+// Length of the drawn bone axes: this fraction of the bone's length, but at most kLongestAxis.
+constexpr double kAxisShare = 0.25, kLongestAxis = 36;
 
-// A bone as the 3D view shows it.
+// A bone that the 3D view shows, projected into the view.
 struct SeenBone {
   int bone;
   glm::vec2 head, tail;  // pixels
-  double depth;          // coordinate of the bone's middle towards the eye, mm; larger is nearer
+  double depth;          // position of the bone's middle along the direction to the eye, mm; larger is nearer
   bool chosen, active;
 };
 
@@ -63,7 +64,7 @@ class Names {
     if (centre)
       gizmo_ = {glm::vec2(*centre),
                 px(editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate ? kJointGizmo : kGizmo)};
-    // Bone names must not cover the view's title, the axis ball, the scale bar or the numbers that a tool shows.
+    // Reserve the areas of the view's title, axis ball, scale bar and tool numbers, which bone names must not cover.
     taken_.push_back({inside_.low, inside_.low + glm::vec2(px(300), px(48))});
     if (editor.views->axes)
       taken_.push_back({{inside_.high.x - px(100), inside_.low.y}, {inside_.high.x, inside_.low.y + px(104)}});
@@ -91,9 +92,9 @@ class Names {
            std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) { return other.overlaps(rect); });
   }
 
-  // Returns a rectangle for a bone's name that covers no other name: beside the bone's middle, or if that is taken,
-  // beside a point nearer to an end. For a selected bone, tries positions around the gizmo last. Returns nothing when
-  // all positions are taken.
+  // Returns a free rectangle for a bone's name. First tries positions beside the bone's middle, then beside points
+  // nearer to its ends. For a selected bone, tries positions around the gizmo last. Returns nothing if no position is
+  // free.
   std::optional<Rect> place_for(const SeenBone& bone, const glm::vec2& size) const {
     const auto free_at = [&](const glm::vec2& low) -> std::optional<Rect> {
       const Rect rect{glm::round(low), glm::round(low) + size};
@@ -110,7 +111,7 @@ class Names {
     for (int turn = 0; turn < 8; ++turn) {
       const float angle = begin + static_cast<float>((turn % 2 ? 1 : -1) * ((turn + 1) / 2) * std::numbers::pi / 4);
       const glm::vec2 out(std::cos(angle), std::sin(angle));
-      // The rectangle is moved outwards until it lies outside the gizmo's circle.
+      // The last term moves the whole rectangle out of the gizmo's circle, to the side of the direction `out`.
       if (const auto found = free_at(gizmo_->centre + out * (gizmo_->radius + px(4)) + (out - 1.0f) * size * 0.5f))
         return found;
     }
@@ -123,7 +124,7 @@ class Names {
   std::vector<Rect> taken_;
 };
 
-// Draws the bone's local axes from its tail, with the letters X, Y and Z.
+// Draws the local axes of a bone as lines that start at the bone's tail, with the letters X, Y and Z at their ends.
 void draw_axes(Editor& editor, const ViewProjection& view, const SeenBone& seen) {
   const render::Scene& scene = editor.views->scene;
   const Bone& bone = scene.armature->bones[seen.bone];

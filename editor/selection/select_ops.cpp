@@ -30,7 +30,7 @@ void pick(Editor& editor) {
 void extend(Editor& editor) {
   editor.transform_settings->part = TransformSettings::Part::Whole;
   if (const auto bone = bone_at_pointer(editor)) {
-    // A click on the active bone deselects it.
+    // If the bone under the pointer is the active bone, deselect it.
     if (editor.selection.bone == bone) {
       editor.selection.bones.erase(*bone);
       editor.selection.bone =
@@ -78,8 +78,8 @@ std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
   return found;
 }
 
-// Selects the bone or tissue that a click would select. If there are several under the pointer, opens a list of all of
-// them, nearest first.
+// Selects the bone or tissue under the pointer, as a click does. If several bones and tissues lie under the pointer,
+// opens a list of them, nearest first.
 void pick_list(Editor& editor) {
   pick(editor);
   std::vector<std::pair<double, Pickable>> below;
@@ -159,8 +159,8 @@ void invert(Editor& editor) {
   selection.tissues = std::move(others);
 }
 
-// Adds the bones to the selection that are similar to a selected bone.
-//   alike  returns whether the bone `other` is similar to the selected bone `chosen`
+// Selects, in addition to the selected bones, all bones that are similar to one of them.
+//   alike  returns true if the bone `other` is similar to the selected bone `chosen`
 void choose_alike(Editor& editor, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
   const Armature& rig = *editor.document().armature;
   const std::set<int> chosen = editor.selection.bones;
@@ -193,22 +193,24 @@ std::vector<Operator> select_operators() {
        "Add the bone or tissue under the pointer to the selection, or remove it if it is selected.", extend,
        needs_volume},
       {"select.pick_list", "Select from list", icon::kPick, "Select",
-       "Select the bone or tissue under the pointer and list those behind it.", pick_list, needs_volume},
+       "Select the bone or tissue under the pointer, and list everything under the pointer.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Deselect all bones and tissues.",
        [](Editor& e) { e.selection = {}; }},
       {"select.all", "Select all", "", "Select",
-       "Select all bones in the Rig and Pose workspaces (in Rig, all tissues if one is selected), else all tissues.",
+       "Select all bones in the Rig and Pose workspaces, and all tissues elsewhere. Also all tissues in Rig, if a "
+       "tissue "
+       "is selected.",
        choose_all, needs_volume},
       {"select.invert", "Invert selection", "", "Select",
        "Select the bones or tissues that are not selected, and deselect the others.", invert, needs_volume},
       {"select.box", "Box select", "", "Select",
-       "Add the bones in a box that you draw to the selection. Shift removes them.",
+       "Draw a box to add the bones in it to the selection. Shift removes them instead.",
        [](Editor& e) { e.modal = begin_box_selection(e); }, needs_bones},
       {"select.circle", "Circle select", "", "Select",
-       "Add the bones under a circle that you paint with to the selection. Shift removes them.",
+       "Paint with a circle to add the bones under it to the selection. Shift removes them instead.",
        [](Editor& e) { e.modal = begin_circle_selection(e); }, needs_bones},
       {"select.similar", "Select similar", "", "Select",
-       "Open a menu that selects bones that are similar to the selected bones.",
+       "Open a menu of ways to select bones that are similar to the selected bones.",
        [](Editor& e) { e.open_popup = "Similar"; }, needs_bone},
       alike_operator("select.siblings", "Siblings", "Select bones with the same parent as the selected bones.",
                      [](const Armature& rig, int chosen, int other) {
@@ -238,10 +240,11 @@ std::vector<Operator> select_operators() {
       {"select.chain", "Select chain", "", "Select", "Add all descendants of the selected bones to the selection.",
        choose_chain, needs_bone},
       {"select.mirror", "Select mirrored", "", "Select",
-       "Select the counterparts of the selected bones on the other side instead.", choose_mirrored, needs_bone},
+       "Select the matching bones on the body's other side in place of the selected bones.", choose_mirrored,
+       needs_bone},
       tool_operator("tool.select", "Select", icon::kSelect, "Click a bone or tissue to select it.", Tool::Select),
       tool_operator("tool.cross_hair", "Cross-hair", icon::kCrossHair,
-                    "Click to move the cross-hair and the slices there.", Tool::CrossHair),
+                    "Click a point to move the cross-hair and the slices to it.", Tool::CrossHair),
       tool_operator("tool.move", "Move tool", icon::kMove,
                     "Move the active bone with arrows at its end; its limb follows. The root bone moves the body.",
                     Tool::Move),

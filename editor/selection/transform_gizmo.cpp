@@ -24,8 +24,8 @@ namespace limber::editor {
 
 namespace {
 
-// Radii and lengths of the gizmo's parts, and distances within which the pointer hits a part (k...Hit); pixels at
-// scale 1.
+// Radii and lengths of the gizmo's parts in pixels at scale 1. kHit and kJointHit: largest distance of the pointer from
+// a part, or from a joint, at which a click hits it.
 constexpr double kRing = 86, kViewRing = 108, kTrackball = 78, kHit = 7;
 constexpr double kArrowBegin = 16, kArrowEnd = 80, kCone = 12, kSquareAt = 28, kSquare = 12, kCentre = 9;
 constexpr double kJointHit = 10;
@@ -41,8 +41,8 @@ double distance_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::
   return glm::distance(p, a + share * along);
 }
 
-// Returns the sine of the angle between the line of sight and the plane perpendicular to an axis: 0 when the ring about
-// this axis is seen edge-on, 1 when it faces the eye.
+// Returns how far the gizmo's ring about an axis is turned to the eye: 0 if the ring is seen edge-on, 1 if it faces the
+// eye. The value is the sine of the angle between the line of sight and the ring's plane.
 double steepness(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return std::abs(glm::dot(gizmo.axes[axis], view.direction_to_eye(gizmo.centre)));
 }
@@ -55,9 +55,8 @@ float arrow_alpha(const Gizmo& gizmo, const ViewProjection& view, int axis) {
   return static_cast<float>(glm::clamp((across - kHidden) / (kEdgeOn - kHidden), 0.0, 1.0));
 }
 
-// Returns, at the point where the pixel touches the front half of a ring, how much nearer to the eye this point is than
-// the ring's centre, mm; nothing when the pixel does not touch the ring.
-//   reach  distance from the ring within which the pixel touches it, pixels
+// Finds the point on the front half of a ring that is drawn nearest to a pixel. Returns how much nearer to the eye this
+// point is than the ring's centre, mm. Returns nothing if the ring is farther than `reach` pixels from the pixel.
 std::optional<double> touched(const Ring& ring, const ViewProjection& view, const glm::dvec2& pixel, double reach) {
   const glm::dvec3 to_eye = view.direction_to_eye(ring.centre);
   const auto [begin, by] = ring.front(view);
@@ -131,8 +130,8 @@ std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const ViewProjection& v
   return std::nullopt;
 }
 
-// Returns the bone whose tail is nearest to the pixel, within kJointHit. If there is none, returns the bone under the
-// pointer.
+// Returns the bone whose tail is drawn nearest to the pixel, at most kJointHit away. If no tail is that near, returns
+// the bone under the pointer.
 std::optional<int> joint_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const Armature& armature = *editor.document().armature;
   const auto posed = posed_from_rest(armature, seen_pose(editor));
@@ -168,7 +167,7 @@ void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Editor&
   const bool seen = over(GizmoPart::Kind::ViewRing);
   painter.ring(ring_of(view, scale, gizmo.centre, view.towards_eye, kViewRing),
                with_alpha(theme.view_text, seen ? 1 : 0.55f), seen ? 2.5f : 1.5f, GizmoPainter::Part::Whole);
-  // Rings that face the eye are drawn first, so that rings seen edge-on are drawn over them.
+  // Draw rings that face the eye first, so that the thin ellipses of rings seen edge-on lie over them.
   int order[] = {0, 1, 2};
   std::sort(order, order + 3, [&](int a, int b) { return steepness(gizmo, view, a) > steepness(gizmo, view, b); });
   for (const int axis : order) {
@@ -206,8 +205,9 @@ struct BonePart {
   TransformSettings::Part part;
 };
 
-// Returns the bone end nearest to the pixel, within kJointHit; of ends at the same position, one of the active bone. If
-// there is no such end, returns the bone under the pixel in the 3D view.
+// Returns the head or tail of a bone that is drawn nearest to the pixel, at most kJointHit away. Of ends at the same
+// position, an end of the active bone is preferred. If no end is that near, returns the whole bone under the pixel;
+// this works only in the 3D view.
 std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
   const std::shared_ptr<const Armature> rig = shown_rig(editor);
   if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
@@ -217,7 +217,8 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection&
     for (const bool tail : {false, true}) {
       const glm::dvec3& place = place_of(*rig, {bone, tail});
       const auto seen = view.shows(place) ? view.pixel_of(place) : std::nullopt;
-      // The subtracted amounts decide between ends at one position: the active bone's end first, then a tail.
+      // If several bone ends have the same position, the subtracted amounts prefer an end of the active bone, and a
+      // tail to a head.
       const double distance =
           seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
       if (distance > nearest) continue;
@@ -231,7 +232,8 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection&
   return std::nullopt;
 }
 
-// A bone as slices draw it: posed in the Pose workspace, at rest in the Rig workspace; world coordinates in mm.
+// A bone that is drawn in slices, with its ends in world coordinates, mm. The ends are posed in the Pose workspace and
+// at rest in the Rig workspace.
 struct DrawnBone {
   int bone;
   glm::dvec3 head, tail;
@@ -249,8 +251,8 @@ std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
   return drawn;
 }
 
-// In a slice, draws the bones as lines; bones with no end near the slice are fainter. In the Rig workspace, also marks
-// the selected joint, in every view.
+// Draws the bones as lines if the view is a slice; bones with no end near the slice are fainter. In the Rig workspace,
+// also marks the selected joint in every view.
 void draw_rig(Editor& editor, const ViewProjection& view) {
   const GizmoPainter painter(editor, view);
   const Theme& theme = editor.look.theme;
@@ -271,8 +273,8 @@ void draw_rig(Editor& editor, const ViewProjection& view) {
   if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
 }
 
-// Begins to move the joint or bone under the pointer, or with the Extrude tool, to extrude a new bone from it. Returns
-// false when another tool is active or nothing is under the pointer.
+// Begins a drag in the Rig workspace: the Move tool moves the joint or bone under the pointer, the Extrude tool
+// extrudes a new bone from it. Returns false if another tool is active, or if no joint or bone is under the pointer.
 bool press_rig(Editor& editor, const ViewProjection& view) {
   if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
   const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
@@ -286,8 +288,8 @@ bool press_rig(Editor& editor, const ViewProjection& view) {
   return true;
 }
 
-// The pole of a limb: the limb's last bone, the posed position of its middle joint, and the pole's position; world
-// coordinates in mm.
+// The pole of a limb, which is the point towards which the limb's middle joint (elbow or knee) points. bone: the limb's
+// last bone; middle: the posed position of the middle joint; point: the pole's position; world, mm.
 struct Pole {
   int bone;
   glm::dvec3 middle, point;
@@ -313,7 +315,8 @@ std::optional<int> pole_at(const Editor& editor, const ViewProjection& view, con
   return std::nullopt;
 }
 
-// Draws marks on pinned joints and on poles in the 3D view of the Pose workspace.
+// Draws marks in the 3D view of the Pose workspace: on pinned joints, and on poles (points towards which the middle
+// joints of limbs point).
 void draw_marks(Editor& editor, const ViewProjection& view) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
@@ -330,11 +333,12 @@ void draw_marks(Editor& editor, const ViewProjection& view) {
   }
 }
 
-constexpr double kLimits = 58, kTwist = 18;  // radii of drawn limits: hinge fan or cone, twist; pixels at scale 1
+// Radii of the drawn joint limits, pixels at scale 1. kLimits: hinge fan or ball joint's cone; kTwist: twist range.
+constexpr double kLimits = 58, kTwist = 18;
 
 // Draws the limits of the joint at the active bone's head: the range of a hinge as a fan, or the cone and the twist
-// range of a ball joint. The Rig workspace draws them at rest. The Pose workspace draws them posed with the parent
-// bone, and only while Keep to joint limits is on.
+// range of a ball joint. In the Rig workspace, the limits are drawn at rest. In the Pose workspace, the limits move
+// with the parent bone, and are drawn only while Keep to joint limits is on.
 void draw_limits(Editor& editor, const ViewProjection& view) {
   const bool posed = editor.workspace == Workspace::Pose;
   if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
@@ -344,7 +348,7 @@ void draw_limits(Editor& editor, const ViewProjection& view) {
       !editor.views->bones)
     return;
   const Bone& bone = armature->bones[*chosen];
-  RigidTransform carried;  // motion of the parent bone from rest
+  RigidTransform carried;  // transform of the parent bone from the rest pose to the shown pose
   if (posed) {
     const Pose pose = seen_pose(editor);
     carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation}
@@ -435,7 +439,7 @@ bool press_gizmo(Editor& editor) {
     return press_joint(editor, view);
   const auto gizmo = gizmo_in(editor, view);
   const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
-  // The Rig workspace ignores the trackball, so that a press inside it reaches the joints and bones there.
+  // The Rig workspace ignores the gizmo's trackball, so that the user can drag joints and bones that lie inside it.
   if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
     return press_rig(editor, view);
   if (!part) return false;
@@ -464,8 +468,8 @@ std::optional<int> bone_at_pointer(const Editor& editor) {
   if (!editor.document().armature || !place) return std::nullopt;
   if (place->id == ViewId::Body)
     return body_at_pointer(editor, *place).pick_bone(glm::ivec2(editor.input.pointer - place->rect.low));
-  // Whole bones can be picked in a slice only in the Pose workspace. In the Rig workspace, a slice lets the user pick
-  // joints (bone_part_at).
+  // In a slice, whole bones can be picked only in the Pose workspace. In the Rig workspace, the user picks joints in
+  // slices instead (see bone_part_at).
   if (editor.workspace != Workspace::Pose) return std::nullopt;
   const auto below = bones_below(editor);
   const auto nearest = std::min_element(below.begin(), below.end());

@@ -19,7 +19,7 @@ namespace limber::editor {
 struct GizmoPart {
   enum class Kind { Ring, ViewRing, Trackball, Arrow, Plane, Centre };
   Kind kind = Kind::Ring;
-  int axis = -1;  // axis of a ring or arrow; Plane: the axis perpendicular to it; -1: none
+  int axis = -1;  // axis of the ring or arrow, or of the plane's normal, 0 to 2; -1: the part has no axis
 
   bool operator==(const GizmoPart&) const = default;
 };
@@ -36,23 +36,24 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view);
 //   scale  scale of the interface, 1: 100 %
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel);
 
-// Selects only this bone and deselects everything else.
+// Selects this bone, makes it the active bone, and deselects all other bones and all tissues.
 void choose_bone(Editor& editor, int bone);
 
-// In the Rig workspace, selects the joint or bone under the pointer in any view. Returns false when there is none.
+// Selects the joint or bone under the pointer, in any view of the Rig workspace. Returns false in other workspaces, or
+// if no joint or bone is under the pointer.
 bool pick_bone_part(Editor& editor);
 
-// Returns the bone under the pointer; nothing when there is none. Slices give bones only in the Pose workspace.
+// Returns the bone under the pointer; nothing if there is none. In slices, finds bones only in the Pose workspace.
 std::optional<int> bone_at_pointer(const Editor& editor);
 
-// Returns all bones under the pointer, each with its distance in mm: from the eye in the 3D view, from the slice in a
-// slice.
+// Returns all bones under the pointer, each with a distance in mm. In the 3D view this is the distance from the eye, in
+// a slice the distance from the slice's plane.
 std::vector<std::pair<double, int>> bones_below(const Editor& editor);
 
-// Begins to drag what is under the pointer: a pole, a joint handle, a part of the gizmo, or a joint or bone that the
-// selected tool drags. Returns false when none of these is under the pointer.
+// Begins to drag the pole (the point towards which a limb's elbow or knee points), joint handle, part of the gizmo,
+// joint or bone under the pointer. Returns false if the pointer is on nothing that the selected tool can drag.
 bool press_gizmo(Editor& editor);
-// Draws the gizmo, bone names, pins, poles, joint limits and the marks of the rig check over a view.
+// Draws the gizmo, bone names, pinned joints, poles, joint limits and the marks of the rig check over a view.
 void draw_gizmo(Editor& editor, const ViewPlace& place);
 
 }  // namespace limber::editor

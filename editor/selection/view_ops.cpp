@@ -54,7 +54,7 @@ void maximize(Editor& editor) {
   maximized = view ? view->id : editor.views->active;
 }
 
-// Selects the bone or tissue under the pointer, and opens the context menu whose commands act on the selection.
+// Selects the bone or tissue under the pointer, and opens a context menu with commands for the selection.
 void open_context_menu(Editor& editor) {
   if (const auto bone = editor.workspace == Workspace::Rig || editor.workspace == Workspace::Pose
                             ? bone_at_pointer(editor)

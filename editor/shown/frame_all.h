@@ -5,8 +5,8 @@
 
 namespace limber::editor {
 
-// Moves the cameras of all views so that they show all visible tissue. If not animated, also moves the cross-hair to
-// the body's middle.
+// Moves the cameras of all views so that each shows all visible tissue.
+//   animated  true: the 3D camera moves smoothly; false: it jumps, and the crosshair moves to the body's middle
 void frame_all(Editor& editor, bool animated);
 
 }  // namespace limber::editor

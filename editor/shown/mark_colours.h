@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes dull colours for the tissues of a volume, so that marked voxels stand out.
+// Computes nearly grey colours for the tissues of a volume, so that voxels marked with a bright colour stand out.
 #pragma once
 
 #include <vector>

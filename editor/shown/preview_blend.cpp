@@ -5,7 +5,8 @@
 
 namespace limber::editor {
 
-// Resampling methods that do not blend bone transforms (finite elements) are previewed by the default blend.
+// If the selected method does not blend bone transforms (finite elements), returns the blend of the first method that
+// the program lists.
 Blend preview_blend(const Editor& editor) {
   return find_method(editor.resampling.method)->blend.value_or(*deformation_methods().front().blend);
 }

@@ -6,7 +6,8 @@
 
 namespace limber::editor {
 
-// Returns how the preview of the pose blends bone transforms: in the same way as the selected resampling method.
+// Returns how the preview of the pose blends the transforms of bones. The preview uses the same blend as the selected
+// resampling method, so that it predicts the method's result.
 Blend preview_blend(const Editor& editor);
 
 }  // namespace limber::editor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pose that the user works on: the document's pose, or, while a tool changes it, the changed pose that the views
-// show.
+// The pose that the user works on. This is the document's pose, except while a tool changes the pose: then it is the
+// changed pose, which the views show before the tool commits it.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace limber::editor {
 
-// pose_of() returns the document's pose, or the rest pose if it has none. shown_pose() returns the pose that the views
-// show. The document must have a rig.
+// pose_of() returns the document's pose, or the rest pose if the document has no pose. shown_pose() returns the pose
+// that the views show. Both need a document with a rig.
 Pose pose_of(const Document& document);
 Pose shown_pose(const Editor& editor);
 
@@ -18,8 +18,8 @@ Pose shown_pose(const Editor& editor);
 void show_pose(Editor& editor, Pose pose);
 void drop_shown_pose(Editor& editor);
 
-// chosen_bones() returns the selected bones, or all bones if none is selected. topmost() returns those of `bones` that
-// have no ancestor in `bones`.
+// chosen_bones() returns the selected bones, or all bones if none is selected. topmost() leaves out every bone that has
+// an ancestor in `bones`, and returns the others.
 std::vector<int> chosen_bones(const Editor& editor);
 std::vector<int> topmost(const Armature& armature, const std::vector<int>& bones);
 

@@ -10,12 +10,13 @@ namespace limber::editor {
 
 namespace {
 
-// Sine of the smallest angle (10 degrees) between a bone and its parent at which both define the plane of bending.
+// A joint counts as straight if the angle between a bone and its parent is at most 10 degrees. This is the angle's
+// sine.
 constexpr double kStraight = 0.17;
 
-// Returns the axis about which a bone is bent against its parent. For a hinge joint, this is the hinge's axis.
-// Otherwise it is the normal of the plane of both bones, as in flex_axis(), or the bone's own x axis if the joint is
-// straight.
+// Returns the axis about which the test pose bends a bone against its parent. For a hinge joint, this is the hinge's
+// axis. For other joints, it is the normal of the plane that contains both bones, as in flex_axis(). If both bones lie
+// on a straight line, it is the bone's own x axis.
 glm::dvec3 bend_axis(const Armature& armature, int index) {
   const Bone& bone = armature.bones[static_cast<std::size_t>(index)];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;

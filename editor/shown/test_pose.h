@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The test pose of the Skin workspace, in which the body is shown while its weights are painted. It is the rest pose or
-// the document's pose, with one joint bent in addition to test the weights. The test pose is not part of the document,
-// so changing it is no edit.
+// The test pose, in which the Skin workspace shows the body while the user paints weights. It is the rest pose or the
+// document's pose, with one joint bent in addition to test the weights. The test pose is not part of the document, so a
+// change of the test pose cannot be undone.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace limber::editor {
 
 // The settings of the test pose, in which the Skin workspace shows the body.
 struct TestPose {
-  static constexpr double kMost = 150, kStep = 5;  // largest angle and step of the test bend, degrees
+  static constexpr double kMost = 150, kStep = 5;  // largest test angle, and its step for keys and wheel, degrees
 
-  bool posed = false;  // true: bends from the document's pose; false: from the rest pose
+  bool posed = false;  // true: the joint is bent in the document's pose; false: in the rest pose
   std::string bone;    // the bone that is bent at its head; "" or a name not in the rig: none
   double degrees = 0;
   struct {
@@ -23,24 +23,24 @@ struct TestPose {
   } before;  // the test pose that toggle_test_pose() restores when the body is at rest
 };
 
-// Returns whether the views show the body posed, in the pose shown_pose(), and not at rest.
+// Returns true if the views show the body in a pose, which shown_pose() returns, and false if they show it at rest.
 bool shows_pose(const Editor& editor);
 // Returns the pose in which the Skin workspace shows the body. Needs a rig.
 Pose test_pose(const Editor& editor);
 
-// Returns the bone whose weights the Skin workspace shows: the active bone, else the rig's first bone. Nothing without
-// a rig.
+// Returns the bone whose weights the Skin workspace shows. This is the active bone, or the rig's first bone if no bone
+// is active. Returns nothing without a rig.
 std::optional<int> skin_bone(const Editor& editor);
 
 // Returns why the active bone cannot be bent to test its weights; "" when it can.
 std::string why_not_bend(const Editor& editor);
-// Return and set the test angle by which the active bone is bent, degrees. Setting it straightens a bone that was bent
-// before.
+// Return and set the angle by which the test pose bends the active bone, degrees. set_bend() straightens any other bone
+// that the test pose has bent so far.
 double bend(const Editor& editor);
 void set_bend(Editor& editor, double degrees);
 void clear_bend(Editor& editor);
-// Switches from a test pose to the rest pose, and back to the test pose that was shown before. If none was shown
-// before, switches to the document's pose.
+// Shows the body at rest if it is shown posed. Otherwise shows the last test pose again, or the document's pose if
+// there was no test pose before.
 void toggle_test_pose(Editor& editor);
 
 }  // namespace limber::editor

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the list of bones that can have weights. A row shows the bone's colour, name, share of all weight, lock, and an
-// eye that hides the bone's region (Ctrl+click shows only this region).
+// Draws the list of bones that can have weights. A row shows the bone's colour, its name, its share of the body's total
+// weight, a lock, and an eye. The eye hides the bone's region, which is the tissue where the bone has the largest
+// weight; Ctrl+click on the eye shows only this region.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -19,8 +20,8 @@ namespace {
 
 constexpr char kList[] = "bones";
 constexpr int kMostRows = 8;  // rows visible without scrolling
-// Widths in a row, pixels at scale 1. In a narrow sidebar, the bar that shows the bone's share of all weight becomes
-// shorter before the name does.
+// Widths of the parts of a row, pixels at scale 1. kShareBar is the bar that shows the bone's share of the total
+// weight. In a narrow sidebar, this bar shrinks to kShortestBar before the name becomes narrower than kName.
 constexpr float kShareBar = 64, kShortestBar = 24, kName = 112;
 constexpr float kRightOfBar = 95, kLeftOfName = 28;
 
@@ -77,7 +78,7 @@ void draw_eye(Editor& editor, const Rect& rect, const std::string& name) {
 
 void choose(Editor& editor, int bone, bool extended) {
   Selection& selection = editor.selection;
-  // The selected tissues stay selected, because brushes may be limited to them.
+  // Only the bones are deselected. The selected tissues stay selected, because brushes may be limited to them.
   if (!extended) selection.bones.clear();
   selection.bone = bone;
   selection.bones.insert(bone);
@@ -137,7 +138,7 @@ void draw_rows(Editor& editor, Column& column, const std::vector<int>& rows) {
   for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[static_cast<std::size_t>(i)]);
 }
 
-// Scrolls the list to the active bone after it was picked in a view.
+// Scrolls the list to the active bone after the user picked this bone in a view.
 void reveal_active(Editor& editor, const std::vector<int>& rows) {
   const auto active = skin_bone(editor);
   if (editor.skin->revealed == active) return;

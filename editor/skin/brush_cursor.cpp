@@ -12,9 +12,9 @@ namespace limber::editor {
 namespace {
 
 constexpr int kMostSteps = 96;  // upper limit on the steps of a search for the surface along the normal
-constexpr int kHalvings = 4;    // bisections of the step that crosses the surface
-// The height of each ring point above the tangent plane is averaged with those of this many neighbours on either side,
-// because the surface of voxels has steps.
+constexpr int kHalvings = 4;    // number of bisections that refine where the last step crossed the surface
+// Number of neighbours on either side of a ring point whose heights above the tangent plane are averaged with the
+// point's own height. The average smooths the ring, because a surface of voxels has steps.
 constexpr int kSmoothed = 2;
 
 // The visible part of the body: the voxels of visible tissues inside the clip plane and the clip box.
@@ -41,8 +41,9 @@ class SeenBody {
   AffineTransform to_voxel_;
 };
 
-// Searches the body's surface from `point` in steps of `step` mm: upwards from inside the body, else downwards. Returns
-// the surface's height above `point`, mm (negative: below); none if it is farther away than `most` mm.
+// Searches for the body's surface along `up` in steps of `step` mm. If `point` is inside the body the search goes
+// upwards, otherwise downwards. Returns the height of the surface above `point`, mm (negative: below it). Returns
+// nothing if the surface is farther away than `most` mm.
 std::optional<double> height_of(const SeenBody& body, const glm::dvec3& point, const glm::dvec3& up, double most,
                                 double step) {
   const bool inside = body.holds(point);

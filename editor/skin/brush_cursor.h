@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects the brush's circle onto the body. The circle lies in the body's tangent plane at the brush. Each point of it
-// moves along the normal to the visible surface; if no surface lies within the radius, the point stays in the plane.
+// Projects the brush's circle onto the body. The circle lies in the plane that touches the body at the brush's centre.
+// Each point of the circle is moved along the plane's normal to the visible surface. A point with no surface within the
+// brush's radius stays in the plane.
 #pragma once
 
 #include <vector>

@@ -82,8 +82,8 @@ void edit_curve(Editor& editor, const Rect& rect, Painting& painting) {
   if (pressed.hovered && !pressed.held) operator_tooltip(editor, *find_operator(editor, "skin.falloff_own"), rect);
 }
 
-// Draws a field for the angle by which the test pose bends the active bone. If the test pose bends another bone, draws
-// that bone's name and a button that straightens it.
+// Draws a field for the angle of the active bone in the test pose, which bends one joint while the user paints weights.
+// If the test pose bends another bone, draws the name of that bone and a button that straightens it.
 void draw_test_pose(Editor& editor, Column& column) {
   const TestPose& test = *editor.trial;
   if (why_not_bend(editor).empty()) {

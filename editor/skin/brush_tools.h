@@ -14,8 +14,9 @@ enum class BrushNumber { Radius, Strength, Value };
 
 std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which);
 
-// Begins a weight gradient from full weight to none along a line that the user draws with the left button. With R the
-// gradient is radial around the line's start. Escape or the right button cancels.
+// Begins a tool in which the user draws a line with the left button. The weight fades from full at the line's start to
+// none at its end. The R key switches between fading along the line and fading in all directions from the line's start.
+// Escape or the right button cancels the tool.
 std::unique_ptr<Modal> begin_gradient(Editor& editor);
 
 }  // namespace limber::editor

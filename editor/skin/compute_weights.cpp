@@ -34,13 +34,14 @@ bool of_rig(const Document& document) {
                     [](const std::string& name, const Bone& bone) { return name == bone.name; });
 }
 
-// The bones and the tissue that a partial computation changes.
+// The bones and the voxels whose weights change when only a part of the weights is computed.
 struct Part {
   LayerToEdit edited;
   std::vector<int> bones;
   EditScope scope{.rigid_bone_tissue = false};
-  std::vector<std::uint8_t> labels;  // [label]: nonzero if its voxels change; empty: all voxels change
-  // Bones. Only voxels where one of them has the largest weight change; empty: all voxels change.
+  std::vector<std::uint8_t> labels;  // [label]: nonzero if voxels with this label change; empty: all change
+  // Indices of bones. A voxel changes only if one of these bones has the largest weight there; empty: all voxels
+  // change.
   std::vector<int> regions;
 };
 
@@ -174,30 +175,30 @@ void ask_computation(Editor& editor) {
   const auto outcome = [asked](const Editor& e, const std::vector<FormField>& fields) -> std::string {
     const Computation computation = asked(e, fields);
     if (!computation.in_part())
-      return e.document().layers ? "Computes all weights again, below the layers." : "Computes all weights again.";
+      return e.document().layers ? "Computes the base weights below all layers again." : "Computes all weights again.";
     if (!of_rig(e.document()))
       throw Error("there are no weights of this rig yet", "computing some of them", "compute all weights first");
     if (computation.where == Computation::Where::ChosenTissue && e.selection.tissues.empty())
       throw NotYet{"Select tissues in the list first"};
     const std::string what =
         computation.bones == Computation::Bones::Chosen
-            ? "Changes the weights of the selected bones; the others share the rest in the same ratio as before."
+            ? "Changes the weights of the selected bones. The other bones keep the ratio of their weights."
         : computation.bones == Computation::Bones::Unlocked
             ? "Changes the weights of all bones except the locked ones."
-            : "Changes the weights of all bones, but only in that part of the body.";
+            : "Changes the weights of all bones in the selected tissues or regions.";
     return what;
   };
   editor.open_dialog(make_form(
       {"Compute weights",
-       "Weights outside the selection do not change. The numbers are relative stiffness: in stiffer tissue, the "
-       "weights of two bones blend over a shorter distance.",
+       "Only the weights selected by Bones and Where change. The numbers are each tissue's relative stiffness: in "
+       "stiffer tissue, the weights of two bones blend over a shorter distance.",
        "Compute",
        {choice_of("Method", "Heat: the smoothest weights. Geodesic: faster. Rigid: each voxel follows only one bone.",
                   {"Heat", "Geodesic", "Rigid"}),
         choice_of("Bones", "The bones whose weights are computed.", {"All", "Chosen", "Unlocked"}),
         choice_of("Where",
-                  "The part of the body: everywhere, in the tissues selected in the list, or where the selected bones "
-                  "have most of the weight.",
+                  "Where weights change: everywhere, in the tissues selected in the list, or where a selected bone has "
+                  "the largest weight.",
                   {"Everywhere", "Chosen tissue", "Chosen bones"}),
         stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
        outcome,

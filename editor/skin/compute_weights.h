@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes skin weights in a job and commits them as one edit: all weights, or only those of some bones or tissues
-// while the rest stays as painted.
+// Computes skin weights in a job and commits them as one edit. The job computes all weights, or only the weights of
+// some bones or tissues; the other weights then stay unchanged.
 #pragma once
 
 #include "core/binding/heat_diffusion.h"
@@ -20,8 +20,8 @@ struct Computation {
   Where where = Where::Everywhere;
   BlendStiffness stiffness;  // factors per tissue; rigid weights do not use them
 
-  // Whether only some weights are computed. A full computation replaces the base weights below all layers; a partial
-  // one edits the active layer.
+  // Returns true if only some of the weights are computed. Such a partial computation edits the active weight layer. A
+  // full computation replaces the base weights, which lie below all layers.
   bool in_part() const { return bones != Bones::All || where != Where::Everywhere; }
 };
 

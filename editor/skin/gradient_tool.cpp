@@ -39,8 +39,8 @@ class GradientTool final : public Modal {
       const ViewPlace* place = editor.layout.view_at(pointer_);
       if (!place) return false;
       view_.emplace(editor, *place);
-      // The line starts on the body. Beside the body, it starts at the depth of the camera's centre (3D view) or of the
-      // crosshair (slice).
+      // The line starts at the body's surface under the pointer. If no tissue is under the pointer, the line starts at
+      // the depth of the camera's centre (3D view) or of the crosshair (slice).
       const auto body = brush_place(editor, *place, pointer_);
       from_ = body                        ? body->seen
               : place->id == ViewId::Body ? editor.views->body.camera.centre
@@ -92,9 +92,9 @@ class GradientTool final : public Modal {
         {choice_of("Way",
                    "Linear: the weight fades along the line. Radial: it fades in all directions from the line's start.",
                    {"Linear", "Radial"}, radial_ ? 1 : 0),
-         number_of("Begin", "The weight at the start of the line.", painting.value, 0, 1, "%.2f"),
-         number_of("End", "The weight at the end of the line.", 0, 0, 1, "%.2f"),
-         choice_of("Falloff", "How the weight changes from start to end.",
+         number_of("Begin", "The bone's weight at the start of the line.", painting.value, 0, 1, "%.2f"),
+         number_of("End", "The bone's weight at the end of the line.", 0, 0, 1, "%.2f"),
+         choice_of("Falloff", "How the weight changes from the start of the line to its end.",
                    {"Smooth", "Sphere", "Root", "Sharp", "Linear"}, static_cast<int>(FalloffShape::Linear)),
          number_of("Amount", "How much of the change is applied. 0 = none, 1 = all.", 1, 0, 1, "%.2f")},
         [from = from_, to = to_](const Editor& e, const Fields& fields) {

@@ -21,11 +21,11 @@ namespace limber::editor {
 namespace {
 
 constexpr int kRingPoints = 64;
-// Distance between samples of the pointer's path, as a fraction of the brush's radius on the screen.
+// Distance between the points of the pointer's path at which the brush paints, relative to the brush's radius.
 constexpr double kStepOfRadius = 0.5;
-constexpr int kMostSteps = 24;  // upper limit on the samples per pointer movement
+constexpr int kMostSteps = 24;  // upper limit on the points at which one pointer movement paints
 
-// Returns the point mirrored to the other side of the body, where an X-mirrored stroke paints too.
+// Returns the mirror image of the point on the other side of the body. With X mirror on, a stroke paints there too.
 glm::dvec3 mirrored(const Armature& armature, const glm::dvec3& point) { return mirror_plane(armature).place(point); }
 
 // Returns the brush's circle around `centre` in the plane perpendicular to the surface normal.
@@ -38,21 +38,21 @@ Ring ring_at(const BrushPlace& place, const glm::dvec3& centre, double radius) {
 }  // namespace
 
 struct Painting::Running {
-  // The document when the stroke began.
+  // Copy of the document from the moment when the stroke began.
   Document document;
   std::shared_ptr<const TissueVoxels> tissue;
   LayerToEdit edited;
-  // What the stroke paints. Canvas: the weights that the layer and all below it give. Mask: the layer's mask. Shares:
-  // the layer's own weights, where the layers below have the rest. A stroke can paint only weights of bones, so
-  // `before` and `bones` represent what it paints as such.
+  // The quantity that the stroke paints. Canvas: the composed weights of the layer and all layers below it. Mask: the
+  // layer's mask. Shares: the layer's own weights, while its other bones keep theirs. A stroke can paint only weights
+  // of bones, so `before` and `bones` represent a mask or shares in the form of bone weights.
   enum class Of { Canvas, Mask, Shares } of = Of::Canvas;
   std::shared_ptr<const SkinWeights> before;
   Armature bones;
-  std::optional<SkinWeights> shown;  // the composed weights with the stroke so far; none: no layers
+  std::optional<SkinWeights> shown;  // composed weights of all layers including the stroke; none: there are no layers
   std::unique_ptr<Stroke> stroke;
   ViewPlace view;
   std::string label;
-  glm::vec2 pixel{0};  // the pointer's position at the last sample
+  glm::vec2 pixel{0};  // position of the pointer up to which the stroke has painted
 };
 
 namespace {
@@ -86,7 +86,7 @@ void drop_stroke(Editor& editor) {
   editor.touch();
 }
 
-// Paints along the pointer's path from the last sample to this pixel.
+// Paints along a straight line from the pointer's position in the last call to this pixel.
 void paint_to(Editor& editor, const glm::vec2& pixel) {
   Painting& painting = *editor.skin->painting;
   Painting::Running& running = *painting.running;
@@ -130,7 +130,7 @@ void end_stroke(Editor& editor) {
   if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
   if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
     editor.messages.toast_error(
-        "The layer is full here",
+        "The layer already covers this place completely",
         "Normalize is off, so the layer's other bones keep their weights and leave none to paint",
         "skin.normalize_unlocked");
   } else {
@@ -139,8 +139,8 @@ void end_stroke(Editor& editor) {
   }
 }
 
-// Makes kBelow, which stands for the weights below the layer, the stroke's first bone. Locks every bone that the stroke
-// does not paint, so that only the painted bones and kBelow change.
+// Prepares a stroke that changes only the painted bones of a layer: locks all its other bones. Bone indices move up by
+// 1 to make room for kBelow, an extra first bone that stands for the weights of the layers below.
 void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
   BoneSet kept(settings.locked.size() + 1, 1);
   kept[kBelow] = 0;
@@ -234,8 +234,8 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
   const ViewProjection seen(editor, view);
   const GizmoPainter painter(editor, seen);
   const BrushPlace& place = *painting.place;
-  // In 3D the brush's ring follows the body's surface, and is faint where it lies beside the body. In a slice the ring
-  // is a circle.
+  // In the 3D view, the brush's ring follows the body's surface. Parts of the ring without a surface below them are
+  // faint. In a slice, the ring is a plain circle.
   const auto line = [&](const std::vector<RingPoint>& points, float alpha, float width, bool dashed) {
     for (const bool under : {true, false})
       for (std::size_t i = 0; i < points.size(); ++i) {

@@ -21,7 +21,7 @@ std::int64_t count(const TissueRegion& region) {
 TissueRegion together(const TissueRegion* old, TissueRegion made, RegionChange change) {
   if (change == RegionChange::Replace) return made;
   for (std::size_t i = 0; i < made.size(); ++i) {
-    // Without an old region, Add begins with no voxel; the other changes begin with all voxels.
+    // If there is no old region, Add starts from an empty region. Subtract and intersect start from all voxels.
     const bool before = old ? (*old)[i] != 0 : change != RegionChange::Add;
     made[i] = change == RegionChange::Add       ? before || made[i]
               : change == RegionChange::TakeOut ? before && !made[i]

@@ -16,12 +16,12 @@ namespace limber::editor {
 
 struct WeightsToEdit;
 
-// How a new region combines with the existing one. Common: the intersection of both.
+// How a new region combines with the existing region. TakeOut: the new one is subtracted. Common: the intersection.
 enum class RegionChange { Replace, Add, TakeOut, Common };
 
 using WhereOfRegion = std::function<TissueRegion(const WeightsToEdit&)>;
-// Combines the region that `where` returns with the existing one, in a job if the body is large. If the result is
-// empty, warns the user and keeps the old region.
+// Combines the region that `where` returns with the existing region; runs in a background task if the body is large. If
+// the combined region has no voxel, warns the user and keeps the existing region.
 void change_region(Editor& editor, const std::string& label, RegionChange change, const WhereOfRegion& where);
 void clear_region(Editor& editor);
 

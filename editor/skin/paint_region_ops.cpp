@@ -22,7 +22,7 @@ std::string needs_rest(const Editor& editor) {
 }
 std::string needs_region(const Editor& editor) { return painted_region(editor) ? "" : "No region is set"; }
 std::string needs_unmatched(const Editor& editor) {
-  return editor.skin->painting->unmatched.empty() ? "There are no voxels for which Mirror weights found no match"
+  return editor.skin->painting->unmatched.empty() ? "Mirror weights found a match for every voxel, or has not run"
                                                   : needs_paint(editor);
 }
 

@@ -13,10 +13,10 @@ namespace limber::editor {
 namespace {
 
 constexpr float kStep = 2;        // smallest distance between two points of a lasso, pixels
-constexpr double kLeastArea = 4;  // smallest outline, square pixels; a smaller one is ignored as a slip of the hand
+constexpr double kLeastArea = 4;  // smallest area of an outline, square pixels; a smaller outline is ignored as a slip
 
-// The pixels of a view inside an outline (even-odd rule). They are stored as one byte per pixel, because millions of
-// voxels may be tested against them.
+// The pixels of a view that lie inside an outline (even-odd rule), stored as one byte per pixel. With this table, each
+// of millions of voxels is tested in constant time.
 class Stencil {
  public:
   Stencil(const Rect& view, const std::vector<glm::dvec2>& outline)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Returns the region that limits brushes and weight edits.
+// Gives access to the region: the part of the body to which the user has limited brushes and weight edits.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace limber::editor {
 
-// Returns the region; null if no region is set, or if it was drawn on another volume.
+// Returns the region that limits brushes and edits; null if there is none, or if it was drawn on another volume.
 std::shared_ptr<const TissueRegion> painted_region(const Editor& editor);
 std::int64_t painted_region_voxels(const Editor& editor);
 

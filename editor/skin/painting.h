@@ -30,7 +30,7 @@ enum class PaintedTissue { All, Soft, Chosen, Visible };
 struct BrushPlace {
   ViewId view = ViewId::Body;
   glm::dvec3 seen{0}, normal{0};  // seen: position in the displayed pose, world, mm; normal: unit vector
-  glm::dvec3 rest{0};             // the same point in the rest pose, where the brush paints, world, mm
+  glm::dvec3 rest{0};             // position of this point in the rest pose, in which brushes paint, world, mm
 };
 
 struct Painting {
@@ -41,7 +41,8 @@ struct Painting {
   double strength = 0.75;  // [0, 1]
   double value = 1;        // [0, 1], used by Set and Multiply
   FalloffShape falloff = FalloffShape::Smooth;
-  // Points (distance as a fraction of the radius, brush effect) of a custom falloff, by distance; empty: use `falloff`.
+  // Points of a custom falloff curve, sorted by x. x: distance from the brush's centre, relative to the radius; y: the
+  // brush's effect, [0, 1]. Empty: use `falloff`.
   std::vector<glm::dvec2> falloff_curve;
   double spacing = 0.2;  // distance between dabs, a fraction of the radius
   double blend_mm = 40;  // length over which the joint capsule brush blends a bone with its parent
@@ -57,23 +58,23 @@ struct Painting {
   int dragged_point = -1;  // the point of `falloff_curve` being dragged; -1: none
   // The weight layer being painted (editor/skin/weight_layers.h).
   std::optional<std::size_t> layer;  // index of the painted layer; none: the base
-  bool mask = false;                 // strokes paint the layer's mask instead of its weights
-  struct {  // cache: the weights that a stroke on a layer starts from, and the layers they are computed from
+  bool mask = false;                 // true: strokes paint the layer's mask instead of its weights
+  struct {  // cache of the weights that a stroke on a layer changes, with the layers that they are composed of
     std::shared_ptr<const WeightLayers> of;
     std::size_t layer = 0;
     std::shared_ptr<const SkinWeights> weights;
   } canvas;
 
-  std::shared_ptr<const FoundProblems> problems;  // see editor/skin/weight_problems.h; null: not searched yet
+  std::shared_ptr<const FoundProblems> problems;  // result of the search for weight problems; null: not searched yet
   int problem = -1;                               // index of the problem visited last; -1: none
 
   std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 
-  // State of the edits of the whole body (weight_edits.h).
+  // State of the weight edits that change the whole body or a region at once (weight_edits.h).
   std::int64_t edited_at_once = 300'000;  // largest body, in voxels, edited without a job (some 10 ms)
-  std::optional<int> edit_job;            // id of the edit's running job
-  PaintedRegion region;                   // limits brushes and edits
-  std::vector<std::int64_t> unmatched;    // indices of the tissue voxels that the last mirror found no match for
+  std::optional<int> edit_job;            // id of the running job of an edit; none: no edit runs
+  PaintedRegion region;                   // the region that limits brushes and edits
+  std::vector<std::int64_t> unmatched;    // indices of the tissue voxels for which Mirror weights found no match
 
   // The running stroke; null: no stroke is being painted.
   struct Running;
@@ -88,8 +89,9 @@ Falloff falloff_of(const Painting& painting);
 void begin_falloff_curve(Painting& painting);
 std::string name_of(BrushKind kind);             // the brush's label: "Add"
 std::string operator_of(const BrushRule& rule);  // id of the operator that selects the brush: "skin.brush_add"
-// Returns the list of operator ids with "*" replaced by the ids of all brushes. A "-" separates the brushes that change
-// each voxel by itself from the others.
+// Replaces the entry "*" of a list of operator ids by the ids of all brushes, and returns the list. Brushes that
+// compute each voxel's weights without its neighbours come first; a separator "-" stands between them and the other
+// brushes.
 std::vector<std::string> with_brushes(std::vector<std::string> list);
 
 }  // namespace limber::editor

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Strokes of the seam brush, which cuts or erases seams instead of painting weights. A seam separates body parts that
-// touch at rest.
+// Strokes of the seam brush, which cuts or erases seams instead of painting weights. A seam is a sheet of voxel faces
+// at which two body parts touch at rest without being joined.
 #pragma once
 
 #include "editor/seams/seam_view.h"

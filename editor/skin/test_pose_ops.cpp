@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators of the test pose, in which the body is shown while weights are painted: the rest pose or the project's
-// pose, with one joint bent temporarily.
+// Operators of the test pose, in which the views show the body while the user paints weights. The test pose is the rest
+// pose or the project's pose, with one joint bent in addition.
 #include "editor/shown/test_pose.h"
 
 #include "editor/context/operator.h"
@@ -27,8 +27,8 @@ std::string needs_bend(const Editor& editor) {
 std::vector<Operator> test_pose_operators() {
   return {
       {"skin.posed", "Posed", icon::kPose, "Test pose",
-       "While you paint weights, switch between the body at rest and in its pose, with the joint bent in the test "
-       "pose. Strokes paint the tissue under the pointer.",
+       "Switch between the body at rest and its test pose: the project's pose, or one joint bent. Brushes work in "
+       "both.",
        toggle_test_pose, needs_weights, [](const Editor& e) { return e.trial->posed; }},
       {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose",
        "Bend the active bone in the test pose by a step of the mouse wheel.",

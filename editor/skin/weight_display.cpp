@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-// Largest body, in voxels, whose weights are summed at once (some milliseconds); a larger one is summed in a thread.
+// Largest number of tissue voxels whose weights are summed in the editor's thread (some milliseconds). The weights of a
+// larger body are summed in another thread.
 constexpr std::int64_t kCountedAtOnce = 1'500'000;
 
 void add(const SkinWeights::Chunk& chunk, std::vector<std::int64_t>& sums, int sign) {
@@ -39,7 +40,7 @@ std::shared_ptr<const LabelVolume> without_regions(const LabelVolume& volume, co
   return rest;
 }
 
-// Returns the bones' colours in the order of the weights' bones.
+// Returns a colour for each bone of `weights`, in the order of weights.bones().
 const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Editor& editor, const SkinWeights& weights) {
   auto& known = editor.skin->swatches;
   const auto& armature = editor.document().armature;
@@ -60,14 +61,14 @@ void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weig
   auto& region = skin.region;
   if (skin.hidden.empty()) return void(region = {});
   const auto volume = scene.volume;
-  // Hidden regions are found by the document's weights, not by those of a running stroke, so that the tissue under the
-  // brush stays visible until the stroke ends.
+  // `weights` are the document's weights, not those of a running stroke. So the tissue under the brush stays visible
+  // until the stroke ends, even if the stroke gives it to a bone whose region is hidden.
   const bool stale = region.from != volume || region.hidden != skin.hidden || region.weights != weights;
   if (stale && !(skin.region_task && editor.tasks.contains(*skin.region_task))) {
     const auto make = [volume, weights, hidden = skin.hidden, tissue = tissue_voxels(*editor.views, editor.document()),
                        old = region.from == volume ? region.volume : nullptr] {
       auto made = without_regions(*volume, *tissue, *weights, hidden);
-      // If the old volume has the same voxels, keep it: this avoids an upload to the GPU.
+      // If the old volume has the same voxels as the new one, return the old one: this avoids an upload to the GPU.
       return old && old->voxels == made->voxels ? old : made;
     };
     const auto keep = [volume, weights, hidden = skin.hidden](Editor& e, std::shared_ptr<const LabelVolume> made) {
@@ -183,7 +184,7 @@ void show_weights(Editor& editor) {
   if (tissue_voxels(*editor.views, editor.document())->size() != weights->size()) return;
   if (editor.document().weights) show_regions(editor, editor.document().weights);
   if (!editor.skin->display) return;
-  scene.outlined.reset();  // no outline of selected tissues: colours show the selected bone's weights
+  scene.outlined.reset();  // selected tissues get no outline, so that it does not hide the colours of the weights
   scene.weights = render::ShownWeights{
       .weights = weights,
       .tissue = tissue_voxels(*editor.views, editor.document()),
@@ -203,7 +204,8 @@ double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
   const Grid& grid = volume.grid;
   const glm::dvec3 s = grid.spacing;
   double nearest = 1e300;  // squared distance, mm2
-  // Search from the voxel outwards along each axis, no farther than the nearest air voxel found so far.
+  // Search the voxels around `voxel` for air in order of their distance along each axis, and only those that are nearer
+  // than the nearest air voxel found so far.
   const auto within = [&](int off, int axis) { return (off * s[axis]) * (off * s[axis]) < nearest; };
   for (int dz = 0; within(dz, 2); ++dz) {
     bool any = false;

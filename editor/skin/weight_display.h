@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// State of the weight display in the Skin workspace: the colouring, the hidden regions, and caches for both. Also edits
-// the locks of bones, which belong to the document.
+// How the Skin workspace shows weights: the colouring, and the hidden regions (a bone's region is the tissue where the
+// bone has the largest weight), with caches of both. Also edits the locks of bones, which are part of the document.
 #pragma once
 
 #include <future>
@@ -15,8 +15,8 @@
 
 namespace limber::editor {
 
-// The share of each bone in the weight of the whole body. The first update sums the weights of all voxels, in a thread
-// if the body is large; later updates sum only the chunks that have changed since.
+// Computes the share of each bone in the sum of all weights of the body. The first update sums the weights of all
+// voxels, in a thread of its own if the body is large. Later updates sum only the chunks that have changed since.
 class WeightShares {
  public:
   void update(const std::shared_ptr<const SkinWeights>& weights, const std::function<void()>& wake);
@@ -27,7 +27,7 @@ class WeightShares {
  private:
   struct Counted {
     std::shared_ptr<const SkinWeights> weights;
-    std::vector<std::int64_t> sums;  // #bones: the sum of the bone's weights, in units of 1/65535
+    std::vector<std::int64_t> sums;  // sum of each bone's weights over all voxels, in units of 1/65535
   };
   static Counted count(const std::shared_ptr<const SkinWeights>& weights);
 
@@ -53,7 +53,7 @@ struct SkinDisplay {
   std::unique_ptr<Painting> painting;  // see painting.h; never null
 
   WeightShares shares;
-  // Cache: the volume without the hidden regions, and the inputs that it is computed from.
+  // Cache of the volume without the hidden regions (`volume`), with the inputs from which it was computed.
   struct {
     std::shared_ptr<const LabelVolume> from, volume;
     std::shared_ptr<const SkinWeights> weights;
@@ -61,7 +61,7 @@ struct SkinDisplay {
   } region;
   // The task that computes `region` again for a large body; the views show the old volume meanwhile.
   std::optional<int> region_task;
-  // Cache: the colours of the weights' bones, and the inputs that they are computed from.
+  // Cache of a colour for each bone of the weights, with the inputs from which the colours were computed.
   struct {
     std::shared_ptr<const Armature> armature;
     std::vector<std::string> bones;
@@ -76,14 +76,14 @@ int weights_bone(const SkinWeights& weights, const std::string& name);
 // Returns the bone's colour in lists; the active bone is orange.
 Colour swatch_of(Editor& editor, int bone);
 
-// Puts the weights and the volume without hidden regions into this frame's scene. Shows the bones as sticks and marks
-// the active one.
+// Prepares this frame's scene for the Skin workspace: sets the weights, the volume without hidden regions, and the
+// bones as sticks with the active bone marked.
 void show_weights(Editor& editor);
 
-// Returns whether this volume is the document's volume, either whole or without the hidden regions.
+// Returns true if `volume` is the document's volume, or a copy of it without the hidden regions.
 bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume);
 
-// Returns the distance from the centre of a tissue voxel to the nearest air, mm.
+// Returns the distance from the centre of a tissue voxel to the nearest face of an air voxel, mm.
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel);
 
 bool is_locked(const Document& document, const std::string& bone);

@@ -51,7 +51,7 @@ Operator shows(const char* id, const char* label, const char* description, std::
           [display](const Editor& e) { return e.skin->display == display; }};
 }
 
-// Returns the names of the selected bones, or else the workspace's active bone.
+// Returns the names of the selected bones. If no bone is selected, returns the name of the active bone.
 std::set<std::string> chosen_names(const Editor& editor) {
   std::set<std::string> names;
   const auto& bones = editor.document().armature->bones;
@@ -65,7 +65,7 @@ void pick_bone(Editor& editor, bool added) {
   const std::string& name = editor.views->hover.weights[0].bone;
   const auto bone = editor.document().armature->find(name);
   if (!bone) return editor.messages.warn("Pick bone", name + " is not a bone of this rig");
-  // The selected tissues stay selected, because brushes may be limited to them.
+  // Only the bones are deselected. The selected tissues stay selected, because brushes may be limited to them.
   if (!added) editor.selection.bones.clear();
   editor.selection.bone = *bone;
   editor.selection.bones.insert(*bone);
@@ -128,7 +128,7 @@ std::vector<Operator> skin_display_operators() {
        "Open a menu of the weight displays at the pointer.", [](Editor& e) { e.open_popup = "Weight display"; },
        needs_skin_weights},
       {"skin.pick_bone", "Pick bone", icon::kPick, "Weights",
-       "Make active the bone with the largest weight under the pointer.", [](Editor& e) { pick_bone(e, false); },
+       "Select the bone with the largest weight under the pointer.", [](Editor& e) { pick_bone(e, false); },
        needs_weights_below},
       {"skin.add_bone", "Pick bone too", "", "Weights",
        "Add to the selection the bone with the largest weight under the pointer.",

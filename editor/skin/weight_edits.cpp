@@ -16,8 +16,8 @@ namespace {
 
 using Fields = std::vector<FormField>;
 
-// Returns the voxels that the operation may change: those that the brush's filters and the operation's own `where`
-// allow. Empty: all voxels.
+// Returns the voxels that the operation may change: the voxels that both the brush's filters and operation.where allow.
+// An empty result stands for all voxels.
 TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operation) {
   TissueRegion own;
   if (operation.where) own = operation.where(what);
@@ -57,7 +57,7 @@ Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress&
   return result;
 }
 
-// Reports the result to the user and commits it; returns true if there was an edit to commit.
+// Commits the result of the operation, or tells the user why there is nothing to commit. Returns true if it committed.
 bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
   EditedWeights& outcome = result.edited;
   const WeightEdit& edit = outcome.edit;

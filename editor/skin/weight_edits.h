@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits the weights of the whole body or of a part of it. An edit respects locked bones, the clip plane and box, the
-// brush's tissues and the region. It is one undo step, whose numbers can be adjusted afterwards (redo_last_operator.h).
-// On a large body the work runs in a job, which commits its edit at the end unless the weights changed meanwhile.
+// Edits the weights of the whole body or a part of it. An edit changes neither locked bones nor any voxel that the clip
+// plane, the clip box, the brush's tissues or the region exclude. An edit is one undo step, and the user can adjust its
+// numbers afterwards (redo_last_operator.h). On a large body the edit is computed in a job. The job commits the edit at
+// its end, unless the weights have changed meanwhile.
 #pragma once
 
 #include <functional>
@@ -18,9 +19,9 @@ namespace limber::editor {
 
 // All inputs of a weight edit, copied so that it can run in a job.
 struct WeightsToEdit {
-  Document document;  // `document.weights`: with layers, those of the active layer
+  Document document;  // copy of the document; if there are layers, its weights are those of the active layer
   std::shared_ptr<const TissueVoxels> tissue;
-  StrokeSettings settings;  // as for a brush: the painted bones, locks, filter
+  StrokeSettings settings;  // bones to change, locks and voxel filter, as if a brush painted
   LayerToEdit layer;
 
   WeightedBody body() const { return {*document.volume, *tissue, *document.tissues, *document.armature}; }
@@ -31,34 +32,37 @@ WeightsToEdit weights_to_edit(Editor& editor);
 struct EditedWeights {
   WeightEdit edit;
   std::string warning;                       // a warning for the user about a completed edit; "": none
-  std::vector<std::int64_t> unmatched = {};  // indices of the tissue voxels that a mirror found no match for
+  std::vector<std::int64_t> unmatched = {};  // indices of the tissue voxels for which Mirror weights found no match
 };
 
-// The tissues that an edit may change: those that the brush may paint, or all. AllTissues is for edits in which the
-// user selects the tissue directly.
+// The tissues that an edit may change: the tissues that the brush may paint, or all tissues. Edits in which the user
+// selects the tissue directly use AllTissues.
 enum class EditReach { AsBrush, AllTissues };
 
 struct WeightOperation {
   std::string label;  // name of the edit, "Flood Forearm"
   EditReach reach = EditReach::AsBrush;
-  bool edits_bone_tissue = false;  // false: weights of bone tissue stay as they are
+  bool edits_bone_tissue = false;  // false: the weights of voxels labelled as bone do not change
   bool reads_file = false;         // true: runs in a job even on a small body
-  // Function that returns the voxels to edit; null: edit all voxels that `reach` allows.
+  // Returns the voxels that the operation edits; null: it edits all voxels that `reach` allows.
   std::function<TissueRegion(const WeightsToEdit&)> where = {};
   std::function<EditedWeights(const WeightsToEdit&, const EditScope&)> work;
 };
-// Makes an operation from the field values of its form. Throws Error for values that cannot be applied.
+// Function that makes a weight operation from the values of its form's fields. Throws Error for values that the
+// operation cannot use.
 using MakeWeightOperation = std::function<WeightOperation(const Editor&, const std::vector<FormField>&)>;
 
-// Performs the operation, or starts a job for it; the user can adjust its fields afterwards. Cancels a weight edit that
-// is still running.
+// Makes the operation from `fields` and performs it, in a job if the body is large. The user can adjust the fields
+// afterwards. Cancels the job of an earlier weight edit that is still running.
 void edit_weights(Editor& editor, const std::vector<FormField>& fields, const MakeWeightOperation& make);
-// Returns a form's action that performs the operation. The form itself lets the user adjust the fields afterwards.
+// Returns the action of a form: performs the operation with the form's fields. Unlike edit_weights(), the action does
+// not let the user adjust the fields afterwards, because the form does this itself.
 ActWith weight_act(const MakeWeightOperation& make);
 
-// Returns the painted bone's name, or the number of painted bones: "Forearm" or "3 bones".
+// Returns a text for the bones that brushes paint now: the name of a single bone ("Forearm"), else their number
+// ("3 bones").
 std::string painted_name(const Editor& editor);
-// Returns the painted bones as indices into the weights' bones.
+// Returns the bones that brushes paint now, as indices into the bones of the document's weights.
 std::vector<int> painted_bones(const Editor& editor);
 
 }  // namespace limber::editor

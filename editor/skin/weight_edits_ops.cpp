@@ -74,7 +74,8 @@ std::string needs_flood(const Editor& editor) {
          " cannot flood: select the add, subtract, set, multiply or smooth brush";
 }
 
-// Applies the effect that a dab of the brush has at its centre to all tissue that the brush may paint.
+// Applies the brush to all tissue that it may paint. Every voxel changes as if it were at the centre of a dab, which is
+// a single touch of the brush.
 void flood(Editor& editor) {
   const Painting& painting = *editor.skin->painting;
   const int kind = *flood_of(painting.kind);
@@ -115,7 +116,7 @@ void fill_part(Editor& editor) {
       });
 }
 
-// Returns the selected tissues, or else the tissue under the pointer.
+// Returns the selected tissues. If no tissue is selected, returns the tissue under the pointer.
 std::set<Label> named_tissues(const Editor& editor) {
   if (!editor.selection.tissues.empty()) return editor.selection.tissues;
   return editor.views->hover.inside ? std::set<Label>{editor.views->hover.label} : std::set<Label>{};
@@ -149,8 +150,8 @@ void assign_tissue(Editor& editor) {
 
 // ---- mirror
 
-// Returns a message that names the bones whose counterpart on the other side is missing; "" if there are none. The
-// weights of such a bone are mirrored to the bone itself.
+// Returns a message that names the bones that have no counterpart on the other side of the body; "" if all have one. A
+// bone without a counterpart gets its own mirrored weights.
 std::string without_partner(const Armature& armature) {
   std::string names;
   int count = 0;
@@ -168,7 +169,7 @@ std::string without_partner(const Armature& armature) {
 void mirror(Editor& editor) {
   const Armature& armature = *editor.document().armature;
   const MirrorPlane plane = mirror_plane(armature);
-  // By default the side of the active bone is the source. The world's x axis points to the body's left.
+  // The form proposes to copy from the side of the active bone. The world's x axis points to the body's left.
   const Bone& active = armature.bones[static_cast<std::size_t>(*skin_bone(editor))];
   const double left = plane.normal.x < 0 ? -1 : 1,
                side = left * glm::dot((active.head + active.tail) / 2.0 - plane.point, plane.normal);
@@ -213,8 +214,8 @@ void smooth_all(Editor& editor) {
       });
 }
 
-// Returns an operation that changes the weights of each voxel independently of its neighbours. Such operations bring a
-// voxel closer to following one bone, so they may change bone tissue too.
+// Returns an operation that changes the weights of each voxel independently of its neighbours. The operation must bring
+// every voxel closer to following a single bone. So it may change bone tissue too, which should stay rigid.
 WeightOperation voxel_edit(
     const std::string& label,
     const std::function<WeightEdit(const WeightedBody&, const SkinWeights&, const EditScope&)>& edit) {
@@ -251,7 +252,8 @@ void prune(Editor& editor) {
 
 void quantize(Editor& editor) {
   edit_weights(editor,
-               {number_of("Steps", "Round every weight to a multiple of 1 / this number.", 10, 1, 1000, "%.0f")},
+               {number_of("Steps", "Number of steps from 0 to 1. Weights are rounded to the nearest step.", 10, 1, 1000,
+                          "%.0f")},
                [](const Editor&, const Fields& fields) {
                  const int steps = static_cast<int>(std::lround(fields[0].value));
                  return voxel_edit("Quantize to " + std::to_string(steps) + " steps",
@@ -263,9 +265,9 @@ void quantize(Editor& editor) {
 void set_levels(Editor& editor) {
   edit_weights(
       editor,
-      {number_of("Low", "The weight that becomes 0.", 0, 0, 0.99, "%.2f"),
-       number_of("High", "The weight that becomes 1.", 1, 0.01, 1, "%.2f"),
-       number_of("Gamma", "Above 1 raises the weights in between, below 1 lowers them.", 1.5, 0.1, 10, "%.2f")},
+      {number_of("Low", "Weights up to this value become 0.", 0, 0, 0.99, "%.2f"),
+       number_of("High", "Weights from this value on become 1.", 1, 0.01, 1, "%.2f"),
+       number_of("Gamma", "Above 1 raises the weights between 0 and 1, below 1 lowers them.", 1.5, 0.1, 10, "%.2f")},
       [](const Editor& e, const Fields& fields) {
         WeightRules::Levels levels;
         levels.in_low = fields[0].value;
@@ -313,7 +315,7 @@ void ask_copy(Editor& editor) {
                                 "Give the weights of one bone to another.",
                                 "Copy",
                                 {choice_of("Bone", "The bone whose weights are copied.", names, from),
-                                 choice_of("to", "The bone that gets them.", names, to),
+                                 choice_of("to", "The bone that gets the copied weights.", names, to),
                                  choice_of("How", "How the copied weights combine with the existing ones.",
                                            {"Replace", "Add", "Move", "Swap"}, 2)},
                                 outcome,
@@ -401,8 +403,7 @@ std::vector<Operator> weight_edit_operators() {
       {"skin.prune", "Clean small weights", "", "Weights",
        "Remove weights below a limit, so that each voxel follows few bones.", prune, needs_reach},
       {"skin.levels", "Levels", "", "Weights",
-       "Stretch the active bone's weights between two values, and raise or lower those in between.", set_levels,
-       needs_reach},
+       "Map two weights of the active bone to 0 and 1, and stretch the weights in between.", set_levels, needs_reach},
       {"skin.quantize", "Quantize", "", "Weights", "Round all weights to multiples of a step.", quantize, needs_reach},
       {"skin.copy_weights", "Copy weights...", icon::kCopy, "Weights",
        "Copy, add or move the weights of one bone to another, or swap them.", ask_copy, needs_two_bones},

@@ -12,7 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kComposedAtOnce = 300'000;  // largest body, in voxels, composed without a job (some 20 ms)
+// Largest number of tissue voxels whose layers are composed without a job (some 20 ms).
+constexpr std::int64_t kComposedAtOnce = 300'000;
 
 bool of_one_body(const SkinWeights& a, const SkinWeights& b) {
   bool same = a.bones() == b.bones() && a.size() == b.size() && a.chunk_count() == b.chunk_count();
@@ -26,7 +27,8 @@ std::shared_ptr<const T> shared(T value) {
   return std::make_shared<const T>(std::move(value));
 }
 
-// Sets the document's layers and its weights. came_out: the weights that the layers compose to.
+// Sets the document's layers and its weights. Without layers, the base becomes the document's weights.
+//   came_out  the composed weights of all layers
 void set_layers(Document& document, WeightLayers layers, std::shared_ptr<const SkinWeights> came_out) {
   if (layers.layers.empty()) {
     document.weights = layers.base;
@@ -108,7 +110,8 @@ Document with_edited(const Document& now, const LayerToEdit& edited, const Edite
 
 void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
   commit(editor, label, with_edited(editor.document(), edited, made));
-  // Caches the layer's canvas, so that the next stroke need not compute it.
+  // Cache the new weights: they are the layer's canvas (its weights composed with all layers below it), which the next
+  // stroke on the layer changes.
   if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, made.after};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits the weight layers of the document, and the weights of the active layer. The document's weights are the
-// composition of its layers. Only these functions change the layers or the weights, so that the two stay consistent. A
-// large body is composed in a job, and the document changes when the job is done.
+// composition of its layers. Only the functions of this file change layers or weights, so that both stay consistent.
+// The layers of a large body are composed in a job, and the document changes when the job ends.
 #pragma once
 
 #include <memory>
@@ -15,34 +15,35 @@ namespace limber::editor {
 
 struct Editor;
 
-// Replaces the document's weights. If the document's layers belong to the same body and bones, the new weights become
-// the base below them; otherwise the layers are removed.
+// Replaces the document's weights. If the document has layers for the same body and bones, the new weights become the
+// base below these layers. Otherwise the layers are removed.
 void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights);
 
-// The weights that strokes and edits change: those of the active layer, of the base, or of a document without layers.
+// The weights that strokes and edits change: the weights of the active layer, of the base below all layers, or of a
+// document without layers.
 struct LayerToEdit {
-  std::shared_ptr<const WeightLayers> layers;   // the document's layers; null: it has none
-  std::optional<std::size_t> layer;             // the active layer's index; none: the base, or no layers
-  std::shared_ptr<const SkinWeights> weights;   // the weights before the edit; for a layer, its canvas
-  std::shared_ptr<const SkinWeights> came_out;  // the document's composed weights
+  std::shared_ptr<const WeightLayers> layers;   // the document's layers; null: no layers
+  std::optional<std::size_t> layer;             // index of the active layer; none: the base, or no layers
+  std::shared_ptr<const SkinWeights> weights;   // weights before the edit; of a layer, composed with all layers below
+  std::shared_ptr<const SkinWeights> came_out;  // composed weights of all layers: the document's weights
 };
-// Returns the weights that an edit would change now. Needs weights in the document.
+// Returns the weights that a stroke or an edit would change now. The document must have weights.
 LayerToEdit layer_to_edit(Editor& editor);
-// The result of an edit: the edited weights (`after`), and the document's layers and composed weights with them.
-// edited_layers() takes long for a large change, so jobs call it themselves.
+// The result of an edit. after: the edited weights of the layer; layers: the document's layers with this edit; weights:
+// their composed weights. edited_layers() takes long for a large change, so a job calls it in its own thread.
 struct EditedLayers {
   std::shared_ptr<const SkinWeights> after;
   std::shared_ptr<const WeightLayers> layers;
   std::shared_ptr<const SkinWeights> weights;
 };
 EditedLayers edited_layers(const LayerToEdit& edited, std::shared_ptr<const SkinWeights> after);
-// Returns the document with the edited layers and weights. Throws Error if its layers or weights were changed
-// meanwhile.
+// Returns the document `now` with the edited layers and weights. Throws Error if the document's layers or weights have
+// changed since layer_to_edit() returned `edited`.
 Document with_edited(const Document& now, const LayerToEdit& edited, const EditedLayers& made);
 // Commits the edited layers and weights as one edit.
 void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made);
 
-// Returns the index of the painted layer; none: the base, or there are no layers.
+// Returns the index of the layer that strokes and edits change; none if they change the base, or without layers.
 std::optional<std::size_t> active_layer(const Editor& editor);
 void choose_layer(Editor& editor, std::optional<std::size_t> layer);
 // Returns why the active layer cannot be painted ("The layer Elbow is hidden"); "" when it can.
@@ -52,7 +53,7 @@ void show_layer(Editor& editor, std::size_t layer, bool visible);
 void rename_layer(Editor& editor, std::size_t layer, const std::string& name);
 void set_layer_opacity(Editor& editor, std::size_t layer, double opacity);
 
-// Commits the layers as one edit. If no layer is left, the base becomes the document's weights.
+// Commits the layers as one edit. If the list has no layer, the base becomes the document's weights.
 void commit_layers(Editor& editor, const std::string& label, WeightLayers next);
 
 }  // namespace limber::editor

@@ -95,11 +95,11 @@ std::vector<Operator> layer_operators() {
        },
        needs_layer},
       {"skin.layer_show", "Show layer", icon::kVisible, "Layers",
-       "Show or hide the active layer's changes of the weights.",
+       "Show or hide the active layer. A hidden layer does not affect the weights.",
        [](Editor& e) { show_layer(e, *active_layer(e), !e.document().layers->layers[*active_layer(e)]->visible); },
        needs_layer,
        [](const Editor& e) { return active_layer(e) && e.document().layers->layers[*active_layer(e)]->visible; }},
-      {"skin.layer_up", "Raise layer", icon::kUp, "Layers", "Move the active layer up by one.",
+      {"skin.layer_up", "Raise layer", icon::kUp, "Layers", "Move the active layer above the next higher layer.",
        [](Editor& e) { move(e, 1); },
        [](const Editor& e) {
          const std::string why = needs_layer(e);
@@ -107,25 +107,26 @@ std::vector<Operator> layer_operators() {
                 : *active_layer(e) + 1 == e.document().layers->layers.size() ? "This is already the top layer"
                                                                              : "";
        }},
-      {"skin.layer_down", "Lower layer", icon::kDown, "Layers", "Move the active layer down by one.",
+      {"skin.layer_down", "Lower layer", icon::kDown, "Layers", "Move the active layer below the next lower layer.",
        [](Editor& e) { move(e, -1); },
        [](const Editor& e) {
          const std::string why = needs_layer(e);
          return !why.empty() ? why : *active_layer(e) == 0 ? "This is already the lowest layer" : "";
        }},
       {"skin.layer_merge", "Merge down", icon::kMergeDown, "Layers",
-       "Merge the active layer into the one below it, or into the base; the resulting weights stay.", merge_down,
+       "Merge the active layer into the layer or base below it. The combined weights do not change.", merge_down,
        needs_layer},
       {"skin.layer_mask", "Paint mask", icon::kMask, "Layers",
-       "Paint the active layer's mask instead of weights. The Add brush covers the layers below, Subtract reveals "
-       "them.",
+       "Paint where the active layer covers the layers below, instead of weights. The Add brush covers them, Subtract "
+       "reveals them.",
        [](Editor& e) { e.skin->painting->mask = !e.skin->painting->mask; }, needs_layer,
        [](const Editor& e) { return e.skin->painting->mask && active_layer(e).has_value(); }},
       {"skin.layer_cover", "Cover everywhere", "", "Layers",
-       "Let the active layer cover the whole body. It gets the weights that are shown now.",
+       "Let the active layer cover the layers below in the whole body. Where it covered nothing, it copies their "
+       "weights.",
        [](Editor& e) { cover(e, 1, "Cover all by "); }, needs_layer},
       {"skin.layer_uncover", "Clear mask", "", "Layers",
-       "Let the active layer cover nothing; this erases what was painted on it.",
+       "Let the active layer cover nothing. This erases everything painted on it.",
        [](Editor& e) { cover(e, 0, "Clear mask of "); }, needs_layer},
   };
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the list of weight layers, the topmost first. A row has an eye, a mask, a name and an opacity. The base is the
-// last row and cannot be removed.
+// Draws the list of weight layers, the topmost layer first. A row has an eye that hides the layer, a button that paints
+// its mask, its name and its opacity. The last row is the base, which cannot be removed.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/skin/painting.h"
@@ -27,7 +27,7 @@ void draw_eye(Editor& editor, const Rect& rect, std::size_t index, bool visible)
   if (pressed.clicked) show_layer(editor, index, !visible);
 }
 
-// Draws the mask icon, a half-filled square, with a frame while strokes paint the layer's mask.
+// Draws a layer's mask button, a half-filled square. The button has a frame while strokes paint this layer's mask.
 void draw_mask(Editor& editor, const Rect& rect, std::size_t index, bool painted) {
   const Look& look = editor.look;
   const Pressed pressed = press_area(editor, "mask", rect);
@@ -59,7 +59,7 @@ void draw_layer(Editor& editor, Column& column, int row, std::size_t index, cons
   const Rect name{{rect.low.x + look.px(54), rect.low.y}, {rect.high.x - look.px(kOpacity + 14), rect.high.y}};
   const Rect field{{rect.high.x - look.px(kOpacity + 8), rect.low.y + look.px(1)},
                    {rect.high.x - look.px(8), rect.high.y - look.px(1)}};
-  // These are copies, because the fields below may commit an edit that replaces the layer.
+  // The name and the opacity are copied, because the fields below may commit an edit that replaces the layer.
   const std::string layer_name = layer.name;
   const double before = layer.opacity;
   double percent = 100 * before;

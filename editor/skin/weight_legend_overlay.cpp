@@ -17,7 +17,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8,
-                kNeeded = 460;  // px at scale 1; a view narrower than kNeeded has no legend
+                kNeeded = 460;  // lengths in px at scale 1; kNeeded: smallest width of a view that shows a legend
 
 Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 
@@ -49,7 +49,8 @@ void draw_ramp(Editor& editor, const Rect& box) {
   put_text(editor, look.fonts.small, look.theme.view_text2, labels, "exact 1", Align::Right);
 }
 
-// Draws labelled colour swatches, as many as fit.
+// Draws a row of colour swatches, each with a label at its right, and stops at the first that does not fit into the
+// box.
 void draw_chips(Editor& editor, const Rect& box, const std::vector<std::pair<Colour, std::string>>& chips) {
   const Look& look = editor.look;
   float x = box.low.x + look.px(10);
@@ -65,7 +66,8 @@ void draw_chips(Editor& editor, const Rect& box, const std::vector<std::pair<Col
   }
 }
 
-// Returns the bones with their colours, the largest share of weight first.
+// Returns the colour and the name of each bone that has weight: the active bone first, then the others by their share
+// of the body's total weight, the largest first.
 std::vector<std::pair<Colour, std::string>> bones_by_share(Editor& editor, const SkinWeights& weights) {
   const auto& bones = editor.document().armature->bones;
   std::vector<std::pair<double, int>> order;
@@ -148,7 +150,9 @@ void draw_weights_at_pointer(Editor& editor) {
               height = row * static_cast<float>(hover.weights.size()) + look.px(8 + 6 + 20 + 20);
   const float off = look.px(22) + editor.skin->ring;
   glm::vec2 low{input.pointer.x + off, input.pointer.y - look.px(20)};
-  // The readout stands beside the pointer within its view, or within all views if its view is narrow.
+  // The readout is drawn to the right of the pointer. If the pointer's view has too little room there, but enough to
+  // the left, the readout is drawn to the left. It is also drawn to the left if it would cross the right edge of all
+  // views.
   const Rect& all = editor.layout.views;
   const float edge = look.px(4);
   if (low.x + width > place->rect.high.x - edge && input.pointer.x - off - width >= place->rect.low.x)

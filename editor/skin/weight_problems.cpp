@@ -106,7 +106,8 @@ void repair_problem(Editor& editor, int index) {
                  const bool fresh = !problems_stale(e);
                  commit_weights(e, label, edited, *made);
                  if (e.skin->painting->problems != found) return;
-                 // Marks this problem as repaired. The problems keep their indices, so the list stays valid.
+                 // Mark this problem as repaired, but keep it in the list, so that the other problems keep their
+                 // indices.
                  auto next = std::make_shared<FoundProblems>(*found);
                  next->repaired[static_cast<std::size_t>(index)] = true;
                  if (fresh) next->in = e.document().weights;

@@ -13,16 +13,18 @@
 namespace limber::editor {
 
 struct FoundProblems {
-  std::shared_ptr<const SkinWeights> in;  // the weights searched; the list is stale when the document has others
+  std::shared_ptr<const SkinWeights> in;  // the weights in which the problems were found
   std::shared_ptr<const Armature> armature;
   std::vector<WeightProblem> problems;
-  std::vector<bool> repaired;  // #problems, true once repaired from the list
+  std::vector<bool> repaired;  // for each problem, true if the user has repaired it with its button in the list
 };
 
-// Starts a job that searches for problems; the sidebar lists them. Needs weights of the rig.
+// Starts a job that searches the weights for problems, which the sidebar then lists. The weights must belong to the
+// rig.
 void start_finding_problems(Editor& editor);
 bool finds_problems(const Editor& editor);
-// Whether the weights or the rig changed since the search, other than by repairs from the list.
+// Returns true if the weights or the rig have changed since the search for problems. Repairs from the list do not
+// count.
 bool problems_stale(const Editor& editor);
 
 // Selects the problem in the list, makes its bone active, and moves the view and the crosshair to its position.
@@ -30,6 +32,6 @@ void go_to_problem(Editor& editor, int problem);
 // Repairs the problem in a job, as one edit. If locked bones prevent the repair, tells the user so.
 void repair_problem(Editor& editor, int problem);
 
-const char* name_of(WeightProblem::Kind kind);  // heading of a kind in the list: "Islands"
+const char* name_of(WeightProblem::Kind kind);  // heading of the problems of this kind, such as "Islands"
 
 }  // namespace limber::editor

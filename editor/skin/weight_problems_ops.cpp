@@ -32,8 +32,8 @@ std::string needs_problem(const Editor& editor) {
                                                                                  : "";
 }
 
-// Goes to the next (by = 1) or previous (by = -1) problem that is not repaired. If problems were not searched yet,
-// starts the search.
+// Goes to the next (by = 1) or previous (by = -1) problem that is not repaired. If there was no search for problems
+// yet, starts one.
 void step(Editor& editor, int by) {
   const Painting& painting = *editor.skin->painting;
   if (!painting.problems) return start_finding_problems(editor);

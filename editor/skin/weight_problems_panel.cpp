@@ -30,8 +30,8 @@ void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::si
            std::to_string(count), Align::Right);
 }
 
-// Returns the names of the problem's bones, "Humerus, Forearm". The heading above the row names the kind of problem,
-// the tooltip describes it in full.
+// Returns the text of a problem's row: the names of the problem's bones, such as "Humerus, Forearm". The heading above
+// the row names the kind of problem, and the row's tooltip describes it in full.
 std::string bones_of(const WeightProblem& problem, const Armature& armature) {
   std::string names;
   for (const int bone : {problem.bone, problem.other})

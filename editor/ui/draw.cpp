@@ -9,8 +9,8 @@ namespace {
 
 ImDrawList& canvas() { return *ImGui::GetWindowDrawList(); }
 
-// Shortens a text to `width` pixels: returns the longest beginning that fits together with "...", and the "...". Cuts
-// between UTF-8 characters. Returns "" if not even one character fits.
+// Shortens a text to `width` pixels. Returns the longest beginning of the text that fits together with "...", followed
+// by "...". The text is cut between UTF-8 characters. Returns "" if not even one character fits.
 std::string cut_to(ImFont* font, std::string_view text, float width) {
   std::size_t length = text.size();
   const auto inside_character = [&] {
@@ -25,7 +25,8 @@ std::string cut_to(ImFont* font, std::string_view text, float width) {
   return "";
 }
 
-// Shortens a text to `lines` wrapped lines: returns the whole text if it fits, else its beginning and "...".
+// Shortens a text to `lines` lines, wrapped to `width`. Returns the whole text if it fits, else its beginning and
+// "...".
 std::string cut_to_lines(ImFont* font, const std::string& text, float width, int lines) {
   const char *at = text.c_str(), *end = at + text.size();
   for (int line = 1; line < lines && at < end; ++line) {

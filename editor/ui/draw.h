@@ -19,14 +19,15 @@ inline glm::vec2 from_im(const ImVec2& v) { return {v.x, v.y}; }
 void fill(const Rect& rect, Colour colour, float rounding = 0);
 void outline(const Rect& rect, Colour colour, float rounding = 0, float width = 1);
 glm::vec2 text_size(ImFont* font, std::string_view text);
-// Draws one line of text with its top left corner at `where`. Returns the x of its right end.
+// Draws one line of text with its top left corner at `where`. Returns the x of the text's right end.
 float put_text(Ui& ui, ImFont* font, Colour colour, const glm::vec2& where, std::string_view text);
 enum class Align { Left, Centre, Right };
 // Draws one line of text, vertically centred in the rectangle. A text that is too long is cut and ends in "..."; its
 // tool tip then shows the whole text.
 void put_text(Ui& ui, ImFont* font, Colour colour, const Rect& in, std::string_view text, Align align = Align::Left);
-// Draws text wrapped to `width`, with its top left corner at `where`. Returns the height of what was drawn. If
-// `most_lines` > 0, a longer text is cut to that many lines and ends in "..."; its tool tip then shows the whole text.
+// Draws text wrapped to `width`, with its top left corner at `where`. Returns the height of the drawn text. If
+// `most_lines` > 0, a longer text is cut to `most_lines` lines and ends in "..."; its tool tip then shows the whole
+// text.
 float put_wrapped(Ui& ui, ImFont* font, Colour colour, const glm::vec2& where, float width, const std::string& text,
                   int most_lines = 0);
 float height_of_wrapped(ImFont* font, const std::string& text, float width, int most_lines = 0);

@@ -19,8 +19,8 @@ constexpr char kInterSemiBold[] = "/usr/share/fonts/opentype/inter/Inter-SemiBol
 constexpr char kMono[] = "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
 constexpr char kIcons[] = "/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf";
 
-// Ranges of Unicode characters to rasterize, as pairs of first and last. kText: Latin with all accents, Greek,
-// Cyrillic, punctuation, arrows, superscript and subscript digits, the minus sign.
+// Ranges of Unicode characters to rasterize. Each pair of numbers is the first and last character of a range. kText has
+// Latin with all accents, Greek, Cyrillic, punctuation, arrows, superscript and subscript digits, the minus sign.
 constexpr ImWchar kText[] = {0x20,   0x24F,  0x370,  0x3FF,  0x400,  0x4FF,  0x1E00, 0x1EFF, 0x2010,
                              0x205E, 0x2070, 0x209F, 0x2190, 0x2193, 0x2212, 0x2212, 0};
 constexpr ImWchar kLatin[] = {0x20, 0xFF, 0x2010, 0x2026, 0x2190, 0x2193, 0x2212, 0x2212, 0};
@@ -68,7 +68,7 @@ Fonts build_fonts(double scale) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
-  atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;  // pixels; current drivers allow 8192 (OpenGL 3.3: 1024)
+  atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;  // pixels; OpenGL 3.3 guarantees 1024, current drivers allow 8192
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
 
   Builder build(scale);

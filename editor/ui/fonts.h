@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Rasterizes the editor's fonts by FreeType: Inter for words, JetBrains Mono for digits and keys, Font Awesome for
-// icons (merged into Inter). The fonts are built for one scale, and again when the scale changes, because stretched
-// characters look blurred.
+// icons (merged into Inter). The fonts are built for one scale of the interface, and built again when the scale
+// changes, because stretched characters look blurred.
 #pragma once
 
 struct ImFont;
@@ -18,8 +18,8 @@ struct Fonts {
   ImFont* icons = nullptr;       // 16 px at scale 1, icons only: the tool strip
 };
 
-// Builds the fonts into the current ImGui context's atlas, which is cleared first. Throws Error when a font file is not
-// installed, and names it.
+// Builds the fonts into the current ImGui context's atlas, which is cleared first. Throws Error, which names the file,
+// when a font file is not installed.
 Fonts build_fonts(double scale);
 
 }  // namespace limber::editor

@@ -9,7 +9,7 @@ namespace limber::editor {
 namespace {
 
 constexpr int kTextStart = 24, kWordStart = 12, kInARow = 10,
-              kSkippedWord = 2;  // a matched letter's score; only their order matters
+              kSkippedWord = 2;  // scores of a matched letter; only their order matters
 constexpr int kNone = -1'000'000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
@@ -18,7 +18,8 @@ bool begins_word(std::string_view text, std::size_t i) {
   return is_letter(text[i]) && (i == 0 || !is_letter(text[i - 1]));
 }
 
-// Finds the best-scoring positions of the word's letters in the text, by dynamic programming over (letter, position).
+// Finds the positions in the text at which the word's letters match with the highest score, by dynamic programming over
+// (letter, position). Returns no value if the letters do not match.
 std::optional<FuzzyMatch> match_word(std::string_view word, std::string_view text) {
   const std::size_t m = word.size(), n = text.size();
   if (m > n) return std::nullopt;

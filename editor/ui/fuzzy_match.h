@@ -17,12 +17,12 @@ struct FuzzyMatch {
   std::vector<std::size_t> letters;  // byte positions of the matched letters in the text, ascending
 };
 
-// Returns the best match of the query in the text, or nothing if it does not match. A match at the text's beginning
-// scores higher than one at a later word, and adjacent letters score higher than scattered ones. An empty query matches
-// every text with score 0.
+// Returns the best match of the query in the text, or no value if the query does not match. A match at the text's
+// beginning scores higher than a match at a later word, and adjacent letters score higher than scattered ones. An empty
+// query matches every text with score 0.
 std::optional<FuzzyMatch> fuzzy_match(std::string_view query, std::string_view text);
 
-// Returns whether `text` contains `part` as one uninterrupted substring, ignoring case.
+// Returns true if `text` contains `part` as one uninterrupted substring, ignoring case.
 bool contains_ignoring_case(std::string_view text, std::string_view part);
 
 }  // namespace limber::editor

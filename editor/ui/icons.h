@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Names the editor's icons by their meaning. Each is a character of the font Font Awesome 4.7, in UTF-8.
+// Names the editor's icons by their meaning. Each constant is a character of the font Font Awesome 4.7, in UTF-8.
 #pragma once
 
 namespace limber::editor::icon {

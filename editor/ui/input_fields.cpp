@@ -20,10 +20,10 @@ void ask_for_keyboard(Ui& ui, const std::string& id) {
   await_field(ui, ImGui::GetID(id.c_str()));
 }
 
-constexpr double kFastest = 1;  // largest change of a number per pixel of a drag, also if its range is wide
+constexpr double kFastest = 1;  // upper limit on the change of a number per pixel of a drag
 
-// Returns the margin at the left and right of a field's text, pixels. It is smaller in a narrow field, so that there is
-// more room for digits.
+// Returns the margin at the left and right of a field's text, pixels. A narrow field has a smaller margin, so that more
+// digits fit.
 float margin_of(const Look& look, const Rect& field) { return look.px(field.width() < look.px(64) ? 4 : 7); }
 }  // namespace
 
@@ -51,8 +51,8 @@ bool any_number_field(Ui& ui, const std::string& name, const Rect& rect, double&
                       const char* format, const char* unit, bool filled, bool& committed, ImGuiSliderFlags flags) {
   const Look& look = ui.look;
   committed = false;
-  // The number and its unit are drawn by the code below, aligned to the right. ImGui's own text of the number is
-  // therefore transparent, except while a number is typed.
+  // The code below draws the number and its unit, aligned to the right. ImGui's own text of the number is therefore
+  // transparent, except while the user types the number.
   const std::string id = "##" + name;
   ImGui::SetCursorScreenPos(im(rect.low));
   ImGui::SetNextItemWidth(rect.width());
@@ -71,7 +71,7 @@ bool any_number_field(Ui& ui, const std::string& name, const Rect& rect, double&
   committed = ImGui::IsItemDeactivatedAfterEdit();
   register_widget(ui, name, rect);
   if (typing) {
-    // A double click selects the whole number, also while the number is being typed.
+    // A double click selects the whole number, even while the user types it.
     if (ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetItemID());
         state && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
       state->SelectAll();

@@ -9,10 +9,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kTurnsToAppear =
-    2;  // draws of the panels after which keys no longer wait for a field that did not appear
+constexpr int kTurnsToAppear = 2;  // number of times the panels are drawn while keys wait for a field to appear
 constexpr int kTurnsToFocus =
-    4;  // draws of the panels after which keys no longer wait for ImGui to give a field the keyboard
+    4;  // number of times the panels are drawn while keys wait for ImGui to give a field the keyboard
 
 bool active_item_is_text() {
   const ImGuiContext& imgui = *ImGui::GetCurrentContext();

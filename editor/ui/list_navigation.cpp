@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kPage = 10;  // rows that PageUp and PageDown move by
+constexpr int kPage = 10;  // number of rows by which PageUp and PageDown move
 
 constexpr Key kMoves[] = {Key::Up, Key::Down, Key::PageUp, Key::PageDown, Key::Home, Key::End};
 constexpr std::pair<Key, ListKey> kActs[] = {{Key::Return, ListKey::Activate}, {Key::NumEnter, ListKey::Activate},
@@ -80,8 +80,8 @@ bool rename_field(Ui& ui, const Rect& rect, std::string& name) {
     ui.touch();
     return false;
   }
-  // If the user pressed Escape, ImGui has put the old name back into renaming.text; after Return or a press elsewhere
-  // it holds the new name.
+  // After Escape, ImGui has put the old name back into renaming.text. After Return or a press elsewhere, renaming.text
+  // has the new name.
   const std::string accepted = renaming.text;
   const bool over = ImGui::IsItemDeactivated() || !ImGui::GetIO().WantTextInput;
   if (!over) return false;

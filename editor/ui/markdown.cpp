@@ -45,7 +45,7 @@ std::vector<Run> runs_of(std::string_view text, const std::function<std::string(
 
 std::vector<Block> parse_markdown(std::string_view text, const std::function<std::string(const std::string&)>& key_of) {
   std::vector<Block> blocks;
-  std::string open;  // text of the block that is being read: its lines joined by spaces
+  std::string open;  // text of the block that is being read: the block's lines, joined by spaces
   Block::Kind kind = Block::Kind::Paragraph;
   const auto end_block = [&] {
     if (!open.empty()) blocks.push_back({kind, runs_of(open, key_of)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Parses the subset of Markdown that the program's own documents use: headings, paragraphs, lists, **strong**, *names*
-// and `code`. "{view.xray}" is replaced by the key that the user's key map gives to that operator.
+// and `code`. "{view.xray}" is replaced by the key of the operator "view.xray" in the user's key map.
 #pragma once
 
 #include <functional>

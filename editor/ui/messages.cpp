@@ -8,10 +8,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kLongestLog = 5000;  // lines
+constexpr std::size_t kLongestLog = 5000;  // upper limit on the lines of the log; older lines are dropped
 
-// Returns the text with a capital letter at its beginning. Texts of Errors begin with a small letter, as the command
-// line prints them after the program's name.
+// Returns the text with a capital letter at its beginning. The texts of Errors begin with a small letter, because the
+// command line prints them after the program's name.
 std::string description(std::string text) {
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;

@@ -16,7 +16,7 @@ struct Toast {
   std::string line, detail;
   std::string action;   // the id of the operator that the toast's button runs; empty: no button
   std::string failure;  // an Error's whole line, which the toast's button "Details" shows; empty: none
-  double since = -1;    // time at which it was drawn first, s; -1: not drawn yet
+  double since = -1;    // time at which the toast was drawn first, s; -1: not drawn yet
   int times = 1;
 };
 
@@ -25,10 +25,10 @@ struct LogLine {
   std::string text;
 };
 
-// An error message, split into what the user reads: what failed, where, what to do about it.
+// An error message, split into three parts: what failed, where it failed, and what the user can do.
 struct ErrorMessage {
   std::string what, where, what_to_do;
-  std::string line;    // the Error's whole line, for the details and the clipboard
+  std::string line;    // the Error's whole text in one line, for the details and the clipboard
   std::string during;  // the label of the user's action that failed; may be empty
   int times = 1;
 
@@ -42,30 +42,30 @@ class Messages {
     add({Severity::Ok, std::move(line), std::move(detail), std::move(action)});
   }
   void warn(std::string line, std::string detail = "") { add({Severity::Warning, std::move(line), std::move(detail)}); }
-  // Shows a toast about something that failed but that the user did not ask for just now, such as a background job.
+  // Shows a toast about a failure of something that the user did not ask for just now, such as a background job.
   void toast_error(std::string line, std::string detail = "", std::string action = "") {
     add({Severity::Error, std::move(line), std::move(detail), std::move(action)});
   }
-  // Shows an error toast, with a button that shows the whole message. `text` is an Error's line. `where` is shown if
-  // the line does not say where the error occurred.
+  // Shows an error toast, with a button that shows the whole message. `text` is the text of an Error. `where` is shown
+  // if this text does not say where the error occurred.
   void toast_failure(const std::string& text, const std::string& where);
-  // Shows an error in the middle of the window, since the user's own action failed. If the same error is already shown,
-  // only its count increases. `text` is an Error's line.
+  // Shows an error in the middle of the window, since an action of the user's failed. If the same error is already
+  // shown, only its count increases. `text` is the text of an Error.
   void show_error(const std::string& text, const std::string& during = "");
-  // Does the same as show_error() for an error that is already in the log, so that it is not logged twice.
+  // Shows an error like show_error(), but without logging it: the error is already in the log.
   void show_again(const std::string& text, const std::string& during = "");
 
   std::deque<Toast> toasts;
   std::vector<LogLine> log;
-  std::vector<ErrorMessage> errors;  // the first is shown, the others wait
-  std::string last_failure;          // the Error's line of the job that failed last
+  std::vector<ErrorMessage> errors;  // the first error is shown, the others wait
+  std::string last_failure;          // text of the Error of the job that failed last
 
  private:
   void add(Toast toast);
 };
 
-// Splits an Error's line "what: where: what to do" at its first and its last ": "; `where` may itself contain ": ". A
-// line with one ": " has no `what_to_do`; a line without any becomes `what`.
+// Splits the text of an Error, "what: where: what to do", at its first and its last ": ". `where` may itself contain ":
+// ". A text with one ": " has no `what_to_do`; a text without any becomes `what`.
 ErrorMessage parts_of(const std::string& text);
 
 }  // namespace limber::editor

@@ -15,7 +15,7 @@ namespace limber::editor {
 namespace {
 
 // Stores the y of a section's head in the sidebar window's storage, even if the head is scrolled out of sight.
-// screen/steady.cpp reads it to keep the widget under the pointer from moving.
+// screen/steady.cpp reads this y, to keep the widget under the pointer from moving.
 void note_section(const char* title, float y) {
   ImGuiWindow* root = ImGui::GetCurrentWindow()->RootWindow;
   if (std::string_view(root->Name) == "##sidebar") root->StateStorage.SetFloat(ImHashStr(title), y);
@@ -58,7 +58,8 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
     ui_.touch();
   }
   push_path(ui_, title);
-  // The right end of the head, 90 pixels at scale 1, does not fold the section: panels put buttons there.
+  // A click on the head folds or unfolds the section, except in the 90 pixels (at scale 1) at its right end, where
+  // panels put buttons.
   const Pressed pressed = press_area(ui_, "fold", {rect.low, {rect.high.x - look.px(90), rect.high.y}});
   fill(rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
@@ -67,7 +68,7 @@ bool Column::begin_section(const std::string& title, const std::string& right, b
            open ? icon::kOpened : icon::kClosed);
   put_text(ui_, look.fonts.semibold, look.theme.text,
            Rect{{rect.low.x + look.px(34), rect.low.y}, {rect.high.x - look.px(100), rect.high.y}}, title);
-  // The text at the right gets the width that remains beside the title.
+  // The text at the right gets the width that the title leaves free.
   const float words = rect.low.x + look.px(34 + 12) + text_size(look.fonts.semibold, title).x;
   if (!right.empty())
     put_text(ui_, look.fonts.small, look.theme.text2,

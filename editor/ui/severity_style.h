@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives each severity of a message an icon and a colour. Colour alone would not do, since some users cannot tell
+// Gives each severity of a message an icon and a colour. Colour alone is not enough, since some users cannot tell
 // colours apart.
 #pragma once
 

@@ -20,9 +20,8 @@ struct Look {
 };
 
 // Applies theme and scale to the look and to ImGui's own widgets in the current context. Rebuilds the fonts only when
-// the scale changed.
-//   theme    "dark" or "light"
-//   returns  whether the caller must upload the fonts' texture again
+// the scale has changed. Returns true if the caller must upload the fonts' texture again.
+//   theme  "dark" or "light"
 bool apply_look(Look& look, const std::string& theme, float scale);
 
 }  // namespace limber::editor

@@ -31,7 +31,7 @@ unsigned Pictures::texture(const std::string& name, const std::function<render::
   unsigned texture = 0;
   try {
     texture = upload(read());
-  } catch (const Error&) {  // a picture that cannot be read is left out
+  } catch (const Error&) {  // a picture that cannot be read is not shown
   }
   return textures_[name] = texture;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps small pictures as OpenGL textures, each uploaded once and found by its name. Must be destroyed before the
-// OpenGL context is.
+// Keeps small pictures as OpenGL textures. Each picture is uploaded once and found by its name. The cache must be
+// destroyed before the OpenGL context.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ class Pictures {
   Pictures(const Pictures&) = delete;
   Pictures& operator=(const Pictures&) = delete;
 
-  // Returns the texture of that name. The first call for a name makes the texture from the picture that `read` returns.
-  // The texture is 0 if the picture is empty or `read` throws Error.
+  // Returns the texture with the name `name`. The first call for a name makes the texture from the picture that `read`
+  // returns. The texture is 0 if the picture is empty or `read` throws Error.
   unsigned texture(const std::string& name, const std::function<render::Image()>& read);
   void forget(const std::string& name);
   void clear();

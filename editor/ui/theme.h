@@ -17,16 +17,17 @@ struct Theme {
   std::string name;
   Colour void_ = 0;  // colour of the gaps between the window's regions
   Colour panel = 0, head = 0, raised = 0, hover = 0, active = 0, field = 0, row_alt = 0, line = 0, line2 = 0;
-  Colour text = 0, text2 = 0, text3 = 0;  // colours of the text of values, of labels, of hints
+  Colour text = 0, text2 = 0, text3 = 0;  // colours of the text of values, labels and hints
   Colour accent = 0, accent_soft = 0, accent_text = 0, on_accent = 0;
   Colour select = 0, select_light = 0, on_select = 0;
   Colour ok = 0, warn = 0, error = 0;
   Colour axis[3] = {};
   Colour view_top = 0, view_bottom = 0, view_text = 0, view_text2 = 0,
-         view_plate = 0;  // colours in the views, dark in every theme
+         view_plate = 0;  // colours in the views, which are dark in every theme
 };
 
-// Reads a theme. Throws Error for a file that is no theme, and names the first colour that is missing or unreadable.
+// Reads a theme. Throws Error if the file is no theme or a colour is missing or unreadable, and names the first such
+// colour.
 Theme read_theme(const Path& path);
 
 Colour with_alpha(Colour colour, float alpha);   // alpha in [0, 1]

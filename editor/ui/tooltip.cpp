@@ -25,7 +25,7 @@ void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::stri
 
 void draw_tooltip(Ui& ui) {
   auto& tip = ui.tip;
-  // No tool tip is shown while a number is typed, as it would hide the fields below the number.
+  // No tool tip is shown while the user types a number, since the tool tip would hide the fields below the number.
   const ImGuiID active = ImGui::GetActiveID();
   const bool typing = active != 0 && ImGui::TempInputIsActive(active);
   if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();

@@ -10,8 +10,8 @@
 
 namespace limber::editor {
 
-// Requests a tool tip above or below the widget's rectangle `rect`. Call it in each frame in which the pointer is over
-// the widget.
+// Requests a tool tip above or below the widget with the rectangle `rect`. Call it in each frame in which the pointer
+// is over this widget.
 void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& description,
              const std::optional<Chord>& chord = {});
 void draw_tooltip(Ui& ui);

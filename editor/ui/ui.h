@@ -18,8 +18,8 @@ namespace limber::editor {
 // The text field that has the keyboard (keyboard.h).
 struct Keyboard {
   bool typed = false;    // a text field had the keyboard when the panels were drawn last
-  unsigned awaited = 0;  // ImGui's id of the field that will get the keyboard; 0: not drawn yet
-  int turns = 0;         // draws of the panels after which keys no longer wait for that field; 0: none wait
+  unsigned awaited = 0;  // ImGui's id of the field that will get the keyboard; 0: the field was not drawn yet
+  int turns = 0;         // number of draws of the panels for which keys still wait for the awaited field; 0: none
 
   bool waits() const { return turns > 0; }
 };
@@ -28,19 +28,19 @@ struct Keyboard {
 struct ListFocus {
   std::string list;  // empty: no list has the keyboard
   int row = 0;
-  bool reveal = false;  // whether to scroll the row into sight in the next frame
+  bool reveal = false;  // true: scrolls the row into sight in the next frame
 };
 
 // A row of a list that is being renamed. `what` identifies the row, `text` is the name as typed so far.
 struct Renaming {
   std::string what, text;
-  bool shown = false;  // whether the row's text field has been drawn
+  bool shown = false;  // true: the row's text field has been drawn
 };
 
 struct Ui {
   // Requests the next few frames, for a change that no input event caused.
   void touch() { frames_wanted_ = 3; }
-  // Requests a frame at that time (seconds on the clock of `now`), even if no input arrives until then.
+  // Requests a frame at `time` (seconds on the clock of `now`), even if no input arrives until then.
   void wake_at(double time) { wake_at_ = std::min(wake_at_, std::max(time, now)); }
 
   Look look;
@@ -50,14 +50,14 @@ struct Ui {
   double now = 0;            // time of this frame, s
   Rect window;               // pixels
   double tooltip_delay = 0;  // s
-  bool dialog_open = false;  // if true, the dialog gets the keys instead of lists
+  bool dialog_open = false;  // true: the dialog gets the keys instead of lists
 
   ListFocus list_focus;
   std::optional<Renaming> renaming;
-  std::map<std::string, bool> open_sections;  // whether a column's section is open, by the section's title
+  std::map<std::string, bool> open_sections;  // true: a section of a column is open; by the section's title
   std::string wanted_section;                 // the section to scroll to in the next frame; empty: none
 
-  // The region of the window that is being drawn, and the path that the names of its widgets begin with.
+  // The region of the window that is being drawn, and the path with which the names of its widgets begin.
   struct {
     Region region = Region::Views;
     std::vector<std::string> steps;
@@ -70,11 +70,11 @@ struct Ui {
     std::optional<Chord> chord;
     Rect rect;
     double since = 0;
-    bool asked = false;  // whether tooltip() was called in this frame
+    bool asked = false;  // true: tooltip() was called in this frame
   } tip;
 
  protected:
-  int frames_wanted_ = 3;   // frames still to draw: ImGui needs up to 3 to show a change
+  int frames_wanted_ = 3;   // number of frames still to draw: ImGui needs up to 3 to show a change
   double wake_at_ = 1e300;  // earliest time for which wake_at() has requested a frame, s
 };
 

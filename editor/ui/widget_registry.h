@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Records the rectangle of each named widget and each text of a frame, so that scripts can click the widgets and tests
 // can measure them. A widget's name is a path that begins with its region ("sidebar/Tissues/Muscle/eye"). A widget is
-// found by its path, or by the last steps of its path if no other widget's path ends in them.
+// found by its whole path, or by the last steps of its path if no other path ends in these steps.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ class WidgetRegistry {
   void add_text(std::string text) { building_texts_.push_back(std::move(text)); }
   void end_frame();
 
-  // Returns the widget of the last complete frame whose path is `name` or ends in `name`; nullptr if there is none.
+  // Finds a widget of the last complete frame whose path is `name` or ends in `name`. Returns nullptr if there is none.
   // Throws Error when the paths of several widgets end in `name`.
   const Widget* find(std::string_view name) const;
   const std::vector<Widget>& widgets() const { return shown_; }

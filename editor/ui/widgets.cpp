@@ -56,13 +56,13 @@ void begin_region(Ui& ui, Region region, const std::string& name, const Rect& re
   ImGui::SetNextWindowSize(im(rect.size()));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
-  // A region that appears must not take the keyboard focus or close a menu. Only a dialog may.
+  // A region must not take the keyboard focus or close a menu when it appears. Only a dialog may.
   ImGui::Begin(("##" + name).c_str(), nullptr,
                kRegionFlags | (region == Region::Dialog ? 0 : ImGuiWindowFlags_NoFocusOnAppearing));
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
-  // ImGui opens this window behind the others, so a dialog is moved to the front in the frame in which it appears.
-  // Menus that the dialog opens later lie in front of it.
+  // ImGui opens a new window behind the others, so a dialog is moved to the front in the frame in which it appears.
+  // Menus that the dialog opens later lie in front of the dialog.
   if (region == Region::Dialog && ImGui::IsWindowAppearing())
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
   push_path(ui, name);

@@ -12,10 +12,10 @@
 namespace limber::editor {
 
 // --- Regions ---
-// Begins an ImGui window that fills the rectangle. The paths of all widgets in the window begin with its name.
+// Begins an ImGui window that fills the rectangle. The paths of all widgets in the window begin with `name`.
 void begin_region(Ui& ui, Region region, const std::string& name, const Rect& rect, Colour background);
 void end_region(Ui& ui);
-// Adds a step to the path that the names of all following widgets begin with, until pop_path() removes it.
+// Adds a step to the path with which the names of all following widgets begin, until pop_path() removes the step.
 void push_path(Ui& ui, const std::string& step);
 void pop_path(Ui& ui);
 struct PathScope {
@@ -28,7 +28,7 @@ struct PathScope {
 struct Pressed {
   bool hovered = false, held = false, clicked = false, double_clicked = false, right_clicked = false, activated = false;
 };
-// Adds an invisible item that can be pressed; the caller draws what it looks like.
+// Adds an invisible item that can be pressed. The caller draws how it looks.
 Pressed press_area(Ui& ui, const std::string& name, const Rect& rect, bool enabled = true);
 void register_widget(Ui& ui, const std::string& name, const Rect& rect, bool enabled = true);
 
@@ -38,7 +38,7 @@ enum class ButtonStyle {
   Primary,
   Chosen,
   Soft
-};  // Chosen: filled with the accent colour; Soft: for a switch that is on, with an edge in that colour
+};  // Chosen: filled with the accent colour; Soft: a switch that is on, edged in the accent colour
 struct ButtonLook {
   const char* icon = "";
   std::string label;

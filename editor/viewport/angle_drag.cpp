@@ -22,8 +22,8 @@ void AngleDrag::about(const glm::dvec3& axis, const glm::dvec2& start, const glm
 
 void AngleDrag::follow(const glm::dvec2& from, const glm::dvec2& to) {
   const glm::dvec2 a = from - centre_, b = to - centre_;
-  // Angles that are counter-clockwise on the screen count as positive. Signs take into account that the window's y axis
-  // points down.
+  // An angle is positive if it is counter-clockwise on the screen. The window's y axis points down, so the sign of this
+  // cross product is the opposite of the usual one.
   swept_seen_ += std::atan2(a.y * b.x - a.x * b.y, glm::dot(a, b));
   if (const auto angle = ring_.angle_under(view_, to)) {
     if (last_) swept_ring_ += std::remainder(*angle - *last_, 2 * std::numbers::pi);

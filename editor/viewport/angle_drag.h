@@ -11,10 +11,10 @@ class AngleDrag {
  public:
   static constexpr double kRing = 86;  // radius of the ring, pixels at scale 1
 
-  // `on_ring`: true: measures the angle in the plane of the ring; false: on the screen around the pivot.
+  //   on_ring  true: the angle is measured in the plane of the ring; false: on the screen, around the pivot's pixel
   AngleDrag(const ViewProjection& view, float scale, const glm::dvec3& pivot, bool on_ring);
 
-  // Sets the axis to turn about. May be called during a drag: the angle measured on the screen so far is kept.
+  // Sets the axis to turn about. During a drag, the axis may be changed: the angles measured so far are kept.
   void about(const glm::dvec3& axis, const glm::dvec2& start, const glm::dvec2& pointer);
   void leave_ring() { on_ring_ = false; }
   void follow(const glm::dvec2& from, const glm::dvec2& to);
@@ -23,8 +23,8 @@ class AngleDrag {
   const Ring& ring() const { return ring_; }
   double start() const { return start_; }  // angle on the ring at which the drag began, radians
   bool on_ring() const { return on_ring_; }
-  // Draws a turn by so many degrees: the ring, the sector from the start to the end of the turn, its two radii and a
-  // handle at its end.
+  // Draws a turn by the angle `degrees`: the ring, the sector from the start to the end of the turn with its two radii,
+  // and a handle at the end of the turn.
   void draw(const GizmoPainter& painter, const Theme& theme, double degrees) const;
 
  private:

@@ -9,8 +9,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kThinnest = 1;  // least distance between opposite faces of the clip box, voxels
-constexpr double kSnap = 10;     // step of handles while Ctrl is held, mm
+constexpr double kThinnest = 1;  // smallest distance between opposite faces of the clip box, voxels
+constexpr double kSnap = 10;     // step to which a dragged handle snaps while Ctrl is held, mm
 
 const Visibility& shown(const Editor& editor) {
   const auto& preview = editor.views->preview_visibility;
@@ -49,7 +49,8 @@ class Painter {
     return pressed;
   }
 
-  // Returns how far the dragged handle has moved since it was pressed, as a multiple of the vector `direction`.
+  // Returns the distance that the dragged handle has moved since it was pressed, as a multiple of the vector
+  // `direction`.
   double dragged(const glm::dvec3& world, const glm::dvec3& direction) const {
     return along(editor_.views->body.camera, size_, world, direction,
                  glm::dvec2(editor_.input.pointer - editor_.views->handle_from));
@@ -66,7 +67,7 @@ void begin_preview(Editor& editor) {
   editor.views->handle_from = editor.input.pointer;
 }
 
-// Puts the previewed clipping into the document, as an edit named `label`.
+// Stores the previewed clip box and clip plane in the document, as an edit named `label`.
 void end_preview(Editor& editor, const std::string& label) {
   const auto preview = editor.views->preview_visibility;
   editor.views->preview_visibility.reset();
@@ -178,8 +179,8 @@ void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction,
              const glm::dvec2& pixels) {
   glm::dvec2 from, to;
-  // How many pixels the direction vector covers on the screen is measured on a short part of it, because in perspective
-  // this number varies along the vector.
+  // Measures the length of the direction vector on the screen, in pixels. Only a short part of the vector is projected,
+  // because in perspective the number of pixels per mm varies along the vector.
   const double step = camera.distance * 1e-3 / std::max(glm::length(direction), 1e-12);
   if (!render::project(camera, point, size, from) || !render::project(camera, point + direction * step, size, to))
     return 0;

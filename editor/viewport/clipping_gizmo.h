@@ -15,8 +15,9 @@ void draw_clip_handles(Editor& editor, const Rect& rect);
 // away from the opposite face.
 void move_face(ClipBox& box, const Grid& grid, int axis, bool high, double voxel);
 
-// Returns how far a point that is dragged along `direction` (world, any length) moves when the pointer moves by
-// `pixels`. The distance is a multiple of `direction`. Returns 0 if the direction points at the eye.
+// Returns the distance by which a point moves along `direction` when the pointer drags the point by `pixels`. The
+// distance is a multiple of the vector `direction`. Returns 0 if the vector points at the eye.
+//   direction  a vector of any length, world coordinates
 double along(const render::Camera& camera, const glm::ivec2& size, const glm::dvec3& point, const glm::dvec3& direction,
              const glm::dvec2& pixels);
 

@@ -65,7 +65,7 @@ std::vector<Operator> clip_operators() {
       {"view.clip_box", "Clip box", icon::kClip, "View",
        "Hide everything outside a box; drag the squares on its faces to move them.", toggle_box, needs_volume, box_on},
       {"view.clip_plane", "Clip plane", icon::kCut, "View",
-       "Cut the volume open by a plane through the cross-hair that faces the viewer.", toggle_plane, needs_volume,
+       "Cut the volume open at the cross-hair, by a plane that faces the viewer.", toggle_plane, needs_volume,
        plane_on},
       {"view.reset_clipping", "Reset clipping", "", "View",
        "Remove the clip box and the clip plane, to show the whole volume.", reset_clips,

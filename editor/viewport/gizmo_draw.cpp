@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kRingSteps = 96;
-constexpr double kBehind = 0.15;      // depth behind its centre to which a ring is drawn, as a fraction of its radius
-constexpr float kUnderStroke = 1.6f;  // excess width of the dark line that is drawn under each line, pixels
+constexpr double kBehind = 0.15;      // a ring is drawn to this depth behind its centre, fraction of its radius
+constexpr float kUnderStroke = 1.6f;  // the dark line under each drawn line is wider by this, pixels at scale 1
 constexpr Colour kUnder = 0x59000000;
 
 ImVec2 im(const glm::dvec2& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }

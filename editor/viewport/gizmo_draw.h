@@ -32,8 +32,8 @@ struct Ring {
 // Returns a ring that has a radius of `pixels` on the screen, in pixels at scale 1.
 Ring ring_of(const ViewProjection& view, float scale, const glm::dvec3& centre, const glm::dvec3& axis, double pixels);
 
-// Returns the rectangle in which to draw a read-out for a point of a view. It lies at the right of the point, or, where
-// there is no room, at the left, above or below. It is always inside the view.
+// Returns the rectangle for a tool's read-out beside a point of a view. The rectangle lies at the right of the point.
+// If there is no room at the right, it lies at the left, above or below. It is always inside the view.
 Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& point);
 
 class GizmoPainter {
@@ -65,7 +65,7 @@ class GizmoPainter {
 };
 
 constexpr Colour kGizmoActive = 0xFF8AE0FF;  // RRGGBB: FFE08A; colour of the part of a gizmo that is being dragged
-// Bright variants of the theme's colours, to draw over views: these are dark in every theme.
+// Bright variants of the theme's colours, for drawing over views. Views have a dark background in every theme.
 constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4,
                  kViewError = 0xFF807AFF;   // RRGGBB: 5AD19A, F4BC52, FF7A80
 constexpr Colour kViewAccent = 0xFFFFBE8F;  // RRGGBB: 8FBEFF

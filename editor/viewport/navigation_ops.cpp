@@ -114,7 +114,7 @@ Operator standard_view(const char* id, const char* label, render::StandardView s
 
 Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
   return {id, label, "", "View", "Turn the 3D view by 15 degrees.", [direction](Editor& e) {
-            // orbited() takes the pixels of a drag, so the angle is converted to pixels.
+            // The angle is converted to pixels, because orbited() expects the pixels of a pointer drag.
             go_to(e, render::orbited(goal(e), direction * kKeyOrbit * kOrbitPixels));
             e.views->body.name.clear();
           }};
@@ -146,7 +146,7 @@ std::string needs_aim(const Editor& editor) {
   return aim ? "" : "Select a tissue, or point at one";
 }
 
-// Zooms the 3D view to the selection. If nothing is selected, centres it on the point under the pointer.
+// Zooms the 3D view to the selection. If nothing is selected, centres the view on the point under the pointer.
 void frame_selected(Editor& editor) {
   const auto chosen = box_of_selection(editor);
   if (!chosen) return run(editor, "view.centre_on_pick");
@@ -205,7 +205,7 @@ std::vector<Operator> navigation_operators() {
       {"view.walk", "Walk", "", "View", "Walk through the 3D view with W A S D; look around with the mouse.", walk,
        needs_volume},
       {"view.centre_on_pick", "Centre on point", icon::kCrossHair, "View",
-       "Centre the view on the body's point under the pointer, and turn about it from now on.", centre_on_pick,
+       "Centre the view on the body's point under the pointer. The view then turns about this point.", centre_on_pick,
        needs_volume},
       standard_view("view.front", "Front", StandardView::Front, "Look at the body from the front."),
       standard_view("view.back", "Back", StandardView::Back, "Look at the body from the back."),

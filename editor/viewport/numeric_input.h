@@ -12,8 +12,8 @@ namespace limber::editor {
 
 class TypedNumber {
  public:
-  // Adds the character of a pressed key to the number; Backspace removes the last one. Returns false if the key is no
-  // part of a number.
+  // Adds the character of a pressed key to the number; Backspace removes the last character. Returns false if the key
+  // does not belong to a number.
   bool key(Key key) {
     if (const char digit = digit_of(key)) {
       if (std::ssize(text_) < kDigits) text_ += digit;

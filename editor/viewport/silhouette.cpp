@@ -10,11 +10,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kShortest = 10;  // least number of corners of an outline; shorter ones are specks and are dropped
+constexpr std::size_t kShortest = 10;  // outlines with fewer corners are specks and are dropped
 constexpr int kSmoothings = 4;         // smoothing passes over an outline; each averages three adjacent corners
 
-// A grid of cells over the picture, with a border of empty cells, one cell wide. `filled` is 1 for cells that triangles
-// cover.
+// A grid of cells over the picture, surrounded by one row of empty cells. `filled` is 1 for cells that triangles cover.
 struct Mask {
   Mask(const Rect& picture, float cell)
       : size(glm::ivec2(glm::ceil(picture.size() / cell)) + 2),
@@ -25,8 +24,8 @@ struct Mask {
   std::vector<std::uint8_t> filled;
 };
 
-// Fills all cells whose middle lies in the triangle, and the cells of its three corners. The latter keep thin parts
-// connected.
+// Fills all cells whose middle lies in the triangle, and the three cells in which the triangle's corners lie. Without
+// the cells of the corners, thin parts of the silhouette would break apart.
 void fill(Mask& mask, const std::array<glm::vec2, 3>& p) {
   const glm::vec2 low = glm::min(glm::min(p[0], p[1]), p[2]), high = glm::max(glm::max(p[0], p[1]), p[2]);
   const glm::vec2 last(mask.size - 2);
@@ -48,8 +47,8 @@ void fill(Mask& mask, const std::array<glm::vec2, 3>& p) {
     }
 }
 
-// The borders of the filled cells, as steps from one cell corner to the next. Where two filled cells touch only in a
-// corner, each border follows its own cell.
+// The border lines of the filled cells. A line is stored as steps from one cell corner to the next. Where two filled
+// cells touch only in a corner, the line of each cell continues along the same cell.
 class Borders {
  public:
   explicit Borders(Mask& mask)
@@ -90,8 +89,8 @@ class Borders {
   }
   int take(int at, int before) {
     auto& next = next_[at];
-    // Of two possible steps, takes the one that turns towards the filled cell. So two cells that touch only in a corner
-    // get separate outlines.
+    // At a corner where two filled cells touch, two steps are possible. Takes the step that turns towards the cell
+    // whose border was followed so far, so that the two cells get separate outlines.
     const auto turns_inwards = [&](int to) {
       const glm::ivec2 in(at % width_ - before % width_, at / width_ - before / width_),
           out(to % width_ - at % width_, to / width_ - at / width_);

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kWheelStep = 1.2;
 
-// Returns the slice view under the pointer. Otherwise returns the view used last, if it is a slice view and shown.
+// Returns the slice view under the pointer. If there is none, returns the view that was used last, provided that this
+// is a slice view and on the screen.
 std::optional<ViewId> slice_here(const Editor& editor) {
   if (const ViewPlace* view = hovered_view(editor); view && view->id != ViewId::Body) return view->id;
   if (editor.views->active != ViewId::Body && editor.layout.place_of(editor.views->active)) return editor.views->active;
@@ -78,8 +79,8 @@ void drag_slice(Editor& editor) {
            PointerWrap(place->rect, editor.look.px(2))};
 }
 
-// Moves the cross-hair to the pointer: in the 3D view to the body's point under it, in a slice view to the point of the
-// slice's plane under it.
+// Moves the cross-hair to the point under the pointer. In the 3D view this is a point of the body's surface, in a slice
+// view a point in the plane of the slice.
 void put_cross_hair(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place) return;

@@ -93,8 +93,8 @@ bool TransformTool::key(Editor& editor, const KeyChanged& event) {
   if (event.key == Key::Escape) return drop(editor);
   if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
   if (const int axis = axis_of_key(event.key); axis >= 0) {
-    // The first press of X, Y or Z locks the axis of the selected space. The second locks that of the other space:
-    // local instead of global, global instead of any other. The third removes the lock.
+    // The first press of X, Y or Z locks the axis of the selected space. The second press locks the axis of another
+    // space: local space if global space is selected, else global space. The third press removes the lock.
     const bool plane = editor.input.down(Key::Shift);
     const Space first = editor.transform_settings->space,
                 second = first == Space::Global ? Space::Local : Space::Global;
@@ -185,8 +185,8 @@ glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, 
     return from + number_.value() * (line ? axis : lock_.plane ? axes(lock_.space)[(lock_.axis + 1) % 3] : view_.right);
   const std::optional<glm::dvec2> seen = view_.pixel_of(from);
   if (!seen) return from;
-  // If the user drags a handle along a locked axis or plane, the handle stays under the pointer. Otherwise the point
-  // moves on the screen by as much as the pointer.
+  // A handle that is dragged along a locked axis or plane stays under the pointer. In other cases the point moves by
+  // the same number of pixels on the screen as the pointer.
   const glm::dvec2 begin = held_ && !free ? start_ : *seen, end = begin + (pointer_ - start_);
   if (line) {
     const auto first = view_.along_line(begin, from, axis), last = view_.along_line(end, from, axis);

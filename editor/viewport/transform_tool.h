@@ -15,9 +15,10 @@
 
 namespace limber::editor {
 
-// The constraint of a transform tool: to one axis of a coordinate space, or to the plane perpendicular to this axis.
+// The axis of a coordinate space to which a transform tool is locked. The tool moves or scales along this axis, or
+// turns about it. If `plane`, the tool moves or scales in the plane perpendicular to the axis.
 struct AxisLock {
-  int axis = -1;  // 0 to 2: x, y, z; -1: no constraint
+  int axis = -1;  // 0 to 2: x, y, z; -1: no lock
   Space space = Space::Global;
   bool plane = false;
 };
@@ -42,15 +43,16 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   const ViewProjection& view() const { return view_; }
 
  protected:
-  // Handles a move of the pointer, pixels; with Shift held, only a tenth of the move counts.
+  // Handles a motion of the pointer between two pixel positions. While Shift is held, the motion passed is a tenth of
+  // the pointer's real motion.
   virtual void follow(Editor&, const glm::dvec2& /*from*/, const glm::dvec2& /*to*/) {}
   virtual void show(Editor& editor) = 0;
   virtual void keep(Editor& editor) = 0;
   virtual glm::dmat3 axes(Space space) const = 0;
-  virtual void locked(Editor&) {}  // called after the user changed the lock
+  virtual void locked(Editor&) {}  // called after the user has changed the axis lock
   virtual bool own_key(Editor&, Key) { return false; }
-  // Convert what the tool does to form fields and back, to let the user adjust it afterwards. keep() is called after
-  // set().
+  // parameters() returns the tool's numbers (distance, angle, factor, axis) as form fields. After the tool has ended,
+  // the user can change these fields: set() then takes the new values, and keep() commits the changed result.
   virtual std::vector<FormField> parameters() const { return {}; }
   virtual void set(const std::vector<FormField>&) {}
 
@@ -62,12 +64,13 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   glm::dvec3 lock_axis() const;
   std::string lock_text(const char* word) const;  // the lock in words: " about local X"
   std::vector<KeyHint> shared_hints() const;
-  // Returns the position to which the pointer has dragged a point that was at `from`, constrained by the lock. The
-  // dragged distance snaps to multiples of `step`, or of `fine` while Shift is held, mm; 0: no snapping.
+  // Returns the position to which the pointer has dragged a point that was at `from`, along the locked axis or plane if
+  // there is one. If snapping is on, the distance snaps to multiples of `step`, or of `fine` while Shift is held, mm;
+  // 0: no snapping.
   glm::dvec3 dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const;
 
-  // Convert a translation (`way`, world, mm) to form fields and back, and the locked axis to form fields and back.
-  // `first` is the index of the axis's first field.
+  // The first two functions convert a translation (`way`, world, mm) to form fields and back. The last two functions
+  // convert the locked axis to form fields and back; `first` is the index of the axis's first field.
   std::vector<FormField> fields_of_way(const glm::dvec3& way) const;
   void set_way(const std::vector<FormField>& fields);
   std::vector<FormField> fields_of_axis() const;
@@ -77,16 +80,16 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   AxisLock lock_;
   std::optional<MouseButton> held_;
   TypedNumber number_;
-  glm::dvec2 pointer_, start_;     // pixels of the window; with Shift, moves count a tenth
-  double travelled_ = 0;           // largest distance of the pointer from its start, pixels
-  std::optional<glm::dvec3> way_;  // entered translation, used instead of the pointer's, world, mm
+  glm::dvec2 pointer_, start_;     // positions in the window, pixels; motions with Shift count a tenth
+  double travelled_ = 0;           // largest distance of the pointer from start_, pixels
+  std::optional<glm::dvec3> way_;  // translation typed in the form, replaces the pointer's; world, mm
 };
 
 // Returns the view that a tool works in: the view under the pointer, else the 3D view, else the first view.
 ViewPlace place_of_tool(const Editor& editor);
 
-// Makes the tool the editor's modal tool. When the pointer leaves the tool's view, it is moved to the view's opposite
-// side.
+// Makes the tool the editor's modal tool. A pointer that leaves the tool's view is moved to the opposite side of the
+// view, so that drags have no end.
 void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool);
 
 std::string text_of_number(const char* format, double value);

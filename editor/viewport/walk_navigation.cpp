@@ -11,12 +11,12 @@ namespace limber::editor {
 
 namespace {
 
-// The walking speed at first, per second, as a fraction of the eye's distance from the view's centre
+// Initial walking speed, as a fraction of the distance between the eye and the view's centre per second.
 constexpr double kSpeed = 0.4;
 constexpr double kFasterPerStep = 1.25;           // factor by which a wheel step changes the speed
 constexpr double kSlowest = 0.1, kFastest = 1e5;  // limits of the speed, mm/s
 constexpr double kHurry = 5, kCreep = 0.2;
-constexpr double kLookPerPixel = 0.35;  // angle per pixel relative to orbiting; small, as looking around seems faster
+constexpr double kLookPerPixel = 0.35;  // angle per pixel / orbiting's; below 1, because looking around seems faster
 
 class Walk final : public Modal {
  public:
@@ -25,7 +25,7 @@ class Walk final : public Modal {
         speed_(std::clamp(kSpeed * before_.distance, kSlowest, kFastest)) {
     editor.views->body.move.reset();
     editor.views->body.camera.projection =
-        render::Projection::Perspective;  // in parallel projection, moving forward changes nothing in the picture
+        render::Projection::Perspective;  // moving forward changes nothing in a parallel projection
     editor.views->body.name.clear();
   }
 
@@ -48,7 +48,7 @@ class Walk final : public Modal {
 
   bool key(Editor& editor, const KeyChanged& event) override {
     if (const Way* way = way_of(event.key)) {
-      // A key that is pressed and released within one frame moves the eye for that frame.
+      // Stores the key's direction, so that a key that is pressed and released within one frame moves the eye too.
       if (event.down && !event.repeated) pressed_ += way->direction;
       going_ = direction(editor) != glm::dvec3(0);
       return true;
@@ -111,7 +111,7 @@ class Walk final : public Modal {
   }
 
   render::Camera before_;
-  double speed_;  // without Shift and Alt, mm/s
+  double speed_;  // speed while neither Shift nor Alt is held, mm/s
   bool going_ = false;
   glm::dvec3 pressed_{0};
 };

@@ -13,20 +13,22 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kTurn = 0.7;     // turn of the view to the body's side, radians; shows limbs in front of the body
+constexpr double kTurn = 0.7;     // turn of the view to the side, radians; shows limbs held in front of the body
 constexpr double kTilt = 0.12;    // angle by which the view looks down, radians
 constexpr double kMargin = 0.06;  // free margin on each side of the picture, as a fraction of the body's extent
 constexpr int kSamples = 2;       // number of samples per pixel in x and in y
 constexpr double kShadow = 0.3;   // brightness of surfaces that the light does not reach, [0, 1]
 const glm::dvec3 kColour(0.86, 0.68, 0.55), kLight = glm::normalize(glm::dvec3(-0.4, 0.5, 0.8));
 
-// A cylinder with round ends from a to b, mm. The axes are those of the picture: x right, y up, z towards the eye.
+// A cylinder with round ends whose axis goes from `a` to `b`. Coordinates are mm in the axes of the picture: x points
+// right, y up, z towards the eye.
 struct Solid {
   glm::dvec3 a, b;
   double radius;
 };
 
-// Returns the radius of the cylinder that is drawn for a bone, as a fraction of the body's height. 0: it is not drawn.
+// Returns the radius of the cylinder that is drawn for a bone, as a fraction of the body's height. 0: the bone is not
+// drawn.
 double radius_of(const std::optional<JointRole>& role) {
   if (!role) return 0;
   switch (role->part) {
@@ -77,7 +79,8 @@ std::vector<Solid> solids_of(const Armature& armature, const Pose& pose) {
   return solids;
 }
 
-// What is visible of a solid at a position of the picture: the depth of the surface's point (z, mm) and its normal.
+// The point of a solid's surface that is visible at a position of the picture: its depth (z, mm) and the surface
+// normal.
 struct Seen {
   double depth;
   glm::dvec3 normal;
@@ -97,8 +100,8 @@ std::optional<Seen> seen_at(const Solid& solid, const glm::dvec2& at) {
   };
   take(on_ball(solid.a, solid.radius, at));
   take(on_ball(solid.b, solid.radius, at));
-  // Intersects the line of sight with the curved side of the cylinder: finds the point whose distance from the axis is
-  // the radius, and takes it if it lies between the cylinder's ends.
+  // Intersects the line of sight with the curved side of the cylinder. The intersection is the point on the line whose
+  // distance from the cylinder's axis equals the radius; it counts only between the cylinder's ends.
   const glm::dvec3 axis = solid.b - solid.a, from(at.x - solid.a.x, at.y - solid.a.y, -solid.a.z);
   const double length2 = glm::dot(axis, axis), ray = axis.z, start = glm::dot(from, axis);
   const double a = length2 - ray * ray, b = length2 * from.z - start * ray;
@@ -129,8 +132,8 @@ Frame frame_of(const std::vector<Solid>& solids, const glm::ivec2& size) {
   return {(low + high) / 2.0 - glm::dvec2(size) * millimetres / 2.0, millimetres};
 }
 
-// Renders the solids. Each sample holds the brightness of the nearest solid there, or -1 if there is none. Rows begin
-// at the top of the picture.
+// Renders the solids into samples. Each sample has the brightness of the solid that is nearest to the eye, or -1 where
+// there is no solid. The first row is at the top of the picture.
 class Samples {
  public:
   Samples(const Frame& frame, const glm::ivec2& size)

@@ -19,14 +19,14 @@ struct SeamSource {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const Armature> armature;
-  std::shared_ptr<const Seams> kept;        // the document's own seams; null: none, they must be found
-  std::shared_ptr<const BoneMap> bone_map;  // the document's bone map; null: none
+  std::shared_ptr<const Seams> kept;        // seams stored in the document; null: none, seams must be found
+  std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
 
   bool operator==(const SeamSource&) const = default;
 };
 SeamSource seam_source(const Document& document);
-// Returns the entries of the document's bone map that fit its tissues and its rig. Empty if the document has no bone
-// map.
+// Returns the entries of the document's bone map whose tissue and rig bone exist in the document. Empty if the document
+// has no bone map.
 BoneMap usable_bone_map(const SeamSource& source);
 
 class BodySeams {
@@ -34,7 +34,7 @@ class BodySeams {
   // Returns the seams; finds them first if needed. Null if the document has no seams of its own and either has no rig
   // or has a rig whose bone names do not tell which bones are limbs.
   std::shared_ptr<const Seams> of(const SeamSource& source, Progress& progress = no_progress());
-  // Returns the same as of() if the seams are known without a search. Nothing if they must be searched for.
+  // Returns the seams as of() does, but never searches for seams. Returns nothing if a search is needed.
   std::optional<std::shared_ptr<const Seams>> known(const SeamSource& source);
   // Returns whether the rig has bones whose names say that they belong to arms, legs or fingers. Computed once per rig.
   bool has_limbs(const std::shared_ptr<const Armature>& armature);

@@ -53,7 +53,7 @@ class GreyImageDialog final : public Dialog {
   }
 
  private:
-  // What the texture of a pane was made from, to find out whether it must be made again.
+  // The inputs from which a pane's texture was made. The texture is made again when one of them changes.
   struct Pane {
     PictureFrame frame;
     GreyWindow window;
@@ -71,8 +71,8 @@ class GreyImageDialog final : public Dialog {
       frame.right = axes.right;
       frame.down = axes.down;
     }
-    // The projection casts one ray per pixel, which takes longer than a slice. So it is drawn with half as many pixels
-    // in x and in y.
+    // The projection casts a ray for every pixel, which takes longer than drawing a slice. Therefore the projection has
+    // half as many pixels in x and in y.
     const int coarser = p == kProjection ? 2 : 1;
     frame.size = glm::max(glm::ivec2(size) / coarser, 1);
     const double wide = p == kProjection ? std::hypot(sides_.x, sides_.y) : glm::dot(glm::abs(frame.right), sides_);
@@ -125,7 +125,7 @@ class GreyImageDialog final : public Dialog {
   }
 
   // Handles the pointer over a pane. In a slice, a press moves the cross-hair and the wheel steps through the slices.
-  // In the projection, a drag turns it.
+  // In the projection, a drag turns the view of the image.
   void move(Editor& editor, int p, const Rect& rect, const PictureFrame& frame, const Pressed& pressed) {
     const ImGuiIO& io = ImGui::GetIO();
     if (p == kProjection) {

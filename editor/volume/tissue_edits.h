@@ -19,11 +19,11 @@ void set_look(Editor& editor, const std::string& label, Label tissue, const Tiss
 void preview_look(Editor& editor, Label tissue, const TissueLook& look);
 void preview_tissue(Editor& editor, const Tissue& tissue);
 void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible);
-// Shows only these tissues. If only these are shown already, shows all tissues.
+// Shows only these tissues and hides all others. If all others are hidden already, shows all tissues.
 void solo_tissues(Editor& editor, const std::set<Label>& tissues);
 void reveal_tissues(Editor& editor);
-// Replaces the tissue table's entry that has the label tissue.label. `what` is the name of the edit, such as "Colour of
-// Muscle".
+// Replaces the entry of the tissue table that has the same label as `tissue`, as one edit. `what` is the name of the
+// edit, such as "Colour of Muscle".
 void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue);
 
 void rename_tissue(Editor& editor, Label label, const std::string& name);

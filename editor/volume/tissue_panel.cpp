@@ -12,8 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-// Returns a sentence for the user that says whether a tissue's number is the usual value for its kind. It names the
-// source of the usual value.
+// Returns a text for the user that says whether a property of a tissue, such as its density, has the usual value for
+// this kind of tissue, and where the usual value comes from.
 std::string where_from(const Tissue& tissue, double Tissue::*member, const char* format, const char* unit,
                        std::string_view source) {
   Tissue usual;
@@ -90,8 +90,8 @@ void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
   }
 }
 
-// Draws the skin weights of the voxel under the pointer. There are always four rows, so that what lies below keeps its
-// position when the pointer moves.
+// Draws the skin weights of the voxel under the pointer. There are always four rows, so that the rest of the panel does
+// not shift when the pointer moves.
 void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>& weights) {
   const Look& look = editor.look;
   for (std::size_t i = 0; i < 4; ++i) {

@@ -26,8 +26,8 @@ std::shared_ptr<const TissueTable> present(const TissueTable& tissues, const Lab
   return left;
 }
 
-// Converts a clip box from the voxels of one grid to those of another, so that it keeps its position in the world. If
-// the grids have different axes, returns a clip box that is switched off.
+// Converts a clip box from voxel coordinates of one grid to voxel coordinates of another grid, so that the box keeps
+// its position in the world. If the grids have different axes, returns a clip box that is switched off.
 ClipBox moved(const ClipBox& box, const Grid& from, const Grid& to) {
   if (from.direction != to.direction) return {};
   const AffineTransform world = world_from_voxel(from), voxel = voxel_from_world(to);
@@ -54,14 +54,14 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
   if (now.weights && !same_tissue) {
     next.weights.reset();
     next.layers.reset();
-    note = "The weights did not fit the new voxels and are gone";
+    note = "The weights did not fit the new voxels and were removed";
   }
   if (now.armature && mirrored) {
     next.armature.reset();
     next.weights.reset();
     next.layers.reset();
     next.pose.reset();
-    note = "The rig did not fit the mirrored body and is gone";
+    note = "The rig did not fit the mirrored body and was removed";
   }
   if (now.visibility && !(now.volume->grid == volume->grid)) {
     Visibility shown = *now.visibility;
@@ -71,7 +71,7 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
   next.volume = std::move(volume);
   if (next.seams && !fit(*next.seams, *next.volume)) {
     next.seams.reset();
-    note += note.empty() ? "The seams did not fit the new voxels and are gone" : "; the seams as well";
+    note += note.empty() ? "The seams did not fit the new voxels and were removed" : "; the seams were removed too";
   }
   return next;
 }

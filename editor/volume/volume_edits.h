@@ -19,9 +19,9 @@ struct Preparation {
 // Starts a job that prepares the volume. The document must have a volume.
 void start_preparation(Editor& editor, Preparation preparation);
 
-// Returns the document with another volume in place of its own. What does not fit the new volume is removed; `note`
-// says what that is, or is "" if nothing was removed.
-//   same_tissue  whether the new volume has the same grid and the same voxels are tissue
+// Returns the document with another volume in place of its own. Weights, rig and seams are removed if they do not fit
+// the new volume. `note` receives a message that says what was removed, or "".
+//   same_tissue  true if the new volume has the same grid as the old one, and tissue in the same voxels
 Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> volume, bool same_tissue, bool mirrored,
                      std::string& note);
 

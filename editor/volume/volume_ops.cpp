@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators that prepare the volume, such as Crop. Those with settings open a form first. Each runs as a job and makes
-// one edit.
+// Operators that prepare the volume, such as Crop to tissue. Operators with settings open a form first. Each operator
+// runs as a job and makes one edit.
 #include "editor/volume/volume_edits.h"
 
 #include <cmath>
@@ -190,7 +190,8 @@ std::vector<Operator> prepare_operators() {
       {"prepare.regrid", "Re-grid...", icon::kVolume, "Prepare", "Resample the volume to voxels of another size.",
        ask_regrid, needs_volume},
       {"prepare.orient", "Orient...", icon::kRotate, "Prepare",
-       "Change the order and direction of the voxel axes; no voxel moves in space.", ask_orient, needs_volume},
+       "Change the order and direction of the voxel axes. The voxels keep their positions in space.", ask_orient,
+       needs_volume},
       flip_operator("prepare.flip_x", "Flip left and right", 0, "Mirror the body from left to right."),
       flip_operator("prepare.flip_y", "Flip front and back", 1, "Mirror the body from front to back."),
       flip_operator("prepare.flip_z", "Flip head and feet", 2, "Mirror the body from head to feet."),

@@ -6,8 +6,8 @@
 
 namespace limber::render {
 
-// A context that is current on the thread that made it until the object is destroyed. Each thread may have one at a
-// time.
+// An OpenGL context. It is current on the thread that made it until the object is destroyed. Each thread may have one
+// such context at a time.
 class HeadlessContext {
  public:
   // Throws Error when this machine has no EGL, or an OpenGL older than 3.3.

@@ -9,7 +9,7 @@ namespace limber::render::gl {
 
 enum class Kind { Texture, Buffer, VertexArray, Framebuffer, Program };
 
-// Owns one OpenGL object of this kind. It is empty (name 0) until an object is created.
+// Owns one OpenGL object of kind `kind`. The owner is empty (name 0) until an object is created.
 template <Kind kind>
 class Object {
  public:

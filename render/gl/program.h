@@ -11,15 +11,16 @@
 
 namespace limber::render::gl {
 
-// Return a line that defines a preprocessor name in GLSL.
+// These functions return a line of GLSL that defines a preprocessor name.
 std::string define(const std::string& name);
 std::string define(const std::string& name, int value);
 std::string define(const std::string& name, const std::string& value);
 
 class Program {
  public:
-  // Compiles and links two files ("march.frag"). The lines of `defines`, made by define(), come before the text of both
-  // files. Throws Error with the first lines of the compiler's messages.
+  // Compiles a vertex and a fragment shader from two files of render/shaders (such as "march.frag"), and links them.
+  // The lines of `defines`, made by define(), come before the text of each file. Throws Error with the first lines of
+  // the compiler's messages.
   Program(const std::string& vertex_file, const std::string& fragment_file, const std::string& defines = "");
 
   void use() const;
@@ -44,7 +45,7 @@ class Program {
   std::unordered_map<std::string, int> locations_;
 };
 
-// The vertex shader that covers the whole picture with one triangle (three vertices, no attributes).
+// File of the vertex shader that covers the whole picture with one triangle (three vertices, no attributes).
 inline const char* const kWholePicture = "whole_picture.vert";
 
 }  // namespace limber::render::gl

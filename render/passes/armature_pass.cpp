@@ -14,8 +14,9 @@ namespace limber::render {
 
 namespace {
 
-// A corner of a triangle. `pixel` is its position from the picture's top left corner. `local` is interpolated over the
-// triangle; the colour covers the points with |local| < reach, with a smooth rim one pixel wide.
+// A corner of a triangle to draw. `pixel` is its position in pixels from the picture's top left corner. `local` is
+// interpolated over the triangle: the points where its length is below `reach` are coloured, with a smooth rim one
+// pixel wide.
 struct Vertex {
   glm::vec2 pixel;
   float depth;
@@ -26,7 +27,7 @@ struct Vertex {
 
 const glm::vec3 kFill = glm::vec3(0xC4, 0xCA, 0xD4) / 255.0f, kEdge = glm::vec3(0x14, 0x16, 0x1A) / 255.0f;
 const glm::vec3 kSelected = glm::vec3(0xFF, 0x9F, 0x2E) / 255.0f, kActive = glm::vec3(0xFF, 0xD0, 0x8A) / 255.0f;
-constexpr float kBehindEdge = 0.35f;  // opacity of edges on the far side of a bone's solid
+constexpr float kBehindEdge = 0.35f;  // opacity of edges on the far side of the solid that shows a bone
 
 // A point of a bone's solid, projected into the picture.
 struct Corner {
@@ -37,9 +38,9 @@ struct Corner {
 };
 
 struct Projected {
-  std::vector<Corner> corners;  // head, tail, then the other points of the bone's solid
+  std::vector<Corner> corners;  // head, tail, then the other points of the solid that shows the bone
   BoneLook look;
-  double depth = 0;  // mean depth of head and tail, mm
+  double depth = 0;  // mean depth of the bone's head and tail, mm
 
   bool drawable() const {
     return std::all_of(corners.begin(), corners.end(), [](const Corner& c) { return c.in_front; });
@@ -82,7 +83,7 @@ std::vector<Projected> projected_bones(const Scene& scene, const Camera& camera,
 
 class Shapes {
  public:
-  explicit Shapes(float scale) : scale_(scale) {}  // factor on widths and radii
+  explicit Shapes(float scale) : scale_(scale) {}  // `scale` multiplies line widths and joint radii
 
   std::vector<Vertex> vertices;
 
@@ -197,7 +198,8 @@ void ArmaturePass::draw(const Scene& scene, const Camera& camera, const glm::ive
   const std::vector<Projected> bones = projected_bones(scene, camera, size);
   std::vector<size_t> order(bones.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  // Bones are drawn from far to near, then the selected bones, and the active bone last.
+  // Draws the active bone last, and the selected bones before it, so that no other bones cover them. Within each group,
+  // bones are drawn from far to near.
   const auto rank = [&](size_t b) {
     return std::pair(bones[b].look.active ? 2 : bones[b].look.selected ? 1 : 0, -bones[b].depth);
   };
@@ -241,7 +243,8 @@ std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const gl
     const glm::dvec2 head = from.pixel, along = glm::dvec2(to.pixel) - head;
     const double squared_length = glm::dot(along, along);
     const double t = squared_length > 0 ? std::clamp(glm::dot(pixel - head, along) / squared_length, 0.0, 1.0) : 0;
-    constexpr double kNear = 5;  // distance from a bone's outline that still hits the bone, pixels at line scale 1
+    // A pixel up to this far outside a bone's outline still hits the bone, pixels at line scale 1.
+    constexpr double kNear = 5;
     const double off = glm::length(pixel - head - along * t) /
                        (std::sqrt(squared_length) * half_width_at(scene.bone_shape, t) + kNear * scene.line_scale);
     if (off < 1) hits.push_back({static_cast<int>(b), off, glm::mix<double>(from.depth, to.depth, t)});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws bones over the body as octahedra, cylinders or sticks with joints. Their edges are antialiased and have the
 // same width in pixels at any distance (times the scene's line scale). Portions of bones behind the body's surface are
-// drawn at 45 % opacity, unless bones are drawn in front.
+// drawn at 45 % opacity, unless the scene asks for bones in front of the body.
 #pragma once
 
 #include <optional>
@@ -29,11 +29,11 @@ class ArmaturePass {
   gl::Buffer vertices_;
 };
 
-// Returns the bones whose drawn shapes are within a few pixels of `pixel` (counted from the top left corner), in the
-// rig's order.
+// Returns the bones whose drawn shapes are within a few pixels of `pixel`, in the rig's order. Pixels are counted from
+// the top left corner.
 std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const glm::ivec2& size,
                               const glm::dvec2& pixel);
-// Of the bones under the pixel, returns the one whose axis is nearest to the pixel, relative to the bone's drawn width.
+// Returns that bone of bones_at() whose axis is nearest to the pixel, measured as a share of the bone's drawn width.
 std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel);
 
 }  // namespace limber::render

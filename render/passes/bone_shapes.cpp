@@ -10,13 +10,14 @@ namespace limber::render {
 
 namespace {
 
-// Octahedron: half its width, and the position of its widest section, as shares of its length.
+// Half the width of an octahedron, and the distance of its widest section from the bone's head, as shares of the bone's
+// length.
 constexpr double kHalfWidth = 0.085, kWidestAt = 0.12;
-constexpr double kRadius = 0.05;  // radius of a cylinder, as a share of its length
-// Number of sides of a cylinder, so that it looks round at any size in which bones are drawn.
+constexpr double kRadius = 0.05;  // radius of a cylinder, as a share of the bone's length
+// Number of sides of a cylinder. With 20 it looks round at any size in which bones are drawn.
 constexpr int kSides = 20;
 
-// Adds every edge once, with the two faces that share it.
+// Adds every edge of the solid's faces to the solid, once, with the two faces that share the edge.
 void add_edges(BoneSolid& solid) {
   std::map<std::pair<int, int>, std::vector<int>> met;
   for (int f = 0; f < static_cast<int>(solid.faces.size()); ++f) {
@@ -54,7 +55,7 @@ BoneSolid cylinder() {
   solid.faces.push_back(low);
   solid.faces.push_back(high);
   add_edges(solid);
-  // The smooth edges run along the round side, each from a point of the lower rim to the point above it.
+  // The edges along the cylinder's axis are smooth. Each runs from a point of the lower rim to the point above it.
   for (BoneSolid::Edge& edge : solid.edges) edge.smooth = edge.from % 2 == 0 && edge.to == edge.from + 1;
   return solid;
 }

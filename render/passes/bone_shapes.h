@@ -16,10 +16,10 @@ struct BoneSolid {
   struct Edge {
     int from, to;
     std::array<int, 2> faces;
-    bool smooth;  // true: an edge of a round side, drawn only where it is part of the outline
+    bool smooth;  // true: an edge of the cylinder's round side, drawn only where it is part of the outline
   };
-  std::vector<glm::dvec3> points;       // the first two are head and tail
-  std::vector<std::vector<int>> faces;  // planar and convex, counter-clockwise from outside
+  std::vector<glm::dvec3> points;       // the first two are the bone's head and tail
+  std::vector<std::vector<int>> faces;  // indices into `points`; planar, convex, counter-clockwise from outside
   std::vector<Edge> edges;
 };
 

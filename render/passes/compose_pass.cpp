@@ -55,7 +55,7 @@ void ComposePass::grid(const Camera& camera, const glm::ivec2& size, const glm::
   const glm::dvec3 ground(middle.x, middle.y, height);
   const glm::dmat4 clip =
       clip_from_view(camera, double(size.x) / size.y, ground, reach * 1.5) * view_from_world(camera);
-  glm::dmat4 moved = clip;  // coordinates relative to `ground`, so that floats are precise enough
+  glm::dmat4 moved = clip;  // projects positions relative to `ground`, so that floats are precise enough
   moved[3] = clip * glm::dvec4(ground, 1);
   blend_premultiplied();
   glViewport(0, 0, size.x, size.y);

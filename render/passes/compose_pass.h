@@ -21,7 +21,7 @@ class ComposePass {
   // Draws grid lines every 100 mm on the plane z = height. The lines fade out towards `reach` mm from `middle`.
   void grid(const Camera& camera, const glm::ivec2& size, const glm::dvec3& middle, double height, double reach,
             float line_scale);
-  // Draws `picture`, which has premultiplied alpha, stretched over the framebuffer.
+  // Draws the picture of the body, which has premultiplied alpha, stretched over the framebuffer.
   void body(const gl::Texture& picture, const glm::ivec2& size, const PixelRect& rect);
   // Draws an outline around the pixels that show `label`, two pixels times line_scale wide.
   void outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect, float line_scale);

@@ -14,9 +14,9 @@
 
 namespace limber::render {
 
-// Returns the lines along which the clip plane and the faces of the clip box cut the mesh. Portions of lines that
-// another of these planes cuts away are left out.
-//   grid  grid of the volume to whose voxels the clip box refers
+// Returns the lines along which the clip plane and the faces of the clip box cut the mesh. Where one of these planes
+// cuts away the lines of another plane, the lines are left out.
+//   grid  grid of the volume; the clip box is given in its voxel coordinates
 std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const Grid& grid);
 
 class LinePass {
@@ -25,10 +25,10 @@ class LinePass {
 
   struct Ink {
     glm::vec3 colour;    // sRGB
-    float alpha, width;  // opacity [0, 1], and width in pixels
+    float alpha, width;  // opacity [0, 1], and line width in pixels
   };
-  // Draws the lines into the bound framebuffer of `size` pixels, but only where the body's surface is within `off` mm
-  // of a line.
+  // Draws the lines into the bound framebuffer of `size` pixels. A pixel of a line is drawn only where its depth
+  // differs from the depth of the body's surface by at most `off` mm.
   //   body_depth  depth of the body in mm from the eye along the viewing direction, at any resolution
   void draw(const std::vector<Segment>& lines, const Camera& camera, const glm::ivec2& size,
             const gl::Texture& body_depth, float off, const Ink& ink);

@@ -19,7 +19,8 @@ int texture_limit(int largest_texture) {
   return largest_texture > 0 ? std::min<int>(most, largest_texture) : most;
 }
 
-// Returns whether a weak pointer refers to this owner. The comparison works even after the owner is destroyed.
+// Returns true if a weak pointer refers to the object that `owner` shares. The comparison works even after the object
+// is destroyed.
 template <class T, class Owner>
 bool same(const std::weak_ptr<T>& key, const Owner& owner) {
   return !key.owner_before(owner) && !owner.owner_before(key);

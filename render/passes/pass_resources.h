@@ -30,7 +30,8 @@ struct PassResources {
   //   largest  largest number of texels per axis of a 3D texture; 0: as many as the driver allows
   explicit PassResources(int largest);
 
-  // A volume on the graphics card, with the fields of its visible layers, whose surfaces rays search for.
+  // A label volume on the graphics card. Each layer (set of visible labels) has a smooth field, whose surface the rays
+  // search for.
   struct Body {
     std::weak_ptr<const LabelVolume> key;
     std::unique_ptr<VolumeTexture> volume;
@@ -41,7 +42,7 @@ struct PassResources {
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
-  // Returns the field of a layer. Computes it if it is missing or out of date.
+  // Returns the field of a layer, and first computes it if it is missing or out of date.
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
   // Uploads the inverse map of the posed body if needed; returns null if `map` is null.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
@@ -49,12 +50,12 @@ struct PassResources {
   // if no weights are shown.
   enum class Extent { Whole, InTime };
   WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
-  // Returns the hull of a layer in posed space, at which rays start; null if `map` is null.
+  // Returns the hull of a layer of the posed body. Rays start at the hull. Null if `map` is null.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;
-  int pictures_at_rest = 6;  // number of pictures that are averaged when nothing moves
+  int pictures_at_rest = 6;  // number of pictures that are averaged once nothing in the 3D view moves
   ShadePass shade;
   ComposePass compose;
   ArmaturePass armature;
@@ -73,7 +74,7 @@ struct PassResources {
   };
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Looks> looks_;
-  // Keyed by the number of atlases and the space.
+  // One pass for each number of atlas textures and each space (at rest or posed) in which rays march.
   std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;
 };
 

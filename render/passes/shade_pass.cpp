@@ -9,8 +9,8 @@ namespace limber::render {
 
 namespace {
 
-// Two adjacent pixels count as one surface if their rest positions are at most kJoined padded voxels plus kSlant pixel
-// sizes apart. The second term allows for surfaces seen at a slant.
+// Two adjacent pixels count as one surface if their rest positions are at most kJoined voxels plus kSlant pixel sizes
+// apart. The second term allows for surfaces seen at a slant.
 constexpr float kJoined = 3, kSlant = 6;
 
 }  // namespace
@@ -32,8 +32,8 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
-  // The triangle is drawn at the far plane. It passes the depth test only at pixels with the hull in front of the far
-  // plane.
+  // Covers the picture with a triangle at the far plane. Only pixels with the hull in front of the far plane pass the
+  // depth test, so that all others are skipped.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
@@ -58,7 +58,8 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
                                                                     : 0);
     program.set("u_joined", glm::vec2(kJoined, kSlant * 2 / float(buffer.size().x)) / place_step(volume));
   }
-  // Converts a unit normal in view axes to a vector in padded coordinates that is one brick long, whatever the spacing.
+  // The matrix converts a unit normal in view axes to a vector in padded coordinates that is one brick long, for any
+  // voxel spacing.
   const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);
   const double scale = kBrick / std::max({glm::length(to_view[0]), glm::length(to_view[1]), glm::length(to_view[2])});
   program.set("u_padded_from_view", glm::mat3(to_view * scale));

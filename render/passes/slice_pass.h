@@ -21,7 +21,7 @@ class SlicePass {
  public:
   SlicePass();
 
-  // Draws into the bound framebuffer. Where tissue is hidden, or there is air, the background remains.
+  // Draws into the bound framebuffer. Pixels of air or of hidden tissue keep the background.
   //   posed    the inverse map of the posed body; null: the body is at rest
   //   weights  weights to show instead of tissue colours; null: tissue colours
   void draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks,
@@ -29,7 +29,8 @@ class SlicePass {
             std::optional<Label> outlined, const glm::ivec2& size);
 
  private:
-  // Keyed by the number of atlases, whether the body is posed, and how the shader reads the weights.
+  // One program for each number of atlas textures, for a body at rest or posed, and for each way to read weights
+  // (empty: no weights are shown).
   std::map<std::tuple<int, bool, std::optional<WeightReading>>, std::unique_ptr<gl::Program>> programs_;
   gl::VertexArray nothing_;
 };

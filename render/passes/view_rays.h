@@ -17,17 +17,18 @@ struct ViewRays {
   glm::dvec3 base, base_x, base_y, toward, toward_x, toward_y;
   glm::dmat4 clip_from_padded;
   glm::dmat3 view_from_gradient;  // converts a gradient in padded coordinates to a vector in view axes (not normalized)
-  glm::dvec4 depth_of_padded;     // the depth of a padded point is z = dot(xyz, padded) + w
-  glm::dvec3 eye;                 // padded coordinates; orthographic: the viewing direction instead
-  // Returns a clip plane in padded coordinates: points p with dot(xyz, p) <= w stay visible.
+  glm::dvec4 depth_of_padded;     // the point `padded` has the depth dot(xyz, padded) + w, mm
+  glm::dvec3 eye;                 // position in padded coordinates; for an orthographic camera, the viewing direction
+  // Converts a clip plane to padded coordinates: points p with dot(xyz, p) <= w stay visible.
   glm::dvec4 padded_from_clip_plane(const glm::dvec3& point, const glm::dvec3& normal) const;
   glm::dmat4 padded_from_world;
   double nearest = 0;  // depth of the near plane, mm
   bool perspective = true;
-  // Offset of the position at which labels are read, voxels. The pictures that are averaged have different offsets,
-  // which blends the borders between labels.
+  // Offset of the position at which labels are read, voxels. Each of the averaged pictures has another offset, which
+  // blends the borders between labels.
   glm::vec3 label_shift{0};
-  // True: gradients are sampled at the corners of a mirrored tetrahedron; averaged pictures use both.
+  // True: gradients are sampled at the corners of the mirrored tetrahedron. Every other one of the averaged pictures
+  // does this.
   bool mirrored_taps = false;
 };
 
@@ -35,7 +36,7 @@ AffineTransform padded_from_world(const Grid& grid);
 
 // Computes the rays of a picture of `size` pixels.
 //   jitter     shift of the picture relative to the pixel grid, pixels
-//   low, high  box in padded coordinates that the depth range covers
+//   low, high  corners of a box in padded coordinates; the camera's depth range covers this box
 ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& size, const glm::dvec2& jitter,
                    const glm::vec3& low, const glm::vec3& high);
 

@@ -10,8 +10,8 @@ namespace limber::render {
 
 namespace {
 
-// Distance between a point and the positions at which the field is sampled for its gradient, voxels. It smooths the
-// steps between voxels without leaving the apron of a slot.
+// The gradient at a hit is computed from four samples of the field, this far from the hit along each axis, voxels. The
+// distance smooths the steps between voxels, and stays within the apron (2 voxels) of a block in its atlas.
 constexpr float kTap = 1.4f;
 
 std::string march_defines(int atlases, VolumePass::Space space) {
@@ -40,7 +40,7 @@ bool inside(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high
          glm::all(glm::lessThan(point, glm::dvec3(high) + margin));
 }
 
-// Returns whether the eye is within the hull's box. The eye then sees no front faces around it, so rays start at the
+// Returns true if the eye is within the hull's box. The eye then sees no front faces of the hull, so rays start at the
 // near plane.
 bool eye_inside(const Hull& hull, const ViewRays& rays) {
   if (!rays.perspective) return false;  // the depth range of an orthographic camera begins before the body
@@ -127,8 +127,7 @@ void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer
   const float far = 1, nothing[4] = {-kNothingDepth, -kNothingDepth, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, &far);
   glClearBufferfv(GL_COLOR, 0, nothing);
-  // A pixel whose depth is in front of the far plane is marked as covered by the hull; the depth itself does not
-  // matter.
+  // The hull only marks the pixels that it covers: any depth in front of the far plane will do.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glEnable(GL_BLEND);
@@ -158,8 +157,8 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   if (buffer.place) glClearBufferuiv(GL_COLOR, 3, label);
   if (hull.empty()) return;
 
-  // The triangle is drawn at the far plane. It passes the depth test only at pixels with the hull in front of the far
-  // plane.
+  // Covers the picture with a triangle at the far plane. Only pixels with the hull in front of the far plane pass the
+  // depth test, so that all others are skipped.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);

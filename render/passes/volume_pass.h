@@ -27,7 +27,7 @@
 
 namespace limber::render {
 
-inline constexpr float kNothingDepth = 1e30f;  // depth of a pixel that shows nothing of the volume
+inline constexpr float kNothingDepth = 1e30f;  // depth of a pixel where the ray misses the body
 
 // A rectangle of pixels [low, high); pixels are counted from the lower left corner.
 struct PixelRect {
@@ -45,10 +45,11 @@ class GBuffer {
 
   gl::Texture depth;  // R32F: mm from the eye along the viewing direction; kNothingDepth: no hit
   // RGB10_A2: unit normal in view axes, mapped to [0, 1]. Alpha is 0 for no hit, 1/3 for a surface, 2/3 for a surface
-  // in a fold of a posed body, and 1 for a cap (cut face).
+  // in a fold (where two parts of a posed body touch), and 1 for a cap (cut face).
   gl::Texture normal;
   gl::Texture label;  // R16UI: label of the hit
-  // RG32F: the depth where the ray first enters the hull, negated, and the depth where it finally leaves the hull.
+  // RG32F: the depth where the ray first enters the hull, negated, and the depth where it leaves the hull for the last
+  // time.
   gl::Texture range;
   gl::Texture hull_depth;
   // RGBA16UI: rest position of the hit in padded coordinates, in steps of place_step(). The last channel is 1 at a hit.
@@ -60,8 +61,8 @@ class GBuffer {
   glm::ivec2 size_{0};
 };
 
-// Returns the step in which GBuffer::place stores positions, padded voxels. It is the finest step for which 16 bits
-// cover the volume.
+// Returns the step, in padded voxels, between the positions that GBuffer::place can store. It is the finest step with
+// which 16 bits cover the volume.
 float place_step(const VolumeTexture& volume);
 
 class VolumePass {
@@ -69,15 +70,15 @@ class VolumePass {
   enum class Space { Rest, Posed };
   VolumePass(int atlases, Space space);
 
-  // Return the rectangle of the picture that a hull covers, or that a box in padded coordinates covers.
+  // These functions return the rectangle of the picture that a hull covers, or that a box in padded coordinates covers.
   static PixelRect covered(const Hull& hull, const ViewRays& rays, const glm::ivec2& size);
   static PixelRect covered(const glm::vec3& low, const glm::vec3& high, const ViewRays& rays, const glm::ivec2& size);
 
-  // Draws the hull, which gives the start and the end of every ray inside `rect`.
+  // Draws the hull into the buffer, and so stores where every ray inside `rect` starts and ends.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
   // Follows the rays inside `rect` until they hit a label of one layer (appearance_texture.h).
   //   field              the field of the layer
-  //   posed, posed_hull  null unless this pass is for posed space
+  //   posed, posed_hull  inverse map and hull of the posed body; null if the body is at rest
   void march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
              const PosedHull* posed_hull, const gl::Texture& looks, int layer, const Clip& clip, const ViewRays& rays,
              const GBuffer& buffer, const PixelRect& rect);

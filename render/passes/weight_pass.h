@@ -17,12 +17,12 @@ class WeightPass {
  public:
   WeightPass();
 
-  // Draws into GBuffer::weight inside `rect`. The buffer must have been made with `places`.
+  // Draws into GBuffer::weight inside `rect`. The buffer must have been resized with places = true.
   void draw(const VolumeTexture& volume, const WeightTexture& weights, const ViewRays& rays, const GBuffer& buffer,
             const PixelRect& rect);
 
  private:
-  // Keyed by number of atlases and reading.
+  // One program for each number of atlas textures and each way to read weights.
   std::map<std::pair<int, WeightReading>, std::unique_ptr<gl::Program>> programs_;
   gl::VertexArray nothing_;
 };

@@ -71,7 +71,8 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const glm::dvec3&
   const double depth = -(view_from_world(camera) * glm::dvec4(middle, 1)).z;
   const bool perspective = camera.projection == Projection::Perspective;
   const double reach = std::max(depth + radius, 1e-3) * 1.001;
-  // With a near plane of a ten-thousandth of the far plane, 24 bits of depth are precise enough everywhere.
+  // The near plane is at least a ten-thousandth of the far plane's depth away. 24 bits of depth are then precise enough
+  // everywhere.
   const double nearest = perspective ? std::max(depth - radius * 1.001, reach * 1e-4) : depth - radius * 1.001;
   glm::dmat4 clip(0);
   const double height = perspective ? std::tan(camera.field_of_view / 2) : half_height(camera);

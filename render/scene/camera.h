@@ -14,7 +14,7 @@ struct Camera {
   glm::dvec3 centre{0};                    // the point about which the camera orbits
   double distance = 1000;                  // from the eye to the centre, mm
   glm::dquat world_from_view{1, 0, 0, 0};  // view axes: x right, y up, z towards the eye
-  double field_of_view = 0.6911;           // vertical, radians (50 mm lens of a 36 mm sensor at 3:2)
+  double field_of_view = 0.6911;           // vertical, radians (50 mm lens, picture 36 mm high)
   Projection projection = Projection::Perspective;
 
   bool operator==(const Camera&) const = default;
@@ -43,13 +43,14 @@ Ray ray_through(const Camera& camera, const glm::dvec2& pixel, const glm::ivec2&
 bool project(const Camera& camera, const glm::dvec3& point, const glm::ivec2& size, glm::dvec2& pixel);
 
 // These functions return the camera after a motion of the mouse or a key, in pixels of a picture of the given size.
-// orbited() turns the camera about its centre: x about the world's z axis, y about the view's x axis.
+// orbited() turns the camera about its centre: a horizontal motion turns it about the world's z axis, a vertical motion
+// about the view's x axis.
 Camera orbited(const Camera& camera, const glm::dvec2& pixels);
 Camera panned(const Camera& camera, const glm::dvec2& pixels, const glm::ivec2& size);
 Camera zoomed(const Camera& camera, double factor);  // multiplies the distance, which stays within [1e-2, 1e6] mm
-// Zooms about a pixel: the point at the centre's depth that this pixel shows stays at the pixel.
+// Zooms about a pixel. The point at the depth of the camera's centre that this pixel shows stays at the pixel.
 Camera zoomed(const Camera& camera, double factor, const glm::dvec2& pixel, const glm::ivec2& size);
-// Turns the view about the eye, by the same angles as orbited(). The eye stays, and the centre moves.
+// Turns the view about the eye, by the angles by which orbited() would turn it. The eye stays, and the centre moves.
 Camera looked_round(const Camera& camera, const glm::dvec2& pixels);
 
 }  // namespace limber::render

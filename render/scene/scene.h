@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The description of a picture as a value. The editor and the command line fill a Scene for each picture, and the
-// passes draw it. The scene shares its data with the document. If a pointer equals that of the last picture, nothing
-// needs to be uploaded again.
+// passes draw it. The scene shares its data with the document by pointers. Data that have the same pointer as in the
+// last picture are not uploaded again.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct LabelLook {
 
   bool operator==(const LabelLook&) const = default;
 };
-using LabelLooks = std::vector<LabelLook>;  // indexed by label; labels beyond the end are invisible
+using LabelLooks = std::vector<LabelLook>;  // one look for each label; labels beyond the end are invisible
 
 struct BoneLook {
   bool selected = false, active = false, hovered = false;
@@ -54,10 +54,10 @@ struct BoneHit {
   double depth;  // depth of the axis at the pixel, mm from the eye along the viewing direction
 };
 
-// A box and a plane that cut the volume open. Cut faces show the tissues without shading.
+// A box and a plane that cut the volume open. The cut faces show the tissues without shading.
 struct Clip {
   std::optional<std::array<glm::dvec3, 2>> box;  // low and high corner in the volume's voxel coordinates
-  // Point and unit normal, world; the side to which the normal points is hidden.
+  // A point and the unit normal of the plane, world, mm. The side to which the normal points is hidden.
   std::optional<std::array<glm::dvec3, 2>> plane;
 };
 
@@ -66,8 +66,8 @@ enum class WeightDisplay {
   Active,    // the weight of the active bone; weights of exactly 0 and exactly 1 have special colours
   Dominant,  // the bone with the largest weight
   Mixed,     // all bones of the voxel, with their colours mixed by weight
-  Count,     // the number of bones that the voxel follows
-  Field,     // no weights, but a given colour for each voxel, for any measured quantity
+  Count,     // the number of bones that have weight in the voxel
+  Field,     // a given colour for each voxel (ShownWeights::field) instead of weights, for any measured quantity
 };
 struct ShownWeights {
   std::shared_ptr<const SkinWeights> weights;  // null for WeightDisplay::Field
@@ -75,9 +75,9 @@ struct ShownWeights {
   WeightDisplay display = WeightDisplay::Active;
   int bone = -1;                                           // the active bone, an index in the weights' bones; -1: none
   std::shared_ptr<const std::vector<glm::vec3>> swatches;  // colour of each bone of the weights, sRGB
-  // One byte per voxel of `tissue`; colours of voxels with 0 are dimmed. Null: no colours are dimmed.
+  // One byte for each voxel of `tissue`. Voxels with 0 have dimmed colours. Null: no colours are dimmed.
   std::shared_ptr<const std::vector<std::uint8_t>> region;
-  // Colour of each voxel of `tissue`, sRGB; only for WeightDisplay::Field.
+  // Colour of each voxel of `tissue`, sRGB; given only for WeightDisplay::Field.
   std::shared_ptr<const std::vector<glm::u8vec3>> field = nullptr;
   // True: lines are drawn on the colours. For Active the lines mark weights of a quarter, a half and three quarters.
   // For other displays they are borders between different colours.
@@ -96,7 +96,7 @@ struct CutMesh {
 
 struct Scene {
   std::shared_ptr<const LabelVolume> volume;
-  // Inverse map of the posed body, from posed to rest positions; null: the volume is drawn at rest.
+  // Inverse map of the posed body, from posed to rest positions. Null: the volume is drawn at rest.
   std::shared_ptr<const PreviewMap> pose;
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;

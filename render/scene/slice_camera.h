@@ -8,7 +8,7 @@ namespace limber::render {
 enum class SliceAxis { Sagittal, Coronal, Axial };  // the slice's normal is x, y or z of the world
 enum class SliceDisplay { Labels, Outline };
 
-// The position of a slice and the region of it that the picture shows.
+// The position of a slice, and the region of the slice that the picture shows.
 struct SliceCamera {
   SliceAxis axis = SliceAxis::Axial;
   glm::dvec3 centre{0};  // world point at the picture's centre, mm; the slice passes through it

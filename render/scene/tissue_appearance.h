@@ -8,8 +8,8 @@
 
 namespace limber::render {
 
-// Returns whether a tissue is drawn solid in X-ray. Bone, cartilage, vessels, nerves and organs are; the flesh around
-// them is not.
+// Returns true if a tissue is drawn solid in X-ray: bone, cartilage, vessels, nerves and organs, but not the flesh
+// around them.
 bool stays_solid(TissueKind kind);
 
 LabelLooks looks_of(const TissueTable& tissues, const Visibility& visibility = {});

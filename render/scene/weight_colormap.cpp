@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<glm::vec3, 12> kSwatches = {srgb(0x8FBEFF), srgb(0x7FC97F), srgb(0xD3B3F0), srgb(0xE8A0A8),
                                                  srgb(0x6CC5C0), srgb(0xE3D26F), srgb(0xC9A27C), srgb(0x9FB4C8),
                                                  srgb(0xB9D98B), srgb(0xE7B3D1), srgb(0x8CD0EC), srgb(0xD8B08C)};
-constexpr float kDarkest = 0.5f;  // brightness of the mixed colour of four bones with equal weights
+constexpr float kDarkest = 0.5f;  // factor [0, 1] on the mixed colour of four bones with equal weights
 
 }  // namespace
 
@@ -42,7 +42,7 @@ glm::vec3 mixed_colour(const Influence& influence, const std::vector<glm::vec3>&
 std::vector<glm::vec3> bone_swatches(const Armature& armature) {
   const int count = static_cast<int>(kSwatches.size());
   std::vector<int> chosen(armature.bones.size());
-  // Colours that are used already, for the children of each bone.
+  // For each bone: the indices of the colours that its children already have.
   std::vector<std::vector<int>> taken(armature.bones.size());
   for (std::size_t bone = 0; bone < armature.bones.size(); ++bone) {
     const int parent = armature.bones[bone].parent;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws a line with antialiased edges; if `u_off` is positive, only where it lies on the body's surface.
+// Draws a line with antialiased edges. If `u_off` is positive, the line is drawn only where it lies on the body's
+// surface, within u_off mm in depth.
 in float depth, across;
 uniform sampler2D u_depth;
 uniform vec2 u_size;

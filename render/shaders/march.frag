@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Follows the ray of each pixel to the surface of the visible tissue. Positions s along a ray are in voxels of the axis
-// along which the ray moves fastest, so that no step of 1 skips a layer of voxels.
+// Follows the ray of each pixel to the surface of the visible tissue. A position s along a ray counts voxels along the
+// axis on which the ray moves fastest, so that no step of 1 skips a layer of voxels.
 #include "rays.glsl"
 #include "atlases.glsl"
 #ifdef POSED
@@ -13,7 +13,7 @@ uniform float u_nearest;         // depth at which rays start if the eye is insi
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
 uniform uint u_layer;
-uniform vec3 u_low, u_high;      // the box of the hull, cut by the clip box
+uniform vec3 u_low, u_high;  // box of the hull, intersected with the clip box
 uniform vec4 u_plane;            // points p with dot(xyz, p) <= w stay visible
 uniform bool u_clipped;
 uniform mat3 u_view_from_gradient;
@@ -24,25 +24,25 @@ layout(location = 2) out uint out_label;
 layout(location = 3) out uvec4 out_place;
 
 #ifdef POSED
-uniform usampler3D u_near_cubes;   // the map's cubes that lead near the set
+uniform usampler3D u_near_cubes;  // states of the map's cubes; 0 for those far from the layer's labels
 uniform ivec3 u_blocks;
-const float kStretch = 3.0;         // length of the pieces of rays that are tested for straightness, nodes
+const float kStretch = 3.0;  // length of the pieces of a ray that are tested for straightness, steps between nodes
 // Scales u_tap to half a node, so that directions change smoothly from cube to cube.
 const float kNodeTap = 0.5 / 1.4;
 #endif
 
-uniform float u_tap;               // distance of gradient samples, voxels; a negative one mirrors the tetrahedron
+uniform float u_tap;  // distance of gradient samples along each axis, voxels; negative: mirrored tetrahedron
 uniform vec3 u_label_shift;
 uniform float u_places;            // steps of out_place per padded voxel
 
 const float kSurface = float(SURFACE) / 255.0;
-const float kBand = 72.0 / 255.0;           // from this value on the surface may be near
+const float kBand = 72.0 / 255.0;  // field value from which a ray reads filtered values, since the surface may be near
 const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
 Slot slot_of(ivec3 block) {
 #ifdef POSED
-  // A piece of a ray at rest may leave the blocks.
+  // A piece of a ray, converted to rest positions, may leave the blocks.
   ivec3 inside = clamp(block, ivec3(0), u_blocks - 1);
   uvec4 entry = texelFetch(u_index, inside, 0);
   if (inside != block) entry.w = 0u;
@@ -52,14 +52,15 @@ Slot slot_of(ivec3 block) {
   return Slot(ivec3(entry.xyz) * SLOT + APRON - block * BLOCK, entry.w);
 }
 
-// Returns the slot of p's own block, since p may have left the block in which the march found it.
+// Returns the slot of the block that contains p. It may differ from the block in which the march found p.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
-// Where a ray hits the surface (s = -1e30: it does not), the value there, and the last position and value before it.
+// Where a ray hits the surface (s = -1e30: nowhere), the field's value there, and the last position before it with its
+// value.
 struct Meeting { float s, value, s_before, value_before; };
 
-// Marches from s to s_end along a straight line at rest, base + d s, on which a voxel is 1 / rate long. Moves s on, and
-// stores a hit in `found`, never before s_start.
+// Marches from s to s_end along the straight line base + d s in rest positions, on which a voxel has the length 1 /
+// rate. Moves s on, and stores a hit in `found`, never before s_start.
 void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
   float voxel = 1.0 / rate;
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
@@ -67,9 +68,9 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
   vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
   vec3 ahead = sign(safe) * 0.02;  // moves on to the next block even where the ray runs along a face
   for (int tries = 0; tries < 1024 && s < s_end && found.s < -1e29; ++tries) {
-    // Goes on, block by block, to where the surface may be near.
+    // Moves on, block by block, until the surface may be near.
     Slot slot = Slot(ivec3(0), 0u);
-    vec3 at;  // the base in the slot
+    vec3 at;  // the line's base in texels of the slot
     float value = 0.0;
     for (int blocks = 0; blocks < 1024 && s < s_end; ++blocks) {
       vec3 p = base + d * s;
@@ -87,8 +88,9 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
       s = max(s, s_leave);
     }
     if (value < kBand) break;
-    // Starts half a voxel before, so that a surface is not hit from its inside. The field rises by about 3/8 per voxel,
-    // which gives the step; the step is short enough not to skip a thread. The apron is wide enough for this.
+    // Starts half a voxel earlier, so that a surface is not hit from its inside. The field rises by about 3/8 per
+    // voxel, from which the next step is estimated. The step is short enough not to skip a thread, and the apron of the
+    // slot is wide enough for all reads.
     float s_near = max(s - 0.5 * voxel, s_start), s_far = min(s + 1.5 * voxel, s_end);
     found.value_before = 0.0;
     found.s_before = s_near - 0.5 * voxel;
@@ -136,7 +138,7 @@ void main() {
   vec3 rest_base = vec3(0.0), rest_d = d;
   Sheet sheet = Sheet(false, vec3(0.0), vec3(0.0));
   for (int pieces = 0; pieces < 1024 && s < s_end && met.s < -1e29; ++pieces) {
-    // Finds the next cube that can hold the surface, or half a cube beside a fold.
+    // Finds the next cube of the map that can contain the surface; beside a fold, the next octant of a cube.
     uint cube = 0u;
     vec3 low;
     float s_leave, size = 1.0;
@@ -150,7 +152,7 @@ void main() {
       if (cube != 0u || s_leave >= s_end) break;
       s = s_leave;
     }
-    // Where the map is linear, as in limbs that turn as a whole, one piece runs through several cubes.
+    // Where the map is linear, as in limbs that turn rigidly, one piece of the ray runs through several cubes.
     float s_far = s + kStretch / u_node_scale;
     sheet = sheet_at(low + 0.5 * size, cube);
     vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);
@@ -163,7 +165,7 @@ void main() {
     vec3 rest_speed = abs(rest_d);
     float rate = max(max(max(rest_speed.x, rest_speed.y), rest_speed.z), 0.1);
     float s_to = min(s_leave, s_end);
-    if (cube >= kBordered) {  // keeps only the part within the border
+    if (cube >= kBordered) {  // keeps only the part of the piece within the sheet's border
       float first = apart_on(sheet, node_base + node_d * s), last = apart_on(sheet, node_base + node_d * s_leave),
             at = s + (s_leave - s) * first / (first - last);
       if (last < 0.0) s_to = first < 0.0 ? s : min(s_to, at);
@@ -192,9 +194,9 @@ void main() {
   vec3 p = base + d * found;
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
-  // The rest of this function works at rest. The matrix that turns directions is computed from the map's differences
-  // between the four corners of a tetrahedron. A mirrored sheet is defined only in the cube on the other side of its
-  // node, so it is sampled around that cube's centre.
+  // The rest of this function works in rest positions. The matrix that turns directions is computed from differences
+  // between the rest positions at the four corners of a tetrahedron. A mirrored sheet is defined only in the cube on
+  // the other side of its node, so the tetrahedron lies around the centre of that cube.
   vec3 node = node_of(p);
   if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
   vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap),
@@ -226,9 +228,9 @@ void main() {
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
 
-  // Finds the first label of the set by walking inward from a little outside the surface: first through air, then
-  // through hidden tissue. A diagonal step out of air also looks at the voxels beside it, so that a skin one voxel
-  // thick has no gaps.
+  // Finds the first label of the layer by walking inward from a little outside the surface, first through air, then
+  // through hidden tissue. After a diagonal step out of air, the voxels beside the step are also read, so that a skin
+  // one voxel thick has no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = label_at(slot.atlas, ivec3(inside));

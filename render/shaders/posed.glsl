@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Converts posed positions to rest positions by the inverse map of a posed body (core/deform/preview_map.h). Where two
-// parts of the body meet, the map has two sheets with a fold between them.
+// parts of the body touch, the map has two sheets (smooth pieces) with a fold between them.
 uniform sampler3D u_map;           // rest positions at the nodes, as fractions of the map's extent
-uniform sampler3D u_apart;         // at rest, distance of the nodes to the tissue beyond the border of their sheet
-uniform usampler3D u_cubes;        // kinds of the cubes between nodes n and n + 1
+uniform sampler3D u_apart;  // at rest, distance from a node to tissue beyond its sheet's border; 1 is kFarApart
+uniform usampler3D u_cubes;  // state of the cube between nodes n and n + 1 (PreviewMap::cubes)
 uniform vec3 u_node_offset;
 uniform float u_node_scale;        // nodes per padded voxel
-uniform vec3 u_rest_offset, u_rest_scale;  // from a fraction to a padded rest position
+uniform vec3 u_rest_offset, u_rest_scale;  // convert a fraction of the map's extent to a padded rest position
 uniform vec3 u_map_texel;
 uniform ivec3 u_map_size;
-uniform float u_steepest;          // largest change of the rest position over half a node of one sheet, padded voxels
+uniform float u_steepest;  // largest change of the rest position over half a node step within one sheet, padded voxels
 
 const vec3 kNowhere = vec3(-1e6);
 const uint kBordered = 64u, kBroken = 128u;
-const float kFarApart = 127.0 / 63.0;  // largest distance that u_apart can hold, steps between nodes
+const float kFarApart = 127.0 / 63.0;  // largest distance that u_apart can store, in steps between nodes
 
 vec3 node_of(vec3 posed) { return posed * u_node_scale + u_node_offset; }
 
@@ -23,8 +23,9 @@ uint cube_in(usampler3D cubes, vec3 node) {
   return texelFetch(cubes, cube, 0).r;
 }
 
-// The sheet of a position. Beside a fold it extrapolates: it reads the nearest node and the position as far on this
-// node's other side, and mirrors the difference. This avoids branches, since a software driver executes both.
+// The sheet of a position. Beside a fold its rest positions are extrapolated: the position is mirrored through the
+// nearest node, and the difference between the rest positions of node and mirrored position is added to the node's. All
+// cases share this code, since a software driver executes both branches.
 struct Sheet { bool mirrored; vec3 node, rest; };
 Sheet sheet_at(vec3 node, uint cube) {
   vec3 nearest = floor(node + 0.5);
@@ -41,8 +42,8 @@ vec3 rest_on(Sheet sheet, vec3 node) {
   return sheet.mirrored && one_sheet ? rest + slope : rest;
 }
 
-// Returns a measure of the distance to the border of the sheet, below zero beyond it. On a mirrored sheet it is a lower
-// bound: the node's distance to the border, less the distance from the node.
+// Returns a measure of the distance to the border of the sheet, negative beyond the border. For a mirrored sheet the
+// measure is a lower bound: the node's distance to the border, minus the distance from the node.
 float apart_on(Sheet sheet, vec3 node) {
   if (sheet.mirrored) {
     float apart = texelFetch(u_apart, ivec3(sheet.node), 0).r * kFarApart;
@@ -51,7 +52,7 @@ float apart_on(Sheet sheet, vec3 node) {
   return textureLod(u_apart, (node + 0.5) * u_map_texel, 0.0).r;
 }
 
-// Returns the rest position of a posed position, both in padded coordinates; kNowhere outside the map.
+// Converts a posed position to its rest position, both in padded coordinates. Returns kNowhere outside the map.
 vec3 rest_of(vec3 posed) {
   vec3 node = node_of(posed);
   uint cube = cube_in(u_cubes, node);

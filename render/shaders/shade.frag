@@ -15,14 +15,14 @@ uniform uint u_layer;
 layout(location = 0) out vec4 colour;
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
-const float kFold = 0.7;  // openness in the crease of a fold
+const float kFold = 0.7;  // openness() in the crease of a fold, where two parts of a posed body touch
 
 // Returns how open a position is: 1 on a flat or convex surface, less in a crease.
 float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
   vec3 out_of = u_padded_from_view * normal;
 #ifdef POSED
-  // Converts position and direction to rest; the direction is turned as the map turns a short step inward.
+  // Converts position and direction to rest. The direction is turned in the way that the map turns a short step inward.
   vec3 rest = rest_of(p);
   vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
   if (length(turned) > 4.0 * length(out_of)) return kFold;  // the step crossed a fold
@@ -52,18 +52,18 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
 #ifdef WEIGHTS
 uniform sampler2D u_weight;
 uniform usampler2D u_place;
-uniform int u_lines;      // 0: none, 1: between ranges of the weight, 2: between colours
-// Largest distance of the rest positions of adjacent pixels on one surface, in steps of u_place: a constant, and a
-// factor of the pixel's size.
+uniform int u_lines;  // lines to draw; 0: none, 1: between ranges of the weight, 2: between colours
+// Two adjacent pixels lie on one surface if their rest positions differ by less than u_joined.x + u_joined.y * the size
+// of a pixel, in steps of u_place.
 uniform vec2 u_joined;
 const float kLine = 0.55;
 
-// Returns whether a line may run between two pixels with these weight colours.
+// Returns true if a line runs between pixels with these weight colours.
 bool differs(vec4 weight, vec4 other) {
   return other.a != 0.0 && (u_lines == 1 ? other.a != weight.a : other.rgb != weight.rgb);
 }
 
-// Returns whether two pixels lie on one surface.
+// Returns true if two pixels lie on one surface.
 bool joined(ivec2 at, ivec2 beside) {
   vec3 apart = vec3(texelFetch(u_place, at, 0).xyz) - vec3(texelFetch(u_place, beside, 0).xyz);
   float most = u_joined.x + u_joined.y * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);

@@ -12,7 +12,7 @@
 in vec2 ndc;
 uniform usampler3D u_index;
 uniform usampler2D u_looks;
-uniform vec3 u_middle, u_right, u_down;   // padded coordinates: the centre; the steps of one pixel
+uniform vec3 u_middle, u_right, u_down;  // padded coordinates of the picture's centre, and the steps of one pixel
 uniform vec3 u_high;
 uniform vec2 u_size;
 uniform bool u_outline;
@@ -42,13 +42,13 @@ uint label_at_place(vec3 p) {
 uvec4 look_of(uint label) { return texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0); }
 
 #ifdef WEIGHTS
-// Returns how much of the pixel is covered by lines, [0, 1].
+// Returns the share of the pixel that lines cover, [0, 1].
 float contour(vec4 texel, vec3 right, vec3 below) {
 #ifdef RAMP
   float level = texel.r / max(texel.a, 1e-3);
   vec2 slope = abs(vec2(dFdx(level), dFdy(level)));
   float off = min(min(abs(level - 0.25), abs(level - 0.5)), abs(level - 0.75));
-  // Where the level is steep there is a fold or the border of the tissue, and no line.
+  // A steep level means a fold or the border of the tissue, where no line is drawn.
   return texel.a > 0.0 && all(lessThan(slope, vec2(0.3))) ? clamp(1.1 - off / max(length(slope), 1e-4), 0.0, 1.0) : 0.0;
 #elif defined(VOXELS)
   vec4 to_right = weights_at(right), to_below = weights_at(below);

@@ -66,10 +66,10 @@ vec4 weights_at(vec3 p) {
   return entry.w == 0u ? vec4(0.0) : texel;
 }
 
-// Returns the colour of a texel. Alpha is 0 without tissue, else n / 255 for the range n, 1 to 4, between the contours
-// of the active bone's weight.
+// Returns the colour of a texel. Alpha is 0 without tissue, else n / 255, where n from 1 to 4 is the range between
+// contours in which the active bone's weight lies.
 vec4 weight_colour(vec4 texel) {
-  vec3 read = texel.rgb / max(texel.a, 1e-3);  // filtered values count tissue alone
+  vec3 read = texel.rgb / max(texel.a, 1e-3);  // undoes the filter's mixing with air, where all channels are 0
 #ifdef RAMP
   vec3 colour = read.g > 0.5 ? EXACT_ZERO : read.b > 0.5 ? EXACT_ONE : weight_ramp(read.r);
   float range = 1.0 + step(0.25, read.r) + step(0.5, read.r) + step(0.75, read.r);

@@ -21,7 +21,7 @@ bool is_seen(const LabelLook& look, Display display) {
   return look.visible && (display != Display::Tissue || look.opacity > 0);
 }
 
-// Returns, for each label, the index of the last layer that contains it.
+// Returns, for each label, the index of the last layer (set of labels) that contains it.
 std::vector<int> last_layers(const LabelLooks& looks, Display display, const std::vector<float>& exposure) {
   std::vector<int> layer(kLabels, 0);
   const size_t count = std::min(looks.size(), kLabels);
@@ -40,8 +40,8 @@ std::vector<int> last_layers(const LabelLooks& looks, Display display, const std
     if (looks[a].opacity != looks[b].opacity) return looks[a].opacity < looks[b].opacity;
     return exposure[a] > exposure[b];
   });
-  // Each transparent label gets its own layer. If there are more labels than layers, the labels are spread over the
-  // layers evenly.
+  // Each transparent label gets its own layer. If there are more of these labels than layers, they are spread evenly
+  // over the layers.
   const size_t room = kMostLayers - (any_opaque ? 1 : 0), used = std::min(room, clear.size());
   for (size_t i = 0; i < clear.size(); ++i) layer[clear[i]] = static_cast<int>(i * used / clear.size());
   for (size_t label = 1; label < count; ++label)

@@ -23,8 +23,9 @@ class LooksTexture {
   //             inner tissues
   LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
 
-  // Returns a texture of 256 x 256 texels in RGBA16UI; label = x + 256 y. RGB is the label's colour in 1/255. Alpha has
-  // 1 + the label's last layer in bits 0 to 2 (0: invisible), and the opacity in 1/255 in the bits above.
+  // Returns a texture of 256 x 256 texels in RGBA16UI; label = x + 256 y. RGB is the label's colour in 1/255. Bits 0 to
+  // 2 of alpha are 1 + the index of the last layer that contains the label (0: the label is invisible). The bits above
+  // are its opacity in 1/255.
   const gl::Texture& texture() const { return texture_; }
   const std::vector<LabelSet>& layers() const { return layers_; }
 

@@ -11,11 +11,11 @@ namespace limber::render {
 
 namespace {
 
-// Marks every block within kBrick voxels of a tissue voxel. These are all blocks that touch the brick of the voxel, or
-// one of the bricks around it.
+// Marks every block within kBrick voxels of a tissue voxel: all blocks that touch the voxel's brick, or one of the 26
+// bricks around that brick.
 void mark_blocks(const LabelVolume& volume, const BlockLayout& layout, std::vector<std::uint8_t>& marked) {
   const glm::ivec3 size = volume.grid.size;
-  // Numbers of bricks without the padding, which is one brick wide.
+  // Number of bricks along each axis, without the padding (one brick on each side).
   const glm::ivec3 tissue_bricks = (size + kBrick - 1) / kBrick;
   std::vector<std::uint8_t> tissue(static_cast<size_t>(tissue_bricks.x) * tissue_bricks.y * tissue_bricks.z);
   parallel_for(tissue_bricks.z, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -36,8 +36,8 @@ void mark_blocks(const LabelVolume& volume, const BlockLayout& layout, std::vect
     for (int y = 0; y < tissue_bricks.y; ++y)
       for (int x = 0; x < tissue_bricks.x; ++x, ++i) {
         if (!tissue[i]) continue;
-        // Brick b of the unpadded grid is brick b + 1 of the padded grid. With its neighbours, it covers the bricks
-        // from b to b + 2.
+        // Brick b of the unpadded grid is brick b + 1 of the padded grid. The brick and its neighbours are therefore
+        // the bricks from b to b + 2 of the padded grid.
         const glm::ivec3 low = glm::ivec3(x, y, z) / kBricksPerBlock;
         const glm::ivec3 high = glm::min((glm::ivec3(x, y, z) + 2) / kBricksPerBlock, layout.blocks - 1);
         for (int c = low.z; c <= high.z; ++c)
@@ -82,7 +82,8 @@ BlockLayout block_layout(const LabelVolume& volume) {
 }
 
 bool place_slots(BlockLayout& layout, int largest_texture) {
-  const int across = std::min(largest_texture / kSlot, 255);  // the index texture stores slot positions as bytes
+  // Largest number of slots per axis of an atlas. It is limited since the index texture stores slot positions as bytes.
+  const int across = std::min(largest_texture / kSlot, 255);
   const int count = std::max(1, static_cast<int>(layout.block_of_slot.size()));
   if (across == 0 || glm::any(glm::greaterThan(layout.blocks, glm::ivec3(largest_texture)))) return false;
   const int side = std::clamp(static_cast<int>(std::ceil(std::cbrt(double(count)))), 1, across);

@@ -4,12 +4,13 @@
 // The grid is padded by kPad voxels on each side and divided into blocks of 32^3 voxels. A block with tissue in or near
 // it gets a slot of 36^3 texels in an atlas. An atlas is a 3D texture within the size limit of the driver. A slot has
 // the block's voxels and an apron of 2 voxels on each side, so that filtered reads and gradients never leave the slot.
-// An index texture, with one texel per block, stores the position of the block's slot. If one atlas is too small, there
-// are up to kMostAtlases. If these are too small, the volume is drawn at a coarser resolution.
+// An index texture, with one texel per block, stores the position of the block's slot. A volume that does not fit in
+// one atlas is spread over up to kMostAtlases. A volume that does not fit in these either is drawn at a coarser
+// resolution.
 //
 // Blocks are divided into bricks of 4^3 voxels. Rays skip empty bricks, and the hull of a body is made of bricks.
 //
-// Padded coordinates: voxel v covers [v + kPad, v + kPad + 1), its centre at v + kPad + 0.5.
+// Padded coordinates: voxel v covers [v + kPad, v + kPad + 1), and its centre is at v + kPad + 0.5.
 #pragma once
 
 #include <cstdint>
@@ -45,13 +46,14 @@ struct BlockLayout {
   }
   int slots_per_atlas() const { return slots.x * slots.y * slots.z; }
   int atlas_of(int slot) const { return slot / slots_per_atlas(); }
-  glm::ivec3 place_of(int slot) const;  // position of a slot in its atlas, in slots
+  glm::ivec3 place_of(int slot) const;  // position of a slot in its atlas, counted in slots
 };
 
-// Returns the layout: each block that has tissue within kBrick voxels gets a slot.
+// Returns the blocks and slots of a volume: each block that has tissue within kBrick voxels gets a slot.
 BlockLayout block_layout(const LabelVolume& volume);
 
-// Arranges the slots in atlases. Returns false when they do not fit in textures with largest_texture texels per axis.
+// Arranges the slots in atlases. Returns false when they do not fit in kMostAtlases textures with largest_texture
+// texels per axis.
 bool place_slots(BlockLayout& layout, int largest_texture);
 
 // Returns the volume at half its resolution: each voxel gets the most frequent tissue of 2^3 voxels, or air if more

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The hull of a body: the outer faces of the bricks in which rays can hit the body. The hull is drawn first and gives
-// each ray its start. Pixels that it does not cover cost no work.
+// The hull of a body: the outer faces of the bricks (or of the cubes of a posed body's inverse map) in which rays can
+// hit the body. The hull is drawn first and gives each ray its start. Pixels that the hull does not cover cost no work.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ namespace limber::render {
 class Hull {
  public:
   struct Faces {
-    std::vector<glm::u16vec4> corners;   // position in bricks; the last component is 1
+    std::vector<glm::u16vec4> corners;   // whole numbers of bricks or cubes; the last component is 1
     std::vector<std::uint32_t> indices;  // two triangles per face, counter-clockwise when seen from outside
   };
 
   Hull();
 
-  // Uploads the faces. The padded coordinates (brick_atlas.h) of a corner are offset + scale * corner.
+  // Uploads the faces. A corner has the padded coordinates (brick_atlas.h) offset + scale * corner.
   void upload(const Faces& faces, double scale, const glm::dvec3& offset);
   void draw() const;
 

@@ -19,8 +19,8 @@ constexpr Format3D kNodes = {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, true};
 constexpr Format3D kApart = {GL_R8_SNORM, GL_RED, GL_BYTE, true};
 constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
 
-// Uploads the slices (z layers) that differ from the uploaded ones; consecutive slices are uploaded together.
-//   before  the texels that are on the graphics card, of the same size; null: none
+// Uploads the slices (z layers) that differ from the uploaded ones. Consecutive slices are uploaded together.
+//   before  the texels that are on the graphics card now, of the same size; null: none are
 template <class Texel>
 void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const std::vector<Texel>& texels,
            const std::vector<Texel>* before) {
@@ -40,9 +40,9 @@ void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& f
   }
 }
 
-// Returns the size to allocate for a texture. The maps grow and shrink from pose to pose, so textures never shrink.
-// Sizes that are powers of two are avoided: when an axis becomes a power of two, a software driver compiles its
-// programs again, which takes as long as drawing many pictures.
+// Returns the size to allocate for a texture. The maps grow and shrink from pose to pose, so a texture grows but never
+// shrinks. Sizes that are powers of two are avoided: when an axis becomes a power of two, a software driver compiles
+// its programs again, which takes as long as drawing many pictures.
 glm::ivec3 roomier(glm::ivec3 room, const glm::ivec3& size, int largest_texture) {
   for (int axis = 0; axis < 3; ++axis) {
     room[axis] = std::max(room[axis], size[axis]);
@@ -115,8 +115,9 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
     for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
       holds[i] = PreviewMap::kNothing;
       if (map.cubes[i] == PreviewMap::kNothing) continue;
-      // Beside a fold, positions that are mirrored at the fold lie outside the box of the nodes. Elsewhere the margin
-      // allows for the pieces into which rays are divided, which are a little straighter than the map.
+      // Rest positions in a cube can lie outside the bounding box of its nodes by this margin. Beside a fold they are
+      // extrapolated from the nearest node. Elsewhere a ray is divided into straight pieces, while the map is slightly
+      // curved.
       const float margin = map.cubes[i] >= PreviewMap::kBroken ? float(map.step / halving) : 0.25f;
       const glm::vec3 low(map.reach[i].low), high(map.reach[i].high);
       if (field.may_be_met(low * scale + offset - margin, high * scale + offset + margin)) holds[i] = map.cubes[i];

@@ -27,8 +27,8 @@ class PosedTexture {
   void upload(const std::shared_ptr<const PreviewMap>& map, int largest_texture);
   const std::shared_ptr<const PreviewMap>& map() const { return map_; }
 
-  // Sets the uniforms that shaders/posed.glsl declares, with textures on the units from `first` on. Returns the next
-  // free unit.
+  // Sets the uniforms that shaders/posed.glsl declares, and binds the textures to the texture units from `first` on.
+  // Returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
  private:
@@ -43,18 +43,19 @@ class PosedHull {
  public:
   PosedHull() : cubes_(gl::Texture::create()) {}
 
-  // Computes cubes and hull again if the map or the field has changed. Throws Error when the driver has no memory for
-  // them.
+  // Computes the cubes and the hull again if the map or the field has changed. Throws Error when the driver has no
+  // memory for them.
   void update(const std::shared_ptr<const PreviewMap>& map, const VolumeTexture& volume, const VisibleField& field);
   const Hull& hull() const { return hull_; }
-  // Returns the map's cubes (PreviewMap::cubes) as a texture; cubes far from the field's labels are kNothing.
+  // Returns the states of the map's cubes (PreviewMap::cubes) as a texture. Cubes far from the field's labels have the
+  // state kNothing.
   const gl::Texture& cubes() const { return cubes_; }
 
  private:
   Hull hull_;
   Hull::Faces faces_;
   gl::Texture cubes_;
-  std::array<std::vector<std::uint8_t>, 2> holds_;  // contents of cubes_: those uploaded, and those of the next upload
+  std::array<std::vector<std::uint8_t>, 2> holds_;  // states of cubes_: those uploaded, and those of the next upload
   glm::ivec3 room_{0}, holds_size_{0};
   std::shared_ptr<const PreviewMap> map_;
   int revision_ = 0;  // revision of the field for which the hull was computed

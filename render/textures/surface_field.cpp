@@ -17,9 +17,9 @@ namespace {
 
 constexpr Format3D kField = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, true};
 
-constexpr int kReach = 2;                  // distance over which the two blurs read, voxels
-constexpr int kRead = kSlot + 2 * kReach;  // number of voxels per axis on which the field of a slot depends
-// Value of a voxel that the blur would make vanish. With this value the voxel keeps its size.
+constexpr int kReach = 2;                  // farthest neighbour that the blur of a voxel reads, voxels
+constexpr int kRead = kSlot + 2 * kReach;  // edge length of the region on which the field of a slot depends, voxels
+// Field value (in 1/255) of a voxel that the blur would make vanish. With this value the voxel keeps its size.
 constexpr int kRaised = 230;
 constexpr int kFarthest = kFirstFieldValue - 1;  // largest distance that a texel can store, bricks
 constexpr int kHalf = kBrick / 2;
@@ -27,8 +27,8 @@ constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
 using Slot = std::vector<std::uint8_t>;
 
-// Sets `member` to 1 for the voxels of the set, in a slot and in the voxels around it that its blur reads. Returns the
-// number of these voxels. If `labels` is not null, it receives all labels in this region.
+// Sets `member` to 1 for the voxels whose label is in the set. `member` covers a slot and the voxels around it that the
+// slot's blur reads. Returns the number of voxels set. If `labels` is not null, it receives all labels of this region.
 int gather(const LabelVolume& volume, const glm::ivec3& block, const LabelSet& set, Slot& member,
            std::vector<Label>* labels) {
   const glm::ivec3 low = block * kBlock - kApron - kReach - kPad, size = volume.grid.size;
@@ -52,8 +52,8 @@ int gather(const LabelVolume& volume, const glm::ivec3& block, const LabelSet& s
   return count;
 }
 
-// Blurs a line by [1 4 6 4 1], which is 16 times [1 2 1]/4 applied twice. The sums are whole numbers, at most 16 times
-// larger per axis, so nothing is rounded before the end.
+// Blurs a line by [1 4 6 4 1], which is [1 2 1]/4 applied twice, times 16. The sums stay whole numbers, and blur()
+// divides them only after the last axis, so that nothing is rounded before.
 template <class In, class Out>
 void blur_line(const In* in, std::ptrdiff_t stride, Out* out, int count) {
   for (int i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
       }
     }
 
-  // A voxel that the blur made vanish is raised only if no neighbour is inside the surface: a bump on a thick body may
+  // Raises a voxel that the blur made vanish, unless a neighbour is inside the surface. A bump on a thick body may
   // vanish, but a thin sheet or thread may not.
   const auto stands_alone = [&](int at) {
     for (const int step : {1, kSlot, kSlot * kSlot})
@@ -98,12 +98,12 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
   for (const int at : swallowed) field[static_cast<size_t>(at)] = kRaised;
 }
 
-// What rays need to know of a brick: whether it has a voxel with a blurred value above 0, whether it belongs to the
-// hull, and its mean value.
+// What rays need to know of a brick: whether any of its voxels has a blurred value above 0, whether the brick belongs
+// to the hull, and the mean of its blurred values.
 struct BrickFacts {
   bool touched, hull;
   std::uint8_t mean;
-  // For each half brick, x fastest: whether a filtered read in it can reach the surface.
+  // For each of the brick's eight octants, x fastest: 1 if a filtered read in the octant can reach the surface.
   std::array<std::uint8_t, 8> met;
 };
 BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
@@ -130,8 +130,8 @@ BrickFacts facts_of(const Slot& field, const glm::ivec3& brick) {
   return facts;
 }
 
-// Computes in place, for each brick, the Chebyshev distance to the nearest brick with value 0, at most kFarthest
-// bricks. A forward and a backward sweep each compare with the 13 neighbours visited before.
+// Replaces the value of each brick by the Chebyshev distance to the nearest brick with value 0, in bricks, at most
+// kFarthest. A forward and a backward sweep each compare a brick with the 13 neighbours visited before.
 void spread_distance(std::vector<std::uint8_t>& distance, const glm::ivec3& size) {
   const std::ptrdiff_t row = size.x, layer = row * size.y;
   const auto sweep = [&](int sign) {
@@ -160,8 +160,8 @@ void spread_distance(std::vector<std::uint8_t>& distance, const glm::ivec3& size
   sweep(-1);
 }
 
-// Writes the distances of a slot's bricks into its empty texels. The texels of the apron keep 0, since rays do not step
-// there.
+// Writes the distance of each empty brick of a slot into the brick's texels. The texels of the apron keep 0, since rays
+// do not step there.
 void write_distances(Slot& field, const BlockLayout& layout, const glm::ivec3& block,
                      const std::vector<std::uint8_t>& distance) {
   for (int z = 0; z < kBlock; ++z)
@@ -175,8 +175,8 @@ void write_distances(Slot& field, const BlockLayout& layout, const glm::ivec3& b
       }
 }
 
-// Returns the empty bricks that are connected to the outside. The faces of the hull lie between these bricks and those
-// of the hull.
+// Marks the bricks outside the hull that are connected to the rim of the volume. The hull's faces lie between these
+// bricks and the bricks of the hull. Hollows inside the body get no faces.
 std::vector<std::uint8_t> outside_of(const std::vector<std::uint8_t>& hull, const glm::ivec3& size) {
   std::vector<std::uint8_t> outside(hull.size());
   std::vector<glm::ivec3> open;
@@ -244,8 +244,8 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     met_.assign(brick_count * 8, 0);
   }
 
-  // Blurs the slots again that depend on a changed label.
-  //   touched  for each brick: whether it has a voxel with a blurred value above 0
+  // Computes the fields of the slots that depend on an added or removed label again.
+  //   touched  for each brick: whether any of its voxels has a blurred value above 0
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);
   for (size_t b = 0; b < brick_count; ++b) touched[b] = distance_[b] == 0;
@@ -280,8 +280,8 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
       if (first || changes_any(labels_of_slot_[s], set_, set)) compute(s, true);
   });
 
-  // Distances may have changed anywhere. A slot in which a distance became shorter must be written again, since rays
-  // would skip too far. Where distances only became longer, the old ones remain valid.
+  // A changed label can change distances in any slot. A slot in which a distance became shorter must be written again,
+  // since rays would skip too far. Where distances only became longer, the old ones remain valid.
   std::vector<std::uint8_t> distance(brick_count);
   for (size_t b = 0; b < brick_count; ++b) distance[b] = touched[b] ? 0 : kFarthest;
   spread_distance(distance, bricks);
@@ -331,8 +331,8 @@ void VisibleField::build_hull(const BlockLayout& layout) {
     return outside[static_cast<size_t>(layout.brick_index(b))] != 0;
   };
 
-  // Faces share their corners, so that no gaps open between them. Only two layers of the corners' lattice are kept in
-  // memory.
+  // Neighbouring faces share their corners, so that no gaps open between them. To find shared corners, only two layers
+  // of the lattice of corners are kept in memory.
   Hull::Faces faces;
   const auto lattice_layer = static_cast<size_t>(size.x + 1) * (size.y + 1);
   constexpr std::uint32_t kNone = ~0u;
@@ -373,7 +373,7 @@ void VisibleField::build_hull(const BlockLayout& layout) {
 }
 
 // Builds the occupancy texture: the share of each brick that belongs to the set, blurred once more. It tells how
-// enclosed a position is, which is needed for soft shadows in creases.
+// enclosed a position is, from which the soft shadows in creases are computed.
 void VisibleField::build_occupancy(const VolumeTexture& volume) {
   const BlockLayout& layout = volume.layout();
   const glm::ivec3 size = layout.bricks();

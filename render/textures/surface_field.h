@@ -32,7 +32,8 @@ class VisibleField {
  public:
   VisibleField(const VolumeTexture& volume, LabelSet set);
 
-  // Changes the set. Computes only those blocks again that contain an added or removed label, or are near such a block.
+  // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
+  // label.
   void update(const VolumeTexture& volume, const LabelSet& set);
   const LabelSet& set() const { return set_; }
   // Returns a 3D texture with one texel per brick: the share of the brick that belongs to the set, blurred.
@@ -58,8 +59,8 @@ class VisibleField {
   // For each brick: the distance in bricks to the nearest brick that has part of the blurred set, at most 7.
   std::vector<std::uint8_t> distance_;
   std::vector<std::uint8_t> in_hull_, occupancy_;
-  // For each half brick: whether a ray can hit the body there, and the distance to the nearest half brick towards
-  // higher x, y and z where a ray can hit it, in half bricks (the largest of the three axes).
+  // For each octant of each brick (2^3 voxels): whether a ray can hit the body there, and the distance to the nearest
+  // octant towards higher x, y and z where a ray can hit it, in octants (the largest of the three axes).
   std::vector<std::uint8_t> met_, upward_;
   glm::ivec3 bricks_{0};
   std::vector<gl::Texture> atlases_;

@@ -29,7 +29,8 @@ void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Labe
     }
 }
 
-// Estimates, for each tissue, the share of its voxels that touch air along x. It examines every second voxel.
+// Estimates, for each tissue, the share of its voxels that have air beside them along x. Only every second voxel is
+// examined.
 class Exposure {
  public:
   void count(const std::vector<Label>& slot) {

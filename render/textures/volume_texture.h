@@ -27,7 +27,7 @@ class VolumeTexture {
   int halvings() const { return halvings_; }
   const BlockLayout& layout() const { return layout_; }
   int largest_texture() const { return largest_texture_; }
-  // For each label: the share of its voxels that touch air along x.
+  // For each label: the share of its voxels that have air beside them along x.
   const std::vector<float>& exposure() const { return exposure_; }
   const std::string& note() const { return note_; }  // a note for the user, or empty
 
@@ -62,8 +62,8 @@ struct Format3D {
 // Allocates a 3D texture without mipmaps, clamped at its edges. Returns false when the driver has no memory for it.
 bool allocate(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels = nullptr);
 
-// Uploads an index with the format of VolumeTexture::index; it has only the slots that `present` marks. Returns false
-// when the driver has no memory for it.
+// Uploads an index texture in the format of VolumeTexture::index. It lists only the slots that `present` marks. Returns
+// false when the driver has no memory for it.
 bool upload_index(const gl::Texture& texture, const BlockLayout& layout, const std::vector<std::uint8_t>& present);
 
 // Sets the samplers NAME0, NAME1 .. to the textures, on the texture units from `first` on. Returns the next free unit.

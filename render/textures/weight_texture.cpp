@@ -23,7 +23,7 @@ constexpr Format3D kTexels = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, true};
 // Number of latest uploads whose boxes are remembered. A view that has missed more uploads is recoloured as a whole.
 constexpr std::size_t kRemembered = 64;
 
-// Computes the texel that shows an influence.
+// Computes the texel that shows the skin weights of one voxel (an Influence).
 class Texels {
  public:
   explicit Texels(const ShownWeights& shown) : shown_(shown) {
@@ -78,7 +78,7 @@ std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue
   std::vector<Box> boxes(layout.block_of_slot.size());
   for (std::size_t b = 0; b < changed.size(); ++b) {
     if (!changed[b]) continue;
-    // The box is grown by one voxel, since air beside a brick gets the brick's colours.
+    // The box is grown by one voxel, since the air beside a brick is coloured like the brick.
     const Box brick = grown(box_of(tissue.bricks()[b], halvings));
     const glm::ivec3 first = glm::max((brick.low - kApron) >> 5, glm::ivec3(0)),
                      last = glm::min((brick.high - 1 + kApron) >> 5, layout.blocks - 1);
@@ -122,13 +122,13 @@ class SpreadIntoAir {
   }
 
  private:
-  // Examines a row of texels.
-  //   back, on  offsets to the neighbour before and to the neighbour behind; 0: there is none
+  // Collects the new colours of the air texels in a row.
+  //   back, on  offsets in the array to the texels before and behind along the axis; 0: there is no such texel
   void look_at(std::ptrdiff_t row, int count, std::ptrdiff_t back, std::ptrdiff_t on) {
     const glm::u8vec4* texel = texels_.data() + row;
     for (int x = 0; x < count; ++x, ++texel) {
       if (texel->a != 0) continue;
-      // A missing neighbour is replaced by the texel itself, which is air.
+      // Where the offset is 0, the texel itself is read, which is air.
       const glm::u8vec4 before = texel[back], after = texel[on];
       if ((before.a | after.a) == 0) continue;
       found_.push_back({row + x, before.a == 0  ? after
@@ -141,8 +141,8 @@ class SpreadIntoAir {
   std::vector<std::pair<std::ptrdiff_t, glm::u8vec4>> found_;
 };
 
-// Computes the texels of a box; air has 0. If the volume is drawn at a coarser resolution, a texel shows one of the
-// tissue voxels that it covers.
+// Computes the texels of a box. Texels of air are 0. If the volume is drawn at a coarser resolution, a texel shows one
+// of the tissue voxels that it covers.
 std::vector<glm::u8vec4> texels_of_tissue(const Box& box, const ShownWeights& shown, const Texels& texels,
                                           int halvings) {
   const glm::ivec3 size = box.size();
@@ -185,7 +185,7 @@ std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, co
   return result;
 }
 
-// Returns `parts` with their texels computed.
+// Computes the texels of the boxes in `parts`, and returns `parts` with them.
 std::vector<Part> worked_out(std::vector<Part> parts, const ShownWeights& shown, int halvings) {
   const Texels texels(shown);
   parallel_for(std::ssize(parts), 1, [&](std::int64_t begin, std::int64_t end) {
@@ -326,7 +326,8 @@ void WeightTexture::take_over(const VolumeTexture& volume, UploadTime* time) {
       return;
     std::vector<Part> parts = lot_.get();
     if (time) time->used = true;
-    // Slots that were changed in the meantime keep waiting, since their computed texels are out of date.
+    // A slot whose weights were edited while its texels were computed keeps waiting, since these texels are out of
+    // date.
     std::erase_if(parts, [this](const Part& part) { return edited_[static_cast<std::size_t>(part.slot)] > lot_edit_; });
     for (const Part& part : parts) waiting_[static_cast<std::size_t>(part.slot)] = {};
     waiting_count_ -= static_cast<int>(parts.size());

@@ -4,21 +4,21 @@
 // voxel.
 //
 // A texel has the values that the display needs, computed here from the exact weights. For the active bone these are
-// its weight in 8 bits, whether it is exactly 0, and whether it is exactly 1; for other displays they are a colour. The
+// its weight in 8 bits, whether it is exactly 0, and whether it is exactly 1. For other displays they are a colour. The
 // last channel is 1 in tissue. Filtered values can be divided by it, so that only tissue counts. In tissue the texel is
 // (weight, is 0, is 1, 1) or (colour, 1); in air it is zero. Air beside tissue is coloured like the tissue, for reads
 // at the surface. Within a region all four channels are halved. Colours outside the region can then be dimmed although
-// only the bricks of the region are uploaded. The arm of 646 912 tissue voxels takes twice as much memory as its
-// labels.
+// only the bricks of the region are uploaded. For an arm of 646 912 tissue voxels, the weights take twice as much
+// memory as the labels.
 //
 // Old and new weights share the bricks that are equal, and only bricks that differ are uploaded. If another bone
 // becomes active, the bricks in which the old or the new active bone has weight are uploaded.
 //
-// A small change, such as a brush makes, is uploaded before update() returns. The slots of a larger change wait: their
-// texels are computed on another thread, some slots at a time, from the newest weights, and each update() uploads
-// finished slots as long as it has time. The latest change comes first, and within it the slots that a slice cuts. A
-// waiting slot shows its old weights. If its old texels have another meaning (another display, other swatches), the
-// tissue's own colours are shown there.
+// A small change, such as one by a brush, is uploaded before update() returns. The slots of a larger change wait: their
+// texels are computed on another thread, some slots at a time, from the newest weights. Each update() uploads finished
+// slots as long as it has time. The latest change comes first, and within it the slots that a slice cuts. A waiting
+// slot shows its old weights. If its old texels have another meaning (another display, other swatches), the tissue's
+// own colours are shown there.
 #pragma once
 
 #include <array>
@@ -51,18 +51,18 @@ struct TexelBox {
   std::int64_t texels() const { return empty() ? 0 : std::int64_t{size().x} * size().y * size().z; }
 };
 
-// The time limit for all uploads of a frame together. At least one lot (a group of slots) is uploaded, however long
-// that takes.
+// The time limit for all uploads of a frame together. At least one lot (a group of slots) is uploaded, however long its
+// upload takes.
 struct UploadTime {
   std::chrono::steady_clock::time_point until;
-  bool used = false;  // true: a lot has been uploaded in this frame
+  bool used = false;  // true: a group of slots has been uploaded in this frame
 };
 
 class WeightTexture {
  public:
-  // Largest number of texels of a change that is uploaded at once (some 2 ms on two cores).
+  // Largest change that update() uploads at once, texels. It takes some 2 ms on two cores. Larger changes wait.
   static constexpr std::int64_t kAtOnce = 8 * kSlot * kSlot * kSlot;
-  static constexpr int kLot = 16;  // number of slots that are computed together: 3 MB
+  static constexpr int kLot = 16;  // number of slots that are computed together; their texels take 3 MB
 
   // Throws Error when the driver has no memory for the texture.
   explicit WeightTexture(const VolumeTexture& volume);
@@ -71,12 +71,12 @@ class WeightTexture {
   // or the tissue belong to another volume.
   void update(const VolumeTexture& volume, const ShownWeights& shown, UploadTime* time = nullptr);
   bool complete() const { return waiting_count_ == 0; }
-  // Makes the slots that a slice cuts come first. The slice is the plane at position `at` of an axis, in padded
-  // coordinates.
+  // Gives priority to uploads of the slots that a slice cuts. The slice is the plane at position `at` of an axis, in
+  // padded coordinates.
   void prefer(int axis, float at) { cuts_[static_cast<std::size_t>(axis)] = at; }
 
-  // changes() returns the number of uploads so far. changed_since() returns the box of all uploads after the first
-  // `count`; empty: the box is unknown, and changes may be anywhere.
+  // changes() returns the number of uploads so far. changed_since() returns the box that contains all uploads after the
+  // first `count`. An empty optional means that the box is unknown, and changes may be anywhere.
   int changes() const { return changes_; }
   std::optional<TexelBox> changed_since(int count) const;
   std::int64_t texels_uploaded() const { return texels_uploaded_; }  // number of texels that the last update uploaded
@@ -104,17 +104,17 @@ class WeightTexture {
   void upload(const VolumeTexture& volume, const std::vector<Part>& parts);
 
   std::vector<gl::Texture> atlases_;
-  gl::Texture index_;                  // same format as VolumeTexture::index; it has only slots that are present
-  std::optional<ShownWeights> shown_;  // the weights that are uploaded, or will be once no slot waits
+  gl::Texture index_;                  // format of VolumeTexture::index; it lists only the slots marked in present_
+  std::optional<ShownWeights> shown_;  // weights that are uploaded, or will be when all waiting slots are
   int edits_ = 0;                      // number of times that shown_ has changed
 
   // These vectors have one entry for each slot.
-  std::vector<TexelBox> waiting_;      // the box that waits for its upload
+  std::vector<TexelBox> waiting_;      // texels of the slot that wait for their upload; empty: none
   std::vector<int> edited_;            // number of the last edit that changed the slot
-  std::vector<std::uint8_t> present_;  // whether the slot's texels were computed for the current display
+  std::vector<std::uint8_t> present_;  // 1 if the slot's texels were computed for the current display
   int waiting_count_ = 0;
   std::array<std::optional<float>, 3> cuts_;
-  std::future<std::vector<Part>> lot_;  // the slots being computed, from the weights of edit lot_edit_
+  std::future<std::vector<Part>> lot_;  // slots that another thread computes, with the weights of edit lot_edit_
   int lot_edit_ = 0;
 
   int changes_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber_reader as it would be if a file had got hold of it: everything before the parser is the true reader's; then it
-// does what the file says behind "misbehave:".
+// A stand-in for the program limber_reader, as it would act if a file had taken it over. Until the file is parsed it
+// does what limber_reader does. Then it misbehaves in the way that the file names after "misbehave:".
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -29,7 +29,7 @@ std::string misbehaviour(VolumeFiles& files) {
   return at == std::string::npos ? "" : bytes.substr(at + 10, bytes.find('\n', at) - at - 10);
 }
 
-// Tries what a program with rights can do, and tells what it could.
+// Tries calls that need rights outside the sandbox, and throws an error that lists the calls that succeeded.
 [[noreturn]] void use_rights(const Path& folder) {
   std::string could;
   const auto note = [&](const char* what, long result) {
@@ -62,7 +62,7 @@ void say(Message kind, std::uint64_t size) {
   if (::write(STDOUT_FILENO, &head, sizeof head) < 0) ::_exit(1);
 }
 
-// Ends before the voxels that the header promises.
+// A volume that ends before the voxels that its header promises.
 class EarlyEnd final : public VoxelSource {
  public:
   void read(void*, std::size_t) override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A real arm with a bent joint, made as the commands make it: what is bone is found, weights are diffused, the joint is
-// fitted to its bones.
+// An arm from a real scan, bent at one joint. It is prepared by the steps that the commands take: the bone labels are
+// guessed, the skin weights are computed by heat diffusion, and the joint is fitted to the bones beside it.
 #pragma once
 
 #include <memory>
@@ -59,7 +59,7 @@ class BentArm {
   LabelSet is_bone = LabelSet(65536, 0);
   const TissueVoxels tissue{volume};
   SkinWeights weights;
-  Armature rig;  // fitted
+  Armature rig;  // joints fitted to the bones of the volume
   Pose pose;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A limb small enough to check by hand: a round tube along z of skin, fat and two bones with a gap at the joint, a rig
-// of two bones that meet there, and weights that change over a few voxels around the joint in soft tissue and are whole
-// in bone.
+// A limb that is small enough to check by hand: a round tube along z of skin, fat and two bones with a gap at the
+// joint. Its rig has two bones that meet at the joint. In soft tissue the skin weights change over a few voxels around
+// the joint; in bone each voxel has the weight 1 of one rig bone.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,8 @@ struct BentTube {
   Armature rig;
   SkinWeights weights;
 
-  // Bone 1 turned about x (across the tube) by `degrees`, and about its own length by `twist_degrees`.
+  // Returns the pose in which bone 1 is turned about x (across the tube) by `degrees`, and about its own length by
+  // `twist_degrees`.
   Pose pose(double degrees, double twist_degrees = 0) const {
     Pose pose = rest_pose(rig);
     const double radians = std::numbers::pi / 180;
@@ -33,7 +34,7 @@ struct BentTube {
   }
 };
 
-// Anisotropic, turned and mirrored.
+// Returns a grid with three different spacings, whose axes are rotated and mirrored.
 inline Grid oblique_grid() {
   Grid grid;
   grid.spacing = {0.7, 2.1, 1.3};
@@ -58,7 +59,9 @@ inline TissueTable tube_tissues() {
   return table;
 }
 
-//   length  voxels along z      grid  spacing, origin and direction of the result are taken from it
+// Returns the tube.
+//   grid    gives the spacing, origin and direction of the tube's volume
+//   length  number of voxels along z
 inline BentTube bent_tube(const Grid& grid = {}, int length = 44) {
   constexpr double kRadius = 8, kBoneRadius = 2.3, kBlend = 6;
   BentTube tube;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A rig of a whole body, built in code in the anatomical position: upright along LPS, limbs straight, arms hanging,
-// palms and feet forward. Tests turn its joints by hand to make rigs that rest otherwise.
+// palms and feet forward. Tests turn its joints to make rigs with other rest poses.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace limber::test {
 
-// How a school of riggers calls the bones.
+// A naming convention for the bones of a rig.
 struct RigNames {
   std::string pelvis, spine, chest, neck, head;
-  // With "@" where the side stands, which is written as `left` or `right`.
+  // "@" stands for the side, which is written as `left` or `right`.
   std::string clavicle, upper_arm, forearm, hand, thigh, shank, foot, toes;
   std::string finger;  // with "#" where "Index" .. "Little" stands and "%" where its segment does
   std::string left = "Left", right = "Right";
@@ -118,7 +118,7 @@ inline Armature body_rig(const RigNames& names = kAnatomistsNames, bool with_fin
   return rig;
 }
 
-// The rig after its bones were turned about world axes at rest, degrees.
+// A rotation of one bone about a world axis, in degrees. rested() makes the rotated pose the new rest pose.
 struct HandTurn {
   std::string bone;
   glm::dvec3 axis;
@@ -134,7 +134,7 @@ inline Armature rested(const Armature& rig, const std::vector<HandTurn>& turns) 
   return with_pose_as_rest(rig, pose);
 }
 
-// The rig turned and moved as a whole.
+// Returns the rig rotated and then moved as a whole.
 inline Armature moved(Armature rig, const glm::dquat& turn, const glm::dvec3& by) {
   for (Bone& bone : rig.bones) {
     const glm::dvec3 x = turn * rest_axes(bone)[0];
@@ -146,7 +146,7 @@ inline Armature moved(Armature rig, const glm::dquat& turn, const glm::dvec3& by
   return rig;
 }
 
-// Where a bone points in a pose, unit; and where something fixed to it does that pointed along `at_rest`.
+// Returns the direction of a bone, from head to tail, in a pose, as a unit vector.
 inline glm::dvec3 posed_direction(const Armature& rig, const Pose& pose, const std::string& name) {
   const auto b = static_cast<std::size_t>(require_bone(rig, name));
   return posed_from_rest(rig, pose)[b].rotation * glm::normalize(rig.bones[b].tail - rig.bones[b].head);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pairs of triangles that cross or touch elsewhere than in corners and edges they share, by CGAL's boxes and exact
-// predicates. Unlike CGAL's own self_intersections it takes surfaces that are no manifolds: parts of a body may meet in
-// an edge.
+// Finds the pairs of triangles that cross, or touch elsewhere than in their shared corners and edges, by CGAL's boxes
+// and exact predicates. Unlike CGAL's own self_intersections, this also works for surfaces that are no manifolds: parts
+// of a body may meet in an edge.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline std::vector<std::array<int, 2>> crossings_by_cgal(const Eigen::MatrixX3d&
     for (const int v : F.row(a)) ((F.row(b).array() == v).any() ? common : of_a).push_back(v);
     for (const int v : F.row(b))
       if ((F.row(a).array() != v).all()) of_b.push_back(v);
-    bool cross = true;  // the same triangle twice
+    bool cross = true;  // stays true if both triangles have the same corners
     if (common.empty()) cross = CGAL::do_intersect(triangle(a), triangle(b));
     if (common.size() == 1)
       cross = CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(of_b[0]), point(of_b[1]))) ||

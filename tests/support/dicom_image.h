@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small DICOM files with explicit lengths, little endian, made byte by byte.
+// Makes small DICOM files byte by byte, with explicit lengths, little endian.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline std::string dicom_element(std::uint16_t group, std::uint16_t number, cons
          little_endian(static_cast<std::uint32_t>(value.size()), 2) + value;
 }
 
-// What stands before the elements of an image.
+// Returns the bytes of a DICOM file that precede the elements of its image.
 inline std::string dicom_start() {
   const std::string syntax = dicom_element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
   return std::string(128, '\0') + "DICM" +
@@ -28,7 +28,7 @@ inline std::string dicom_start() {
          dicom_element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2");
 }
 
-// An image of 2 by 2 voxels, 1 to 4, whose values are scaled by `slope`.
+// Returns a DICOM image of 2 by 2 voxels with the values 1 to 4, which a reader must multiply by `slope`.
 inline std::string dicom_image(const std::string& slope, const std::string& spacing = "1\\1",
                                const std::string& height = "0") {
   const auto number = [](std::uint32_t value) { return little_endian(value, 2); };

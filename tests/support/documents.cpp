@@ -15,7 +15,7 @@ std::shared_ptr<const T> shared(T value) {
   return std::make_shared<const T>(std::move(value));
 }
 
-// Bits, so that 0 and -0 differ and equal NaNs do not.
+// Compares the bits of the numbers: 0 and -0 differ, and equal NaNs do not.
 bool same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 bool same(const glm::dvec3& a, const glm::dvec3& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 bool same(const glm::dquat& a, const glm::dquat& b) {
@@ -170,8 +170,7 @@ Clip keyed_clip() {
   return clip;
 }
 
-// The document's weights become those of a base with two layers, of which the upper is painted at two places of a
-// brick.
+// Replaces the document's weights by a base and two weight layers. The upper layer is painted at two voxels of a brick.
 void add_layers(Document& document, std::mt19937& random) {
   WeightLayers layers = with_new_layer(with_new_layer({document.weights, {}}, "lower \xff"), "upper");
   WeightLayer upper = *layers.layers[1];

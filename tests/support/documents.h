@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small documents with every part, random edits of them as operators would make, and comparison by contents.
+// Small documents that have every part of a document, random edits like those of operators, and a comparison of
+// contents.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +10,15 @@
 
 namespace limber::test {
 
-// A bar of 24 x 10 x 9 voxels with two tissues, two bones, weights, pose, motion, looks and a result.
+// Returns a bar of 24 x 10 x 9 voxels with two tissues, two bones, weights, pose, motion, looks and a result.
 Document small_document();
-// The document with one part changed: labels, names, bones, a stroke of weights, a pose, looks, results added or
-// removed.
+// Returns the document after a random edit of one part: labels, names, bones, a brush stroke on the weights, a pose,
+// looks, or a result added or removed.
 Document random_edit(const Document& document, std::mt19937& random);
-// Weights of 1 MB whose every influence comes from the seed, over a volume that fits.
+// Returns a document with 1 MB of random weights, generated from `seed`, and a volume that they fit.
 Document large_document(std::uint32_t seed);
 
-// The same contents, bit for bit.
+// Returns true if the documents have the same contents, bit for bit.
 bool same_contents(const Document& a, const Document& b);
 
 }  // namespace limber::test

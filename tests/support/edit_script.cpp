@@ -14,10 +14,10 @@ Document edit_script_start() {
   document.weights = nullptr;
   document.layers = nullptr;
   document.results.clear();
-  // A body of weights that is not small, so that a write takes its time.
+  // The weights are large (1 MB), so that writing them takes some time.
   const Document large = large_document(1);
   document.volume = large.volume;
-  document.seams = nullptr;  // they lay in the small volume
+  document.seams = nullptr;  // the seams belonged to the small volume
   document.weights = large.weights;
   document.pose = std::make_shared<const Pose>(rest_pose(*document.armature));
   return document;

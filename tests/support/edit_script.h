@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A session in which someone works: edits, now and then a save. Edit number n leaves n in the pose's root translation,
-// so what comes back tells how far it reached. Run in a process of its own, to be killed, or over disks that lose
-// power.
+// Simulates a user who edits a project and sometimes saves it. Edit number n stores n in the root translation of the
+// pose, so that the edit from which a recovered document comes is known. Tests run this in a process that they kill, or
+// on a simulated disk that loses power.
 #pragma once
 
 #include <functional>
@@ -12,17 +12,20 @@ namespace limber::test {
 
 struct EditScript {
   int edits = 200;
-  double pause = 0.01;  // seconds between two, on average
+  double pause = 0.01;  // mean pause between two edits, seconds
   std::uint32_t seed = 0;
-  std::function<void(int edit)> after_edit;                  // it was handed to the session
-  std::function<void(int edit, bool all_kept)> after_pause;  // and whether the session says it is on the disk
+  // Called when the session has got the edit.
+  std::function<void(int edit)> after_edit;
+  // Called after each pause. all_kept: the session says that all edits are on the disk.
+  std::function<void(int edit, bool all_kept)> after_pause;
 };
 
-// The edit that a document comes from; 0 for the one at the start.
+// Returns the number of the last edit in a document; 0 for the document at the start.
 int edit_of(const Document& document);
 Document edit_script_start();
 
-// Opens the project, recovers what there is, goes on with the edits and saves about every fortieth.
+// Opens the project, recovers the edits that a killed run left, continues with the next edit, and saves the project
+// after about every fortieth edit.
 void run_edit_script(const Path& project, const SessionSettings& settings, const EditScript& script);
 
 }  // namespace limber::test

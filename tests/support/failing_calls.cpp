@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Loaded before the C library (LD_PRELOAD) into a program under test: every n-th call of one kind fails, or ends the
-// program. LIMBER_FAIL is KIND:N or KIND:N:kill; kinds are write, open (for writing), rename and fsync. What concerns
-// standard streams and the notes on unfinished files is left alone. Each failure adds a byte to the file
-// LIMBER_FAIL_LOG.
+// A library that is loaded before the C library (LD_PRELOAD) into a program under test. It makes every n-th call of one
+// kind fail, or kills the program at this call. LIMBER_FAIL is KIND:N or KIND:N:kill; kinds are write, open (for
+// writing), rename and fsync. Calls on standard streams and on the notes on unfinished files never fail. Each failure
+// adds a byte to the file LIMBER_FAIL_LOG.
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -38,7 +38,7 @@ void log_failure() {
 
 bool is_note(const char* path) { return path && std::strstr(path, "/limber/unfinished/"); }
 
-// Whether this call of that kind is to fail.
+// Counts a call of the kind, and returns true if the call must fail.
 bool fails(const char* kind, const char* path) {
   const char* wish = std::getenv("LIMBER_FAIL");
   if (!wish || is_note(path)) return false;
@@ -57,7 +57,7 @@ bool fails(const char* kind, int descriptor) {
   const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
   const ssize_t size = ::readlink(link.c_str(), path, sizeof path - 1);
   path[size > 0 ? size : 0] = '\0';
-  // Pipes to other processes and sockets are no disk.
+  // Only files count. Pipes to other processes and sockets have no path.
   return path[0] == '/' && fails(kind, path);
 }
 
@@ -118,7 +118,7 @@ extern "C" int rename(const char* from, const char* to) {
   if (fails("rename", to)) return refuse<int>(EIO);
   return next<int(const char*, const char*)>("rename")(from, to);
 }
-// A file that had no name is given one: what a rename is to others.
+// Gives a name to a file without one (O_TMPFILE). It counts as a rename.
 extern "C" int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) {
   if (fails("rename", to)) return refuse<int>(EIO);
   return next<int(int, const char*, int, const char*, int)>("linkat")(from_folder, from, to_folder, to, flags);

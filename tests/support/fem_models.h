@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A bar of flesh with two bones in it that meet at a joint halfway, for tests of solves.
+// A bar of flesh with two bones in it that meet at a joint halfway, for tests of finite element solves.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace limber {
 
 struct BarModel {
-  double length = 120, width = 36, gap = 24;  // mm; bones end gap / 2 from the joint, which is at the origin
+  double length = 120, width = 36, gap = 24;  // mm; each bone ends gap / 2 from the joint, which is at the origin
   FemModel fem;
 
   explicit BarModel(int along = 20, int across = 6, double poisson_ratio = 0.499) {
@@ -21,7 +21,7 @@ struct BarModel {
         kuhn_box(across, across, along, {-width / 2, -width / 2, -length / 2}, {width / 2, width / 2, length / 2});
     fem.material.assign(fem.mesh.T.rows(), {4, poisson_ratio});
     fem.bone_names = {"Upper", "Lower"};
-    const double reach = 1.1 * width / across;  // thick enough that flesh cannot spin around it
+    const double reach = 1.1 * width / across;  // half width of a bone, mm: flesh cannot spin around such a thick bone
     for (Eigen::Index v = 0; v < fem.mesh.V.rows(); ++v) {
       const Eigen::RowVector3d p = fem.mesh.V.row(v);
       const bool bone = std::abs(p[0]) < reach && std::abs(p[1]) < reach && std::abs(p[2]) >= gap / 2;
@@ -33,14 +33,14 @@ struct BarModel {
     }
   }
 
-  // The lower bone turns about x.
+  // Returns the motion in which the lower bone turns about x.
   BonePath bend(double degrees, double from_degrees = 0) const {
     return [=](double t) {
       const double angle = glm::radians(from_degrees + (degrees - from_degrees) * t);
       return std::vector<RigidTransform>{{}, rotation_about(glm::dvec3(0), glm::angleAxis(angle, glm::dvec3(1, 0, 0)))};
     };
   }
-  // The lower bone comes nearer.
+  // Returns the motion in which the lower bone moves towards the upper bone.
   BonePath push(double mm) const {
     return [=](double t) {
       return std::vector<RigidTransform>{{}, {glm::dquat(1, 0, 0, 0), glm::dvec3(0, 0, -mm * t)}};
@@ -48,8 +48,8 @@ struct BarModel {
   }
 };
 
-// Pairs of an edge and a triangle of the mesh's skin that pass through each other and share no node. Every pair is
-// tried.
+// Counts the pairs of an edge and a triangle of the mesh's surface that pass through each other and share no node.
+// Every pair is tested.
 inline int skin_crossings(const TetMesh& mesh, const Eigen::MatrixX3d& V) {
   const Eigen::MatrixX3i F = boundary_of(mesh.T);
   std::vector<std::array<int, 2>> edges;

@@ -10,7 +10,7 @@ namespace limber::test {
 namespace {
 constexpr glm::ivec3 kSize{64, 24, 100};
 constexpr double kSpacing = 4;
-constexpr glm::dvec3 kOrigin{-126, -46, 0};  // the figure's middle plane is x = 0
+constexpr glm::dvec3 kOrigin{-126, -46, 0};  // first voxel's position, mm; the figure's middle plane is x = 0
 
 void fill(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, Label label) {
   for (int z = low.z; z < high.z; ++z)
@@ -18,13 +18,13 @@ void fill(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, La
       for (int x = low.x; x < high.x; ++x) volume.at({x, y, z}) = label;
 }
 
-// The same on both sides: the left has larger x.
+// Fills a box on the figure's left side, which has larger x, and the mirrored box on its right side.
 void fill_both(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, Label left, Label right) {
   fill(volume, low, high, left);
   fill(volume, {kSize.x - high.x, low.y, low.z}, {kSize.x - low.x, high.y, high.z}, right);
 }
 
-// Muscle at the air becomes skin.
+// Turns the muscle voxels that touch air into skin.
 void cover_with_skin(LabelVolume& volume) {
   const LabelVolume bare = volume;
   for (int z = 0; z < kSize.z; ++z)
@@ -57,7 +57,7 @@ Bone bone(const char* name, int parent, const glm::dvec3& head, const glm::dvec3
 
 void add_arms(LabelVolume& volume) {
   fill_both(volume, {48, 7, 46}, {58, 17, 92}, kFigureMuscle, kFigureMuscle);
-  fill_both(volume, {44, 7, 82}, {48, 17, 92}, kFigureMuscle, kFigureMuscle);  // shoulders
+  fill_both(volume, {44, 7, 82}, {48, 17, 92}, kFigureMuscle, kFigureMuscle);  // muscle of the shoulders
 }
 
 void add_arm_bones(LabelVolume& volume) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A figure of blocks with arms, legs, named bones, organs and skin, and a rig that fits it; built in code, checkable by
-// hand.
+// A figure made of boxes, with arms, legs, named bones, organs and skin, and a rig that fits it. It is built in code
+// and simple enough to check by hand.
 #pragma once
 
 #include <filesystem>
@@ -31,19 +31,19 @@ enum FigureLabel : Label {
 };
 
 struct Figure {
-  LabelVolume volume;  // 4 mm
+  LabelVolume volume;  // voxels of 4 mm
   TissueTable tissues;
   Armature armature;
 };
 Figure block_figure();
 
-// Of its left arm and nothing else.
+// Returns only the left arm of the figure.
 Figure block_arm();
 
-// A box of voxels, low <= v < high, where the volume has `only` (0: air), gets the label.
+// Gives `label` to the voxels in the box low <= v < high that have the label `only` (0: air).
 void fill_where(LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high, Label only, Label label);
 
-// As volume.nrrd, tissues.json and rig.json in the folder.
+// Writes the figure to the files volume.nrrd, tissues.json and rig.json in the folder.
 void write_figure(const Figure& figure, const std::filesystem::path& folder);
 
 }  // namespace limber::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The energy of flesh by an independent program: GetFEM (Debian's python3-getfem), which integrates it from the text of
-// the formula, and takes Newton steps by MUMPS (tests/support/getfem_flesh.py).
+// Computes the energy of flesh by an independent program, GetFEM (Debian's python3-getfem). GetFEM integrates the
+// energy from the text of its formula, and takes Newton steps by the solver MUMPS (tests/support/getfem_flesh.py).
 #pragma once
 
 #include <fstream>
@@ -19,15 +19,15 @@ namespace limber::test {
 struct Flesh {
   NodePositions rest, moved;
   Eigen::MatrixX4i T;
-  std::vector<TetMaterial> material;  // #T
+  std::vector<TetMaterial> material;  // material of each tet
   double weak_barrier_kpa = 0;
   PinForm pins = {};
 };
 
 struct GetfemAnswer {
-  double energy = 0;                     // without the springs'
-  NodePositions forces, step;            // #V: gradient of the energy; a Newton step with the springs, where asked for
-  std::map<std::string, double> number;  // what else was printed
+  double energy = 0;           // energy of the flesh, without that of the pins' springs
+  NodePositions forces, step;  // for each node: gradient of the energy; Newton step with the springs, if asked for
+  std::map<std::string, double> number;  // every number that GetFEM printed, by name
 };
 
 inline bool has_getfem() { return run_program("/usr/bin/python3", {"-c", "import getfem"}).exit_code == 0; }
@@ -48,7 +48,8 @@ inline NodePositions read_places(const std::filesystem::path& path, Eigen::Index
 }
 }  // namespace detail
 
-// throws runtime_error with what GetFEM said when it fails
+// Runs GetFEM on the flesh. Throws std::runtime_error with GetFEM's output when it fails.
+//   newton  true: also computes a Newton step
 inline GetfemAnswer ask_getfem(const Flesh& flesh, bool newton = false) {
   const TemporaryFolder folder;
   const std::size_t tets = flesh.material.size();

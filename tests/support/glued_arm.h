@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A trunk and an arm that hangs beside it, grown to it all the way down without skin between, as a coarse scan shows a
-// body with its arms at its sides. It is known which of the two each voxel is.
+// A body whose arm hangs beside the trunk and is grown together with it, without skin between them, as in a coarse scan
+// of a body with its arms at its sides. It is known for each voxel whether it belongs to the arm.
 #pragma once
 
 #include <cmath>
@@ -20,10 +20,10 @@ struct GluedArm {
   LabelVolume volume;
   TissueTable tissues;
   Armature rig;
-  std::vector<bool> is_arm;  // by voxel of the grid
+  std::vector<bool> is_arm;  // for each voxel of the grid: true if it belongs to the arm
 
-  //   gap      mm of air between the two where they are nearest; negative: they are grown together
-  //   names    whether labels say which flesh is the arm's
+  //   gap    smallest distance of air between arm and trunk, mm; negative: they are grown together
+  //   names  true: the arm's flesh has a label and a name of its own
   explicit GluedArm(double gap, bool names = false) {
     const glm::ivec3 size(64, 36, 112);
     volume.grid.size = size;
@@ -49,10 +49,11 @@ struct GluedArm {
   }
 
   static double arm_axis(double gap) { return kTrunk + gap + kArm; }
-  static constexpr double kTrunk = 60, kArm = 28;  // half widths, mm
-  static constexpr double kShoulder = 340;         // mm: above, the arm is one with the trunk by nature
+  static constexpr double kTrunk = 60, kArm = 28;  // half widths of trunk and arm, mm
+  static constexpr double kShoulder = 340;  // height of the shoulder, mm; above it, arm and trunk are truly connected
 
-  // Where the two touch below the shoulder.
+  // Calls `body` with a voxel and an axis for each pair of tissue voxels, the voxel and the next along the axis, of
+  // which only one belongs to the arm.
   template <class Body>
   void for_each_glued_face(const Body& body) const {
     const glm::ivec3 size = volume.grid.size;

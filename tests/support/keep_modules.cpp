@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// For builds with sanitizers: modules stay loaded until the process ends, so that what a driver leaks is reported under
-// the driver's name (leaks.supp) and not as unknown.
+// For builds with sanitizers: keeps shared libraries loaded until the process ends. Memory that a graphics driver leaks
+// is then reported with the driver's name, which leaks.supp lists, and not as leaked by an unknown module.
 #include "tests/support/sanitizer.h"
 
 #ifdef LIMBER_ADDRESS_SANITIZER

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A box of tets for tests: a lattice of cubes, each split into six around its main diagonal [Kuhn 1960].
+// A box of tets for tests: a lattice of cubes, each split into six tets around its main diagonal [Kuhn 1960].
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,9 @@
 
 namespace limber::test {
 
-//   low, high  corners of the box, voxel coordinates of `grid`; cubes along each axis
+// Returns the mesh of a box.
+//   low, high  corners of the box, in voxel coordinates of `grid`
+//   cubes      number of cubes along each axis
 inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dvec3& high, const glm::ivec3& cubes) {
   const AffineTransform world = world_from_voxel(grid);
   const glm::ivec3 side = cubes + 1;
@@ -51,8 +53,8 @@ inline TetMesh kuhn_mesh(const Grid& grid, const glm::dvec3& low, const glm::dve
   return mesh;
 }
 
-// The cubes of `side` voxels that hold any of the regions (0 none, 1 soft, 2 + bone), all of one if most of its voxels
-// are.
+// Returns the tets of all cubes of `side`^3 voxels that contain tissue. `regions` has 0 for air, 1 for soft tissue, and
+// 2 or more for bones. All tets of a cube get the region that most of its tissue voxels have.
 inline TetMesh kuhn_mesh_of(const LabelVolume& regions, int side) {
   const glm::ivec3 cubes = (regions.grid.size + side - 1) / side;
   TetMesh mesh = kuhn_mesh(regions.grid, glm::dvec3(-0.5), glm::dvec3(cubes * side) - 0.5, cubes);

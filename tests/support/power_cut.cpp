@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kSector = 512;
 constexpr auto kCopy = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
 
-// A file as its readers see it, and as it lies on the disk.
+// The contents of a file: as programs read them now, and as they were at the last sync.
 struct Image {
   std::string seen, synced;
 };
@@ -33,17 +33,17 @@ ino_t inode_of(const Path& path) {
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
-// A log, which is given another name after it was made.
+// A journal file, which gets another name after it was made.
 struct LogImage {
   std::shared_ptr<Image> image;
   Path first_name, last_name;
   ino_t inode = 0;
 };
 
-// What reached the disk of a file when the power went.
+// Returns the contents that a file has on the disk after the power cut.
 std::string after_the_cut(const Image& image, std::mt19937& random) {
   std::string disk = image.synced;
-  // Its length is the old one, the new one, or something between.
+  // The length is that at the last sync, the newest, or one in between.
   const std::size_t low = std::min(image.seen.size(), disk.size()), high = std::max(image.seen.size(), disk.size());
   std::size_t length = random() % 2 ? image.seen.size() : disk.size();
   if (random() % 4 == 0) length = low + random() % (high - low + 1);
@@ -77,15 +77,15 @@ struct PowerCut::Disk {
   std::int64_t operations = 0, cut_at = 0;
   std::mt19937 random;
   bool dead = false;
-  std::map<std::string, std::shared_ptr<Image>> open;  // SQLite's, by name
+  std::map<std::string, std::shared_ptr<Image>> open;  // the files that SQLite has open, by path
   std::vector<LogImage> logs;
-  std::map<std::string, std::string> removed;  // not yet sure: their bytes
+  std::map<std::string, std::string> removed;  // contents of removed files whose removal is not synced yet, by path
   Path folder;
-  std::unique_ptr<TemporaryFolder> left;  // the folder as it was on the disk when the power went
+  std::unique_ptr<TemporaryFolder> left;  // copy of the folder as it was on the disk after the power cut
   sqlite3_vfs* system = nullptr;
   sqlite3_vfs own{};
 
-  // True when the power is gone, or goes with this operation.
+  // Counts an operation. Returns true if the power is off, or goes off with this operation.
   bool strikes() {
     if (dead) return true;
     if (++operations < cut_at) return false;
@@ -106,7 +106,7 @@ struct PowerCut::Disk {
 
 namespace {
 
-// ---- the SQLite file: the system's own below it, for opening and locking
+// ---- Files of SQLite. Each is based on a file of the system's own VFS, which opens and locks it.
 
 struct File {
   sqlite3_file base;
@@ -121,7 +121,8 @@ int close_file(sqlite3_file* raw) {
   File* file = as_file(raw);
   const std::lock_guard lock(file->disk->mutex);
   delete file->image;
-  // The last one to close it: what it saw lies in the system's file, and is taken as written.
+  // If no other handle has the file open, its contents are forgotten: they are in the system's file, and count as
+  // synced.
   if (const auto at = file->disk->open.find(*file->path); at != file->disk->open.end() && at->second.use_count() == 1)
     file->disk->open.erase(at);
   delete file->path;
@@ -228,7 +229,7 @@ int access_file(sqlite3_vfs* vfs, const char* name, int flags, int* result) {
   return disk->system->xAccess(disk->system, name, flags, result);
 }
 
-// ---- the journal
+// ---- The journal
 
 class Log final : public LogFile {
  public:

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A disk that loses power. Until then it behaves like any other; at the cut, of what was written since a file's last
-// sync each piece of 512 bytes reached the disk or did not, by chance, and so did removals of files whose folder was
-// not synced. From the cut on every call fails; restore() gives the folder the contents that the disk had then.
+// Simulates a disk that loses power. Before the cut it behaves like any other disk. At the cut, each piece of 512 bytes
+// that was written to a file since the file's last sync reaches the disk or not, by chance. The same holds for a
+// removed file whose folder was not synced. After the cut every call fails. restore() sets the folder to the contents
+// that the disk had at the cut.
 //
-// One such disk is there at a time. It is a SQLite VFS around the system's own, and a LogFile for journals.
+// Only one PowerCut may exist at a time. It consists of a SQLite VFS (file system layer) around the system's own VFS,
+// and of a LogFile for journals.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +18,8 @@ namespace limber::test {
 
 class PowerCut {
  public:
-  // Becomes SQLite's default file system until it goes. The power goes with the `operation`-th write, sync, truncation
-  // or removal.
+  // Becomes SQLite's default file system until the destructor runs. The power is cut at the write, sync, truncation or
+  // removal with the number `operation`.
   PowerCut(const Path& folder, std::int64_t operation, std::uint32_t seed);
   ~PowerCut();
   PowerCut(const PowerCut&) = delete;
@@ -25,7 +27,7 @@ class PowerCut {
 
   OpenLog open_log();
   bool happened() const;
-  void restore();  // after all files are closed
+  void restore();  // call it after all files are closed
   std::int64_t operations() const;
 
   struct Disk;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Runs the `limber` program as a user would and keeps what it printed, its exit code and what it cost.
-// A test that compares with another program starts with NEEDS_PROGRAM("blender"), which skips it, loudly, where that is
-// not on PATH.
+// Runs the `limber` program as a user would, and returns what it printed, its exit code, its time and its memory. A
+// test that compares with another program starts with NEEDS_PROGRAM("blender"). If that program is not on PATH, the
+// test is skipped with a message.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,21 @@
 namespace limber::test {
 
 struct ProgramRun {
-  int exit_code = -1;  // 128 + signal when a signal ended it
+  int exit_code = -1;  // 128 + the signal's number if a signal ended the program
   std::string out, err;
-  double cpu_seconds = 0;  // user + system, from the operating system
+  double cpu_seconds = 0;  // user and system time, as measured by the operating system
   double wall_seconds = 0;
   double peak_mb = 0;
 };
 
-// `program` defaults to the limber that was built beside the tests.
+// Runs the limber program that was built together with the tests.
 ProgramRun run_limber(const std::vector<std::string>& arguments);
-ProgramRun run_program(const std::string& program,
-                       const std::vector<std::string>& arguments);  // a path, or a name on PATH
+// Runs a program, which is given as a path or as a name on PATH.
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments);
 
-bool has_program(const std::string& name);  // on PATH
+bool has_program(const std::string& name);  // true if the program is on PATH
 
-// A folder that is empty at the start and gone at the end.
+// A new, empty folder, which the destructor removes with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();

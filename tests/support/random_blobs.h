@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A volume of random labels, 0 for air among them, in touching pieces: each voxel has the label of the seed nearest to
-// it.
+// A volume of random labels in touching pieces: each voxel has the label of the nearest seed point. Label 0 (air) is
+// one of the random labels.
 #pragma once
 
 #include <random>
@@ -11,7 +11,7 @@
 
 namespace limber::test {
 
-// labels  besides air
+//   labels  number of labels besides air
 inline LabelVolume random_blobs(std::mt19937& random, const glm::ivec3& size, int seeds, Label labels) {
   LabelVolume volume{{.size = size}, ZeroedVector<Label>(std::size_t(size.x) * size.y * size.z)};
   std::vector<std::pair<glm::ivec3, Label>> all;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small volumes of regions (0 air, 1 soft tissue, 2 + bone) that meshing must survive: noise, checkerboards, thin
-// sheets, islands, touching corners, holes, one label, no bone, nothing but bone.
+// Small random volumes of regions (0: air, 1: soft tissue, 2 and more: bones) on which meshing must not fail: noise,
+// checkerboards, thin sheets, islands, touching corners, holes, one label, no bone, nothing but bone.
 #pragma once
 
 #include <random>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small bodies with a rig and a pose that no one asked for: trees of tubes of skin, fat and bone that branch, touch and
-// lie side by side, each joint turned by any angle, within or beyond what flesh can follow.
+// Small random bodies with a rig and a pose. A body is a tree of tubes of skin, fat and bone that branch, touch and lie
+// side by side. Each joint is turned by any angle, which flesh may or may not be able to follow.
 #pragma once
 
 #include <random>
@@ -34,7 +34,7 @@ class RandomNumbers {
   std::mt19937 random_;
 };
 
-// Each joint turned about an axis of its own; one joint in three stays at rest.
+// Turns each joint about a random axis. About one joint in three stays at rest.
 inline void turn_joints(Pose& pose, RandomNumbers& random, double most_degrees) {
   for (size_t b = 1; b < pose.rotation.size(); ++b)
     if (!random.one_in(3))

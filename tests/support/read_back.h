@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Exports read back by other programs' readers (tests/support/read_exports.py): skipped, loudly, where those are not
-// installed.
+// Reads exported files by the readers of other programs (tests/support/read_exports.py). If such a reader is not
+// installed, the check is skipped with a message.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// LIMBER_ADDRESS_SANITIZER: the process takes terabytes of address space, and memory limits mean nothing.
+// Defines LIMBER_ADDRESS_SANITIZER in builds with AddressSanitizer. Such a process reserves terabytes of address space,
+// so tests of memory limits make no sense in it.
 #pragma once
 
 #ifdef __SANITIZE_ADDRESS__

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where tests find the real volumes, rigs and motions that are not part of the project: the folder named by
-// LIMBER_SHARED. A test that needs one starts with NEEDS_SHARED("data/bender/man-arm-2mm.mha"), which skips it, loudly,
-// where the file is absent.
+// Finds the real volumes, rigs and motions that are not part of the project, in the folder named by LIMBER_SHARED. A
+// test that needs such a file starts with NEEDS_SHARED("data/bender/man-arm-2mm.mha"). If the file is missing, the test
+// is skipped with a message.
 #pragma once
 
 #include <cstdlib>

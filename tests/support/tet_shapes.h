@@ -15,8 +15,9 @@
 
 namespace limber {
 
-// Cubes of a grid as six tets each around the diagonal, all alike, so that neighbours fit [Kuhn 1960]. Corner (i, j, k)
-// is node i + (nx + 1) (j + (ny + 1) k).
+// Returns a box of nx x ny x nz cubes. Each cube is split into six tets around its main diagonal, all cubes in the same
+// way, so that the tets of neighbouring cubes fit together [Kuhn 1960]. Corner (i, j, k) of the cubes is node i + (nx +
+// 1) (j + (ny + 1) k).
 inline TetMesh kuhn_box(int nx, int ny, int nz, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   TetMesh mesh;
   mesh.V.resize((nx + 1) * (ny + 1) * (nz + 1), 3);
@@ -40,7 +41,7 @@ inline TetMesh kuhn_box(int nx, int ny, int nz, const Eigen::Vector3d& low, cons
             ++at[axes[a]];
             mesh.T(t, a + 1) = node(at[0], at[1], at[2]);
           }
-          const bool odd = axes[0] == (axes[1] + 1) % 3;  // an odd order of axes turns the tet inside out
+          const bool odd = axes[0] == (axes[1] + 1) % 3;  // true: this order of axes turns the tet inside out
           if (odd) std::swap(mesh.T(t, 1), mesh.T(t, 2));
           ++t;
         }
@@ -48,7 +49,8 @@ inline TetMesh kuhn_box(int nx, int ny, int nz, const Eigen::Vector3d& low, cons
   return mesh;
 }
 
-// A Kuhn box bent into another shape; places that fall together (a ring's seam) become one node.
+// Returns a Kuhn box bent into another shape. Nodes that `bend` moves to the same position (as at a ring's seam) become
+// one node.
 inline TetMesh bent_box(const TetMesh& box, const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& bend) {
   std::map<std::array<long, 3>, int> found;
   std::vector<int> node(box.V.rows());
@@ -78,8 +80,8 @@ inline TetMesh thick_cylinder(double inner, double outer, double height, int rad
       [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p[0] * std::cos(p[1]), p[0] * std::sin(p[1]), p[2]); });
 }
 
-// An eighth of a hollow ball, where x, y and z are positive: three quarters of a cube's faces, blown up. Layers are
-// thinner inside.
+// Returns an eighth of a hollow ball, where x, y and z are positive. It is made of a quarter of each of three cube
+// faces, projected onto spheres. Layers are thinner near the inner sphere.
 inline TetMesh thick_sphere_eighth(double inner, double outer, int radial, int across) {
   TetMesh all;
   std::map<std::array<long, 3>, int> found;
@@ -99,8 +101,9 @@ inline TetMesh thick_sphere_eighth(double inner, double outer, int radial, int a
       if (fresh) places.push_back(p);
       node[v] = at->second;
     }
-    // Diagonals of neighbouring faces need not meet the same way, so every cell is split by its nodes' numbers: each
-    // face by the diagonal at its smallest node [Dompierre et al. 1999].
+    // The quarters are rotated against each other, so the diagonals of their common faces might not match. Every
+    // hexahedron is therefore split by its nodes' numbers: each of its faces by the diagonal at the face's smallest
+    // node [Dompierre et al. 1999].
     for (int k = 0; k < across; ++k)
       for (int j = 0; j < across; ++j)
         for (int i = 0; i < radial; ++i) {
@@ -109,7 +112,8 @@ inline TetMesh thick_sphere_eighth(double inner, double outer, int radial, int a
           };
           const std::array<int, 8> hex{at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0),
                                        at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)};
-          // From the smallest node, a fan over the three faces it is not on.
+          // Makes two tets for each of the three faces that do not contain the hexahedron's node of smallest index:
+          // they connect this node with the face.
           const int faces_of[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                       {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
           const int apex = int(std::min_element(hex.begin(), hex.end()) - hex.begin());

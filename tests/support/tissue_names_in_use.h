@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Names of the label tables that are in use, each with the row of tissues.csv that it is: what the product says it
-// knows. "muscle (kind)" is a row that the name's kind, and no word of it, leads to.
+// Tissue names of label tables that are in use, each with the row of tissues.csv that the program must find for it.
+// "muscle (kind)" is a row that is found by the kind of tissue (guessed from the name) and not by a word of the name.
 #pragma once
 
 #include <string>
@@ -9,9 +9,10 @@
 
 namespace limber::test {
 
-using NamesOfRow = std::pair<std::string, std::vector<std::string>>;  // a row, then names that are it
+// A row's name, and the tissue names for which the row must be found.
+using NamesOfRow = std::pair<std::string, std::vector<std::string>>;
 
-// TotalSegmentator's 77 classes of teeth: crowns of the teeth by the numbers of the FDI, and their pulps.
+// Adds TotalSegmentator's 77 classes of teeth: the teeth, numbered by the FDI notation, and their pulps.
 inline void add_teeth(std::vector<NamesOfRow>& rows) {
   const std::vector<std::string> teeth = {"central_incisor", "lateral_incisor", "canine",       "first_premolar",
                                           "second_premolar", "first_molar",     "second_molar", "third_molar"};
@@ -28,7 +29,8 @@ inline void add_teeth(std::vector<NamesOfRow>& rows) {
   rows.push_back(pulps);
 }
 
-// Every class of TotalSegmentator's other tasks [Wasserthal et al. 2023; its map_to_binary.py and README of 2026].
+// Returns every class of TotalSegmentator's other tasks [Wasserthal et al. 2023; its map_to_binary.py and README of
+// 2026].
 inline std::vector<NamesOfRow> total_segmentator_sub_tasks() {
   std::vector<NamesOfRow> rows = {
       {"muscle",
@@ -194,7 +196,7 @@ inline std::vector<NamesOfRow> total_segmentator_sub_tasks() {
   return rows;
 }
 
-// The 141 organs of the adult male and female of ICRP Publication 110 (2009).
+// Returns the 141 organs of the adult male and female of ICRP Publication 110 (2009).
 inline std::vector<NamesOfRow> icrp_110_organs() {
   return {
       {"adrenal gland", {"Adrenal, left", "Adrenal, right"}},
@@ -284,7 +286,8 @@ inline std::vector<NamesOfRow> icrp_110_organs() {
       {"gas", {"Air inside body"}}};
 }
 
-// Gabriel's tissues as the IFAC-CNR calculator spells them, and those of the Visible Human's voxel models.
+// Returns the tissues of Gabriel's data base in the spelling of the IFAC-CNR calculator, and those of the Visible
+// Human's voxel models.
 inline std::vector<NamesOfRow> visible_human_tissues() {
   return {{"blood", {"Aorta", "Blood", "BloodVessel"}},
           {"vessel wall", {"vessel wall"}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A body and an actor of other proportions, both checkable by hand.
+// The rig of a body and the motion of an actor with other proportions, both simple enough to check by hand.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace limber::test {
 
-// A rig of a body with hanging arms, mm, LPS.
+// Returns the rig of a body with hanging arms, in mm, LPS.
 Armature hanging_body();
-// A motion of a body in T-pose, two units to the metre less, whose joints all turn as the angles say (degrees about x,
-// y, z).
+// Returns the motion of an actor whose rest pose is the T-pose, with hips at a height of 9 units. In each frame, joint
+// number j is turned by 1 + 0.1 j times the frame's three angles, degrees about z, x and y.
 Motion t_pose_body(const std::vector<std::array<double, 3>>& frames);
 
 }  // namespace limber::test

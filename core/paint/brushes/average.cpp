@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the brush that moves weights towards their mean over the dab. In the mean, each voxel counts by its cover.
+// Implements the brush that moves weights towards their mean over the dab. The mean is weighted by each voxel's cover.
 #include <algorithm>
 
 #include "core/paint/brush_rule.h"
@@ -12,7 +12,7 @@ class AverageSide final : public BrushSide {
  public:
   explicit AverageSide(const BrushView& view) : view_(view) {}
 
-  // Sums the weights as whole numbers, so that the result does not depend on the order of voxels.
+  // Sums the weights as whole numbers, so that the result does not depend on the order of the voxels.
   void begin_dab(const DabView& dab) override {
     std::vector<std::int64_t> sum(view_.body.armature.bones.size());
     const float per_radius = static_cast<float>(1 / view_.brush.radius);

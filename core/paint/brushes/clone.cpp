@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the brush that copies weights from the surroundings of a position that the user set. A voxel gets the
-// weights at a fixed offset: that from the stroke's first dab to the user's position.
+// Implements the brush that copies weights from the surroundings of a position that the user has set. During a stroke,
+// all weights are copied over one fixed offset: the offset from the user's position to the centre of the first dab.
 #include "core/paint/brush_rule.h"
 #include "core/paint/weights_nearby.h"
 
@@ -21,7 +21,7 @@ class CloneSide final : public BrushSide {
     shift_ = voxel_from_world_.linear * (dab.centre - from);
   }
 
-  // Computes the weights to copy. Returns false when there is air at the position to copy from.
+  // Computes the weights to copy. Returns false when there is air where the weights would come from.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     nearby_.add_between(glm::dvec3(at.voxel) - *shift_, target);
     return !target.empty();
@@ -31,7 +31,7 @@ class CloneSide final : public BrushSide {
   const BrushView view_;
   const WeightsNearby nearby_;
   const AffineTransform voxel_from_world_;
-  std::optional<glm::dvec3> shift_;  // offset in voxels, from the position copied from to the painted voxel
+  std::optional<glm::dvec3> shift_;  // offset from the copied position to the painted voxel, voxels
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the brush that divides the weight of two bones smoothly between them at their joint: over the length
-// blend_mm, the child bone's share rises from 0 to 1.
+// Implements the brush that divides the weight of a bone and its parent smoothly between them at their joint: over the
+// length blend_mm, the child bone's share rises from 0 to 1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ class JointCapsuleSide final : public BrushSide {
     if (parent_ < 0)
       throw Error("this bone has no joint to blend across", child.name, "choose a bone that has a parent");
     const Bone& parent = view.body.armature.bones[parent_];
-    // The share rises along the normal of the plane that bisects the angle between the two bones.
+    // The child bone's share rises along this normal of the plane that halves the angle between the two bones.
     glm::dvec3 normal(0);
     for (const glm::dvec3 way : {child.head - parent.head, child.tail - child.head})
       if (glm::length(way) > 0) normal += glm::normalize(way);
@@ -45,7 +45,7 @@ class JointCapsuleSide final : public BrushSide {
  private:
   const int child_;
   int parent_ = -1;
-  glm::dvec3 along_{0};  // how much `at` in change() rises per voxel along each axis
+  glm::dvec3 along_{0};  // by how much `at` in change() rises from one voxel to the next along each axis
   double at_origin_ = 0;
 };
 

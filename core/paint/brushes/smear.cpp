@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the brush that drags weights along the stroke: each voxel gets the weights from one dab movement back.
-// When air lies on the way back, the voxel gets the weights of the last tissue voxel before the air.
+// Implements the brush that drags weights along the stroke. Each voxel gets the weights of the position that lies one
+// dab movement behind it. When air lies on the way to that position, the voxel gets the weights of the last tissue
+// voxel before the air.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +28,7 @@ class SmearSide final : public BrushSide {
     glm::ivec3 last = at.voxel;
     for (int i = 1; i <= steps; ++i) {
       const glm::ivec3 next(glm::round(glm::dvec3(at.voxel) - shift_ * (double(i) / steps)));
-      // Steps to the next voxel through one face at a time, x before y before z. Air ends the path.
+      // Steps to the next voxel through one voxel face at a time: first along x, then y, then z. Air ends the path.
       for (int axis = 0; axis < 3; ++axis) {
         glm::ivec3 step = last;
         step[axis] = next[axis];
@@ -47,7 +48,7 @@ class SmearSide final : public BrushSide {
   const BrushView view_;
   const WeightsNearby nearby_;
   const AffineTransform voxel_from_world_;
-  glm::dvec3 shift_{0};  // movement since the last dab, voxels; weights come from one shift back
+  glm::dvec3 shift_{0};  // movement since the last dab, voxels; weights are dragged by this shift
 };
 
 }  // namespace

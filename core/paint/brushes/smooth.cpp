@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-// Width of the Gaussian that weights the mean, as a share of the brush's radius.
+// Standard deviation of the Gaussian that weights the mean, as a share of the brush's radius.
 constexpr double kWidth = 0.45;
 
 class SmoothSide : public BrushSide {
@@ -32,8 +32,8 @@ class SharpenSide final : public SmoothSide {
  public:
   using SmoothSide::SmoothSide;
 
-  // Computes the target 2 w - mean, where w are the voxel's own weights: it differs from w as much as the mean does, in
-  // the opposite direction. Negative weights are dropped.
+  // Computes the target 2 w - mean, where w are the voxel's own weights. So the target differs from w as much as the
+  // mean does, but in the opposite direction. Negative weights are dropped.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     if (!SmoothSide::target_at(at, target)) return false;
     for (auto& [_, weight] : target) weight = -weight;

@@ -176,7 +176,7 @@ std::vector<Proof> proofs_of_rigging() {
          return s.editor().selection.bone == 1 && s.editor().transform_settings->part == TransformSettings::Part::Tail;
        },
        Shows::Nothing, "key G\n key Z\n key -\n key 3\n key 0\n key Return\n wait-idle", anew({1}, 1)},
-      {"view.rig_check", "click \"View/Overlays/Where the rig leaves tissue\"",
+      {"view.rig_check", "click \"View/Overlays/Bones outside tissue\"",
        [](Stage& s, const Seen&) { return !s.editor().transform_settings->rig_check_marks; }},
       {"rig.batch_rename",
        "key Ctrl+F2\n click Bones/All\n click Find/text\n type \"er\"\n click \"Replace with/text\"\n type \"ER\"\n "

@@ -159,7 +159,7 @@ TEST_CASE(
   stroke(test, dab(test));
   CHECK(test.steps() == steps);
   REQUIRE(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.toasts[0].line == "The layer is full here");
+  CHECK(test.editor->messages.toasts[0].line == "The layer already covers this place completely");
   // The base has nothing to leave it to.
   choose_layer(*test.editor, std::nullopt);
   CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
