@@ -126,7 +126,7 @@ std::optional<Meeting> finger_meeting(const std::string& bone, std::string& abov
   return std::nullopt;
 }
 
-// --- parts of the skeleton that labels hold
+// --- parts of the anatomical skeleton that have labels of their own in the volume
 
 struct Piece {
   std::vector<SurfacePoint> points;  // surface voxels of the part, without normals

@@ -77,7 +77,9 @@ struct HeatSystem {
 // The next coarser level of a system, and the coarse cell of each black cell.
 struct CoarseHeat {
   CellGraph graph;
-  ZeroedVector<std::int32_t> parent_of_black;  // coarse cell of each black slot of each brick; -1: none
+  // Index of the coarse cell that contains each black voxel (of a checkerboard colouring), by brick and position in the
+  // brick; -1: none.
+  ZeroedVector<std::int32_t> parent_of_black;
 };
 CoarseHeat coarsen(const HeatSystem& system);
 

@@ -73,8 +73,8 @@ class RigidBrick {
         room_(room),
         cells_(lattice.tissue().bricks()[brick]),
         rest_from_posed_(lattice.rest_from_posed(lattice.only_bone(brick))) {
-    // Rounding a corner to fixed point moves it by at most half a unit. The slack is twice as wide as this error, at
-    // rest, so that it also covers other rounding errors.
+    // Rounding a corner to fixed point moves it by at most half of the smallest fixed-point step. The slack is twice
+    // this error, converted to rest coordinates, so that it also covers other rounding errors.
     const glm::dmat3& m = rest_from_posed_.linear;
     for (int row = 0; row < 3; ++row)
       slack_ = std::max(slack_, (std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row])) / kFixedOne + 1e-9);

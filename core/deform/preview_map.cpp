@@ -253,8 +253,9 @@ class LivePreview::Finish {
     return {glm::min(lows[0], lows[1]), glm::max(highs[0], highs[1])};
   }
 
-  // Returns true if any two of a cube's nodes lie on different sheets of the body. It compares all pairs of nodes,
-  // since edges to nodes without a rest point tell nothing. Also sets the bounding box of the nodes' rest points.
+  // Returns true if any two of a cube's nodes belong to parts of the body that are apart at rest, such as an arm and
+  // the trunk that it touches. Compares all pairs of nodes and not only the ends of the cube's edges, because nodes
+  // without a rest point cannot be compared. Also sets the bounding box of the nodes' rest points.
   bool jumps_across(std::int64_t at) {
     std::array<Lanes, 8> c{};
     int count = 0;

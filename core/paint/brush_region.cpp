@@ -647,8 +647,8 @@ void BrushReach::offer(const glm::ivec3& cell, float distance, float before, con
   if (distance + 1e-5f * distance >= far_distance_[rank]) return;
   far_distance_[rank] = distance;
   far_corner_[rank] = {before, glm::i16vec3(corner)};
-  // A path can be shorter than the path of the previous voxel, when its corner is nearer to the next voxel. It is then
-  // put into the bucket that is being processed, since earlier buckets are not processed again.
+  // The path to a voxel can be shorter than the path to the voxel from which it is reached, if the path's last bend is
+  // nearer to it. Such a voxel goes into the bucket being processed, since earlier buckets are not processed again.
   bucket_[std::max(static_cast<std::size_t>(distance * per_bucket_), this_bucket_)].push_back(
       {distance, rank, glm::i16vec3(cell)});
 }

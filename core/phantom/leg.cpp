@@ -164,7 +164,7 @@ class Leg {
   }
 
   void add_foot_bones() {
-    Solid tarsus(cone(foot_, {-11, 0, 0}, 17, {9, 0, 0}, 17));  // the talus, round about the ankle's axis
+    Solid tarsus(cone(foot_, {-11, 0, 0}, 17, {9, 0, 0}, 17));  // the talus: a cylinder whose axis is the ankle's axis
     tarsus.add(ellipsoid(foot_, {-4, -18, -14}, {16, 24, 14}), 8)
         .add(cone(foot_, {2, 36, -46}, 19, {6, -4, -38}, 15), 8)  // heel
         .add(ellipsoid(foot_, {-10, -44, -24}, {15, 11, 14}), 4)

@@ -41,8 +41,8 @@ struct GlidedJoint {
   glm::dvec3 shift{0};        // shift of the bone along the world axes, mm
   double most_mm = 0;         // upper limit on the length of the shift
   bool free = true;           // true: with the shift the bones overlap by half a voxel at most
-  double depth_before = 0;    // deepest overlap beyond half a voxel without the shift, mm
-  double depth_after = 0;     // deepest overlap beyond half a voxel with the shift, mm
+  double depth_before = 0;    // how far the deepest overlap exceeds half a voxel without the shift, mm
+  double depth_after = 0;     // how far the deepest overlap exceeds half a voxel with the shift, mm
 };
 
 struct GlidedPose {

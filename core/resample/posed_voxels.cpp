@@ -28,7 +28,7 @@ namespace {
 constexpr glm::ivec3 kTile = RestPoints::kTile;  // size of a tile, output voxels; its inverse map takes 3 MB
 constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points (48 MB)
 constexpr int kReach = 8;          // largest distance from a rest point at which a missing label is searched, voxels
-constexpr double kMostSure = 0.8;  // a voxel whose tissue's membership leads by more keeps its label, [0, 1]
+constexpr double kMostSure = 0.8;  // a voxel whose own membership exceeds the new tissue's by this keeps its label
 // Smallest tissue in voxels that the mass limit applies to: resampling alone changes smaller tissues by more.
 constexpr std::int64_t kJudged = 5000;
 

@@ -148,8 +148,8 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   for (int i = 0; i < 4; ++i) rest[i] = voxels.weight(i) & ~own[i];
   const Lanes others = kFullWeight - now, sum = rest[0] + rest[1] + rest[2] + rest[3];
   const Numbers factor = __builtin_convertvector(others, Numbers) / __builtin_convertvector(sum - (sum == 0), Numbers);
-  // The largest of the other weights takes the remainder of rounding. The remainder is never negative, since at most
-  // two other weights are rounded.
+  // Of the other bones' weights the largest is not rounded: it gets what the at most two remaining ones leave. That is
+  // never negative, since rounding raises each of those by at most half a unit.
   Lanes made[4] = {Lanes{}, scaled<Width>(rest[1] & ~own[0], factor), scaled<Width>(rest[2], factor),
                    scaled<Width>(rest[3], factor)};
   const Lanes left = others - made[1] - made[2] - made[3];

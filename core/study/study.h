@@ -39,8 +39,9 @@ struct Technique {
   Technique plain() const { return {method, contact, false}; }
   bool operator==(const Technique&) const = default;
 };
-std::vector<Technique> plain_techniques();  // all techniques that are not mass-exact
-std::string technique_words();              // the words of these: "mix, lbs, dqs, fem, fem-contact"
+std::vector<Technique>
+plain_techniques();             // all techniques without the correction that keeps the volume of each soft tissue
+std::string technique_words();  // the words of these: "mix, lbs, dqs, fem, fem-contact"
 std::string word_of(
     const Technique& technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
 std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"

@@ -65,9 +65,9 @@ class GizmoPainter {
 };
 
 constexpr Colour kGizmoActive = 0xFF8AE0FF;  // RRGGBB: FFE08A; colour of the part of a gizmo that is being dragged
-// Bright variants of the theme's colours, for drawing over views. Views have a dark background in every theme.
-constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4,
-                 kViewError = 0xFF807AFF;   // RRGGBB: 5AD19A, F4BC52, FF7A80
+// Bright variants of the theme's colours, for drawing over views. Views have a dark background in every theme. As
+// RRGGBB the next three are 5AD19A, F4BC52 and FF7A80; a Colour stores the bytes as AABBGGRR.
+constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4, kViewError = 0xFF807AFF;
 constexpr Colour kViewAccent = 0xFFFFBE8F;  // RRGGBB: 8FBEFF
 
 }  // namespace limber::editor

@@ -194,7 +194,8 @@ std::vector<Operator> prepare_operators() {
        needs_volume},
       flip_operator("prepare.flip_x", "Flip left and right", 0, "Mirror the body from left to right."),
       flip_operator("prepare.flip_y", "Flip front and back", 1, "Mirror the body from front to back."),
-      flip_operator("prepare.flip_z", "Flip head and feet", 2, "Mirror the body from head to feet."),
+      flip_operator("prepare.flip_z", "Flip head and feet", 2,
+                    "Mirror the body along its length: head and feet change places."),
       {"prepare.crop", "Crop to tissue", icon::kClip, "Prepare", "Remove the air around the tissue from the volume.",
        [](Editor& e) {
          start_preparation(e, {"Crop to tissue", [](const LabelVolume& v, Progress&) { return crop_to_tissue(v); }});

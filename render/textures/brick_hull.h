@@ -21,7 +21,8 @@ class Hull {
 
   Hull();
 
-  // Uploads the faces. A corner has the padded coordinates (brick_atlas.h) offset + scale * corner.
+  // Uploads the faces. Each corner c of a face lies at offset + scale * c, in coordinates of the padded grid
+  // (brick_atlas.h).
   void upload(const Faces& faces, double scale, const glm::dvec3& offset);
   void draw() const;
 

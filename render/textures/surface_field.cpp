@@ -372,8 +372,8 @@ void VisibleField::build_hull(const BlockLayout& layout) {
   hull_.upload(faces, kBrick, glm::dvec3(0));
 }
 
-// Builds the occupancy texture: the share of each brick that belongs to the set, blurred once more. It tells how
-// enclosed a position is, from which the soft shadows in creases are computed.
+// Builds the occupancy texture: for each brick the share of its voxels whose labels are visible, blurred over the
+// bricks around it. It tells how enclosed a position is, from which the soft shadows in creases are computed.
 void VisibleField::build_occupancy(const VolumeTexture& volume) {
   const BlockLayout& layout = volume.layout();
   const glm::ivec3 size = layout.bricks();
