@@ -79,8 +79,7 @@ class PosedTets::Border {
   // Returns the posed position of a rest point outside the mesh. It stays as far from the mesh's border as at rest. If
   // another part of the mesh is near, the point takes at most half of the air between both parts; the other half is for
   // tissue outside that part's border.
-  //   pressed  set to true if the other part keeps the point closer to the border than at rest, else not changed
-  FixedPoint carried(const glm::dvec3& rest, bool& pressed) const {
+  FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
     const auto place = border_.nearest(rest);  // there always is one, since a mesh has a border
     glm::dvec3 from(0), moved(0);              // rest position of the border's nearest point, and its motion; mm
@@ -108,9 +107,7 @@ class PosedTets::Border {
     // If the other part of the mesh is no nearer than at rest, the point keeps its distance from the border.
     const double rest_way = free_way(rest_bins_, voxel_from_world(grid) * from, rest, place->corners,
                                      [&](int t) { return tets_.rest_corners(t); });
-    if (way > rest_way - kRounding) return tets_.fixed(whole);
-    pressed = true;
-    return tets_.fixed(at(std::min(1.0, kApart * way / rest_way)));
+    return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
 
  private:
@@ -304,18 +301,16 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
   }
 
   std::array<std::optional<FixedPoint>, kSide * kSide * kSide> posed;
-  std::array<bool, kSide * kSide * kSide> pressed{};  // of each posed corner
   tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - cells.corner;
     if (!(mine[v.z] >> (v.x + 8 * v.y) & 1)) return;
-    Rider rider{voxel, {}, false};
+    Rider rider{voxel, {}};
     bool rides = !(centre_held[v.z] >> (v.x + 8 * v.y) & 1);
     for (int i = 0; i < 8; ++i) {
       const glm::ivec3 corner = v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
       const int at = PosedLattice::place(corner.x, corner.y, corner.z);
       const glm::dvec3 rest = glm::dvec3(cells.corner + corner) - 0.5;
-      if (!posed[at]) posed[at] = tet_of[at] >= 0 ? carried(tet_of[at], rest) : border.carried(rest, pressed[at]);
-      rider.pressed |= pressed[at];
+      if (!posed[at]) posed[at] = tet_of[at] >= 0 ? carried(tet_of[at], rest) : border.carried(rest);
       rides |= tet_of[at] < 0;
       rider.corners[i] = *posed[at];
       outcome.low = glm::min(outcome.low, *posed[at]);
@@ -358,7 +353,6 @@ void PosedTets::rasterize_riders(InverseMap& map, const std::vector<int>& priori
   for (int r : near) {
     const Rider& rider = riders_[r];
     PosedCell(rider.corners.data(), 2, 4, rider.voxel).rasterize(map.range, [&](const CellClaim& claim) {
-      if (rider.pressed && map.cell[map.index(claim.voxel)] != InverseMap::kNoCell) return;
       claims.claim_empty(index_of(volume.grid, rider.voxel), rider.voxel, claim, kCrease);
     });
   }

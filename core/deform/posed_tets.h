@@ -9,8 +9,9 @@
 // outside it are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
 // outside moves with the nearest point of the mesh's border and rotates with the tet there. If another part of the mesh
 // has come near, it moves closer to the border than at rest: tissue outside the border is pressed flat where skin
-// presses on skin. Riders fill only voxels that no tet covers. A voxel that another claims too is an overlap, except
-// where a rider pressed flat gives way: tissue lies between there, and none of it passes through other tissue.
+// presses on skin. Riders fill only voxels that no tet covers. A rider whose voxel is taken counts as an overlap,
+// unless both lay within a few voxels of each other at rest, on either side of a crease: there the fold squeezes them
+// together.
 //
 // A mesh need not contain the whole body. The lattice (lattice.h) carries all other tissue. It also carries one layer
 // of voxels of the mesh next to that tissue: lattice and mesh move equally there, and no rounding error opens a gap.
@@ -57,7 +58,6 @@ class PosedTets {
   struct Rider {
     glm::ivec3 voxel;
     std::array<FixedPoint, 8> corners;  // posed corners; bits 0, 1, 2 of the index are x, y, z
-    bool pressed;  // whether another part of the mesh presses the voxel flat; it then gives way to all other tissue
   };
   struct BrickOutcome;
   class Border;
