@@ -220,7 +220,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
       for (int lane = 0; lane < lanes; ++lane)
         solver.first_guess_of_blacks(b, lane)[slot - HeatSystem::kColour] = from[lane];
     });
-    const SolveReport solved = solver.solve(settings.residual, settings.maximum_iterations, progress);
+    const MultigridReport solved = solver.solve(settings.residual, settings.maximum_iterations, progress);
     if (progress.cancelled()) throw Cancelled();
     if (solved.residual > settings.residual) {
       char text[64];

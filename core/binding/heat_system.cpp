@@ -221,14 +221,14 @@ HeatSolver::Sums HeatSolver::apply() {
   });
 }
 
-SolveReport HeatSolver::solve(double residual, int most_iterations, const Progress& progress) {
+MultigridReport HeatSolver::solve(double residual, int most_iterations, const Progress& progress) {
   const Sums sources = start();
   Sums remaining = sum_over_bricks([&](std::int64_t brick, Sums& sums) {
     for (int lane = 0; lane < lanes_; ++lane)
       for (std::int64_t i = at(brick, lane); i < at(brick, lane + 1); ++i)
         sums[lane] += double(residual_[i]) * residual_[i];
   });
-  SolveReport report;
+  MultigridReport report;
   std::array<bool, Multigrid::kMostLanes> open{};
   const auto is_open = [&] {
     bool any = false;

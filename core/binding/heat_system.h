@@ -111,7 +111,7 @@ class HeatSolver {
 
   // Solves the system. It may be called only once.
   //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
-  SolveReport solve(double residual, int most_iterations, const Progress& progress = no_progress());
+  MultigridReport solve(double residual, int most_iterations, const Progress& progress = no_progress());
 
   // Returns the solution at a cell, after solve().
   float temperature(std::int64_t brick, int lane, int slot) const {

@@ -182,8 +182,8 @@ class Multigrid::Solver {
     }
   }
 
-  SolveReport solve(std::vector<float> b, std::vector<float>& x, double residual, int most_iterations,
-                    const Progress& progress) {
+  MultigridReport solve(std::vector<float> b, std::vector<float>& x, double residual, int most_iterations,
+                        const Progress& progress) {
     const CellGraph& graph = grid_.finest();
     std::vector<float> p(b.size()), q(b.size());
     const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
@@ -200,7 +200,7 @@ class Multigrid::Solver {
       }
     });
 
-    SolveReport report;
+    MultigridReport report;
     std::array<bool, Lanes> open;
     auto check = [&] {
       bool any = false;
@@ -404,8 +404,8 @@ auto with_lanes(int lanes, const Body& body) {
 }
 }  // namespace
 
-SolveReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
-                             int most_iterations, const Progress& progress) const {
+MultigridReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
+                                 int most_iterations, const Progress& progress) const {
   return with_lanes(lanes, [&](auto count) {
     return Solver<count>(*this).solve(std::move(b), x, residual, most_iterations, progress);
   });

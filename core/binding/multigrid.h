@@ -46,7 +46,7 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing);
 // centres doubles.
 constexpr float kCoarseConductance = 0.5f;
 
-struct SolveReport {
+struct MultigridReport {
   int iterations = 0;
   double residual = 0;  // largest relative residual |b - A x| / |b| of any right-hand side
 };
@@ -75,8 +75,8 @@ class Multigrid {
   //   b, x       #cells x lanes; x contains the first guess
   //   lanes      number of right-hand sides, 1 to kMostLanes
   //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
-  SolveReport solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual, int most_iterations,
-                    const Progress& progress = no_progress()) const;
+  MultigridReport solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual, int most_iterations,
+                        const Progress& progress = no_progress()) const;
 
  private:
   struct Level {

@@ -233,14 +233,14 @@ std::vector<WholeBone> judge_named(const JudgedPose& pose, const std::map<Label,
 }
 }  // namespace
 
-PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map) {
+PosedBoneMeasures measure_posed_bones(const JudgedPose& pose, const BoneMap& map) {
   const std::vector<TissueKind> kinds = pose.tissues.kinds();
   const std::map<Label, LabelBones> labels = bones_of_labels(pose.tissues, *pose.armature, map);
   std::optional<RestBone> rest;
   if (!labels.empty()) rest.emplace(pose.rest, kinds);
   const std::vector<BoneVoxel> bone = posed_bone_voxels(pose, rest ? &*rest : nullptr, kinds);
   std::vector<MovedVoxels> of_rig_bone(pose.armature->bones.size());
-  PosedBones found;
+  PosedBoneMeasures found;
   if (rest) found.whole = judge_named(pose, labels, *rest, bone, of_rig_bone);
   rest.reset();
   found.limbs = limb_directions(pose, bone, of_rig_bone);

@@ -23,7 +23,7 @@ struct LimbDirection {
   bool by_name = false;  // true: measured on bones that labels name; false: on bone tissue at the axis' middle
 };
 
-struct PosedBones {
+struct PosedBoneMeasures {
   std::vector<WholeBone> whole;      // sorted by label, then side; labels that name no bone are left out
   std::vector<LimbDirection> limbs;  // in the order of the rig's bones; those with fewer than 30 voxels are left out
 };
@@ -32,6 +32,6 @@ struct PosedBones {
 // its label may follow moves it to within a voxel edge (the longest) of its posed position. For a bone's residual_mm,
 // the rigid motion that fits all its voxels best is found; the residual is the largest distance of a voxel from the
 // position to which this motion moves it.
-PosedBones measure_posed_bones(const JudgedPose& pose, const BoneMap& map = {});
+PosedBoneMeasures measure_posed_bones(const JudgedPose& pose, const BoneMap& map = {});
 
 }  // namespace limber

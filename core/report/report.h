@@ -59,7 +59,7 @@ struct Report {
   std::optional<VolumeMetrics> metrics;
   std::optional<std::vector<std::string>> doubts;  // why inputs may not match (input_doubts.h); none: unchecked
   std::optional<bool> whole_body;                  // true: the rig has legs, and arms or a head; none: no rig
-  PosedBones posed_bones;
+  PosedBoneMeasures posed_bones;
   std::optional<Exposure> exposure;
   std::optional<WorstPlace> air_pocket;  // the largest pocket of air that the pose encloses; none: no such air
   std::optional<std::vector<Band>> bands;

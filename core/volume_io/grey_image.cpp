@@ -49,7 +49,7 @@ Stretch inside(const Grid& grid, const glm::dvec3& start, const glm::dvec3& step
 
 // Returns a picture. Each pixel is value(p), where p is the pixel's centre in voxel coordinates.
 template <class Value>
-std::vector<float> picture(const GreyVolume& volume, const PictureFrame& frame, const Value& value) {
+std::vector<float> picture(const GreyVolume& volume, const GreyFrame& frame, const Value& value) {
   std::vector<float> pixels(static_cast<std::size_t>(frame.size.x) * static_cast<std::size_t>(frame.size.y));
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
   parallel_for(frame.size.y, 4, [&](std::int64_t first, std::int64_t last) {
@@ -98,11 +98,11 @@ GreyWindow usual_window(const GreyVolume& volume) {
   return {0.5 * (low + high), high > low ? high - low : 1};
 }
 
-std::vector<float> grey_slice(const GreyVolume& volume, const PictureFrame& frame) {
+std::vector<float> grey_slice(const GreyVolume& volume, const GreyFrame& frame) {
   return picture(volume, frame, [&](const glm::dvec3& place) { return nearest(volume, place); });
 }
 
-std::vector<float> grey_projection(const GreyVolume& volume, const PictureFrame& frame) {
+std::vector<float> grey_projection(const GreyVolume& volume, const GreyFrame& frame) {
   const Grid& grid = volume.grid;
   // The rays start before the volume and end behind it. Half a ray's length is half the volume's diagonal plus the
   // distance from the picture's centre to the volume's centre.

@@ -33,7 +33,7 @@ GreyWindow usual_window(const GreyVolume& volume);
 
 // The position of a picture in the world: its centre `middle`, mm, and unit vectors along its rows (`right`) and its
 // columns (`down`).
-struct PictureFrame {
+struct GreyFrame {
   glm::dvec3 middle{0}, right{1, 0, 0}, down{0, 1, 0};
   glm::ivec2 size{1};  // pixels
   double millimetres_per_pixel = 1;
@@ -42,8 +42,8 @@ struct PictureFrame {
 // volume.
 //   grey_slice       the value of the voxel nearest to each pixel
 //   grey_projection  the largest value along each pixel's line of sight through the whole volume
-std::vector<float> grey_slice(const GreyVolume& volume, const PictureFrame& frame);
-std::vector<float> grey_projection(const GreyVolume& volume, const PictureFrame& frame);
+std::vector<float> grey_slice(const GreyVolume& volume, const GreyFrame& frame);
+std::vector<float> grey_projection(const GreyVolume& volume, const GreyFrame& frame);
 
 // Returns the grey level at which a value is shown: 0 (black) to 255 (white), and 0 for NaN.
 std::uint8_t grey_of(float value, const GreyWindow& window);

@@ -55,14 +55,14 @@ class GreyImageDialog final : public Dialog {
  private:
   // The inputs from which a pane's texture was made. The texture is made again when one of them changes.
   struct Pane {
-    PictureFrame frame;
+    GreyFrame frame;
     GreyWindow window;
     std::vector<float> values;
     bool made = false;
   };
 
-  PictureFrame frame_of_pane(int p, const glm::vec2& size) const {
-    PictureFrame frame;
+  GreyFrame frame_of_pane(int p, const glm::vec2& size) const {
+    GreyFrame frame;
     if (p == kProjection) {
       frame.right = {std::cos(turn_), std::sin(turn_), 0};
       frame.down = {0, 0, -1};
@@ -83,12 +83,12 @@ class GreyImageDialog final : public Dialog {
     return frame;
   }
 
-  static bool same(const PictureFrame& a, const PictureFrame& b) {
+  static bool same(const GreyFrame& a, const GreyFrame& b) {
     return a.middle == b.middle && a.right == b.right && a.down == b.down && a.size == b.size &&
            a.millimetres_per_pixel == b.millimetres_per_pixel;
   }
 
-  unsigned texture_of(Editor& editor, int p, const PictureFrame& frame) {
+  unsigned texture_of(Editor& editor, int p, const GreyFrame& frame) {
     Pane& pane = panes_[static_cast<std::size_t>(p)];
     const std::string name = "grey image " + std::to_string(p);
     const bool moved = !pane.made || !same(pane.frame, frame);
@@ -112,9 +112,9 @@ class GreyImageDialog final : public Dialog {
   void draw_pane(Editor& editor, int p, const Rect& rect) {
     const Look& look = editor.look;
     const Pressed pressed = press_area(editor, kNames[p], rect);
-    const PictureFrame before = frame_of_pane(p, rect.size());
+    const GreyFrame before = frame_of_pane(p, rect.size());
     move(editor, p, rect, before, pressed);
-    const PictureFrame frame = frame_of_pane(p, rect.size());
+    const GreyFrame frame = frame_of_pane(p, rect.size());
     fill(rect, 0xFF000000);
     if (const unsigned texture = texture_of(editor, p, frame))
       ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
@@ -126,7 +126,7 @@ class GreyImageDialog final : public Dialog {
 
   // Handles the pointer over a pane. In a slice, a press moves the cross-hair and the wheel steps through the slices.
   // In the projection, a drag turns the view of the image.
-  void move(Editor& editor, int p, const Rect& rect, const PictureFrame& frame, const Pressed& pressed) {
+  void move(Editor& editor, int p, const Rect& rect, const GreyFrame& frame, const Pressed& pressed) {
     const ImGuiIO& io = ImGui::GetIO();
     if (p == kProjection) {
       if (!pressed.held || io.MouseDelta.x == 0) return;
@@ -153,7 +153,7 @@ class GreyImageDialog final : public Dialog {
     editor.touch();
   }
 
-  void draw_cross(Editor& editor, const Rect& rect, const PictureFrame& frame) {
+  void draw_cross(Editor& editor, const Rect& rect, const GreyFrame& frame) {
     const glm::dvec3 off = (cross_ - frame.middle) / frame.millimetres_per_pixel;
     const glm::vec2 at = rect.centre() + glm::vec2(glm::dot(off, frame.right), glm::dot(off, frame.down));
     ImDrawList& canvas = *ImGui::GetWindowDrawList();

@@ -87,3 +87,29 @@ TEST_CASE("names: no file has a name that was replaced") {
       CHECK(file.stem() != name);
     }
 }
+
+// Two types of one name in one namespace are undefined behaviour, even in files that do not include each other: the
+// linker keeps one of two inline functions, such as the destructors.
+TEST_CASE("names: no two types of one namespace have the same name") {
+  static const std::regex opens(R"(^namespace\s*([\w:]*)\s*\{)"), closes(R"(^\}.*// namespace)"),
+      type(R"(^(?:struct|class|union|enum class|enum)\s+(\w+)(?:\s+final)?\s*(?::[^:].*)?\{)");
+  std::map<std::string, std::string> file_of;
+  for (const fs::path& file : sources({"core", "render", "editor"})) {
+    std::vector<std::string> inside;
+    for (const std::string& line : lines_of(file)) {
+      std::smatch found;
+      if (std::regex_search(line, found, opens)) inside.push_back(found[1]);
+      else if (std::regex_search(line, closes) && !inside.empty()) inside.pop_back();
+      if (!std::regex_search(line, found, type)) continue;
+      std::string name;
+      bool is_local = false;  // in an unnamed namespace
+      for (const std::string& one : inside) is_local |= one.empty(), name += one + "::";
+      if (is_local) continue;
+      name += found[1];
+      INFO(name, " in ", file.generic_string(), " and ", file_of[name]);
+      CHECK(file_of[name].empty());
+      file_of[name] = file.generic_string();
+    }
+  }
+  CHECK(file_of.size() > 500);
+}

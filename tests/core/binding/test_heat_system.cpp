@@ -110,7 +110,7 @@ std::vector<std::vector<float>> solved_temperatures(const RandomBody& body, doub
   HeatVectors vectors;
   HeatSolver solver(system, kBones, vectors);
   soft.add_sources(bricks, system, {0, 1, 2}, solver);
-  const SolveReport report = solver.solve(residual, 200);
+  const MultigridReport report = solver.solve(residual, 200);
   CHECK(report.residual <= residual);
   if (iterations) *iterations = report.iterations;
   std::vector<std::vector<float>> temperatures(kBones, std::vector<float>(body.tissue.size(), 0.0f));

@@ -79,7 +79,7 @@ TEST_CASE("multigrid: the residual it states is the residual, for any number of 
     const CellGraph graph = box_graph({21, 18, 25}, glm::dvec3(1), 0.2, lanes);
     const std::vector<float> b = random_sources(graph.size() * lanes);
     std::vector<float> x(b.size());
-    const SolveReport report = Multigrid(graph).solve(b, x, lanes, 1e-5, 100);
+    const MultigridReport report = Multigrid(graph).solve(b, x, lanes, 1e-5, 100);
     CHECK(report.residual <= 1e-5);
     double worst = 0;
     for (int lane = 0; lane < lanes; ++lane) worst = std::max(worst, relative_residual(graph, b, x, lanes, lane));
@@ -95,7 +95,7 @@ TEST_CASE("multigrid: iterations stay few when the body grows and when voxels ar
     const CellGraph graph = box_graph(size, spacing, 0.05, 3);
     const std::vector<float> b = random_sources(graph.size());
     std::vector<float> x(b.size());
-    const SolveReport report = Multigrid(graph).solve(b, x, 1, 1e-5, 100);
+    const MultigridReport report = Multigrid(graph).solve(b, x, 1, 1e-5, 100);
     CHECK(report.residual <= 1e-5);
     CHECK(report.iterations <= 16);
   }

@@ -73,7 +73,7 @@ int own_bone(Label label, const glm::ivec3&) {
   }
 }
 
-const WholeBone& of(const PosedBones& bones, Label label) {
+const WholeBone& of(const PosedBoneMeasures& bones, Label label) {
   for (const WholeBone& one : bones.whole)
     if (one.label == label) return one;
   FAIL("no bone " << label);
@@ -84,7 +84,7 @@ const WholeBone& of(const PosedBones& bones, Label label) {
 TEST_CASE("posed bones: bones that went with their own rig bones are whole, and each limb points where it was asked") {
   const PosedFigure body =
       pose_figure({{"LeftThigh", -60}, {"LeftShank", 60}}, own_bone);  // the shank hangs as at rest
-  const PosedBones bones = measure_posed_bones(body.judged());
+  const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   CHECK(bones.whole.size() == 11);
   for (const WholeBone& one : bones.whole) {
     CHECK(one.voxels > 50);
@@ -105,7 +105,7 @@ TEST_CASE("posed bones: a bone that went whole with another rig bone is rigid, a
   const PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) {
     return label == kLeftHip ? 6 : own_bone(label, v);
   });
-  const PosedBones bones = measure_posed_bones(body.judged());
+  const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   const WholeBone& hip = of(bones, kLeftHip);
   CHECK(hip.residual_mm < 1e-3);
   CHECK(double(hip.wrong_voxels) > 0.8 * double(hip.voxels));  // what lies at the hip's axis hardly moves
@@ -131,7 +131,7 @@ TEST_CASE("posed bones: a pose that was not reached shows in the limbs' directio
   asked.rotation[3] = glm::angleAxis(glm::radians(-62.0), glm::dvec3(1, 0, 0));
   JudgedPose pose = body.judged();
   pose.asked = posed_from_rest(body.figure.armature, asked);
-  const PosedBones bones = measure_posed_bones(pose);
+  const PosedBoneMeasures bones = measure_posed_bones(pose);
   REQUIRE(bones.limbs.size() == 1);
   CHECK(bones.limbs[0].bone == "LeftForearm");
   CHECK(bones.limbs[0].direction_degrees == doctest::Approx(12).epsilon(0.001));
@@ -142,7 +142,7 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   PosedFigure body = pose_figure({{"RightForearm", -40}}, own_bone);
   for (Tissue& tissue : body.figure.tissues.tissues)
     if (is_bone(tissue.kind)) tissue.name = "Bone";
-  const PosedBones bones = measure_posed_bones(body.judged());
+  const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   CHECK(bones.whole.empty());
   REQUIRE(bones.limbs.size() == 1);
   CHECK_FALSE(bones.limbs[0].by_name);
@@ -162,7 +162,7 @@ TEST_CASE(
     return label == kLeftFemur && (v.x + v.y) % 3 == 0 ? 0 : own_bone(label, v);  // a third stays
   });
   for (Tissue& tissue : body.figure.tissues.tissues) tissue.name = "bone";
-  const PosedBones bones = measure_posed_bones(body.judged());
+  const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   REQUIRE(bones.limbs.size() == 2);
   CHECK(bones.limbs[0].bone == "LeftThigh");
   CHECK_FALSE(bones.limbs[0].by_name);

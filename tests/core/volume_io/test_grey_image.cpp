@@ -24,7 +24,7 @@ GreyVolume numbered() {
   return volume;
 }
 
-PictureFrame axial(const GreyVolume& volume, const glm::ivec3& voxel) {
+GreyFrame axial(const GreyVolume& volume, const glm::ivec3& voxel) {
   return {.middle = world_from_voxel(volume.grid) * glm::dvec3(voxel), .size = {1, 1}, .millimetres_per_pixel = 1};
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("grey image: a slice shows the voxel at each place of the world, nothi
         CHECK(picture[0] == 100 * z + 10 * y + x);
       }
   // To the right in the world is back along the rows.
-  PictureFrame frame = axial(volume, {1, 2, 1});
+  GreyFrame frame = axial(volume, {1, 2, 1});
   frame.size = {9, 1};
   frame.millimetres_per_pixel = 2;
   const auto row = grey_slice(volume, frame);
@@ -84,7 +84,7 @@ TEST_CASE("grey image: a projection shows the largest value on each line of sigh
     CHECK(picture[0] == value);
   }
   // From the front, whatever the picture's middle is.
-  PictureFrame front{.middle = world_from_voxel(volume.grid) * glm::dvec3(2, 40, 1), .down = {0, 0, -1}};
+  GreyFrame front{.middle = world_from_voxel(volume.grid) * glm::dvec3(2, 40, 1), .down = {0, 0, -1}};
   CHECK(grey_projection(volume, front)[0] == 5000);
   front.middle.z += 3;
   CHECK(grey_projection(volume, front)[0] == 242);
