@@ -8,9 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/progress.h"
-#include "core/bones/bone_identity.h"
-#include "core/rig/armature.h"
-#include "core/volume_io/volume_io.h"
+#include "core/body/body.h"
 
 namespace limber::cmd {
 
@@ -18,14 +16,6 @@ struct BodyOptions {
   std::string volume, rig, tissues, bone_map;  // file names; empty: not given
   // Labels of bone, as values in the volume's file. Empty: the tissue table names them, or they are guessed.
   std::vector<double> bones;
-};
-
-struct Body {
-  VolumeFile file;
-  TissueTable tissues;
-  Armature rig;
-  BoneMap bone_map;                 // the rig bones that the user assigned to labels
-  std::vector<std::string> doubts;  // signs that the files are not of the same body (input_doubts.h)
 };
 
 // Adds these options to a command. `options` must live as long as the command.

@@ -12,12 +12,10 @@
 #include <memory>
 #include <optional>
 
-#include "core/autorig/joint_axis_fit.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
-#include "core/binding/heat_diffusion.h"
-#include "core/bones/bone_parts.h"
-#include "core/bones/unsure_bones.h"
+#include "core/body/glide_poses.h"
+#include "core/body/pose_body.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
@@ -35,7 +33,6 @@
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
 #include "core/resample/posed_points.h"
-#include "core/skin/weights_io.h"
 #include "core/volume_io/landmarks.h"
 #include "core/volume_io/vector_volume_io.h"
 #include "core/volume_io/volume_files.h"
@@ -151,15 +148,6 @@ void note(Report& report, const std::vector<std::string>& warnings) {
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
-SkinWeights new_weights(const Body& body, const TissueVoxels& tissue, const BoneParts& parts, Report& report,
-                        Progress& progress) {
-  note(report, unsure_bones(parts, body.tissues, body.rig));
-  WeightsReport heat;
-  SkinWeights weights = diffuse_heat(body.file.volume, tissue, body.tissues, body.rig, parts, {}, progress, &heat);
-  note(report, heat.warnings);
-  return weights;
-}
-
 void check_sequence(const Options& options) {
   if (options.frames.empty()) return;
   if (options.pose.motion.empty())
@@ -183,7 +171,7 @@ void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact",
                 "leave one of the two out");
-  glide_settings(options.glide, options.pose, 1);
+  glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
   for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"},
                                        {!options.quality.empty(), "--quality"},
@@ -200,15 +188,15 @@ void check_method(const Options& options) {
 // step to a file for another program.
 class SolveProgress {
  public:
-  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones,
-                const Armature& rig, const Pose& pose)
+  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones)
       : progress_(progress),
         name_(options.steps),
-        bones_(bones),
-        rig_(rig),
-        pose_(pose) {}
-  // Sets the target pose of the following steps.
-  void aim_at(const Pose& pose) { pose_ = pose; }
+        bones_(bones) {}
+  // Sets the rig and the target pose of the following steps.
+  void aim_at(const Armature& rig, const Pose& pose) {
+    rig_ = rig;
+    pose_ = pose;
+  }
   void begin(const TissueModel& model) const {
     if (!name_.empty()) write_fem_mesh(fem_mesh_of(model), name_);
   }
@@ -232,38 +220,10 @@ class SolveProgress {
   CommandProgress& progress_;
   std::string name_;
   const std::vector<std::string>& bones_;
-  const Armature& rig_;
+  Armature rig_;
   Pose pose_;
   Stopwatch watch_;
 };
-
-Method method_of(const Options& options, SolveProgress& solve) {
-  if (const auto blend = find_method(options.method)->blend) return *blend;
-  Fem fem;
-  fem.contact = options.contact;
-  if (options.quality == "draft") fem.quality = FemQuality::Draft;
-  if (options.quality == "fine") fem.quality = FemQuality::Fine;
-  if (options.mesher == "tetgen") fem.mesher = Mesher::tetgen;
-  fem.on_mesh = [&solve](const TissueModel& model) { solve.begin(model); };
-  fem.on_step = [&solve](const SolveStep& step) { solve.show(step); };
-  return fem;
-}
-
-// Warns the user if the mesh or the solve differs from the request.
-void note_shape(Report& report, const DeformReport& deform, const Pose& pose, bool contact) {
-  if (deform.mesh && !deform.mesh->fallback.empty()) note(report, {deform.mesh->fallback});
-  if (deform.mesh && contact && deform.mesh->self_intersections.value_or(0) > 0)
-    note(report,
-         {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
-  if (!deform.solve || deform.solve->converged) return;
-  if (deform.solve->reached == 1)
-    return note(report, {"the pose is reached, but its shape has not settled: " + deform.solve->blocked_by});
-  char share[64];
-  std::snprintf(share, sizeof share, "%.0f %% (%.1f of %.1f degrees)", 100 * deform.solve->reached,
-                deform.solve->reached * largest_angle_degrees(pose), largest_angle_degrees(pose));
-  note(report, {"the pose could not be reached: the result is the way to it up to " + std::string(share) +
-                (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
-}
 
 // Returns the posed mesh. The region number of a tet is the organ number of the label that fills most of the tet.
 TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
@@ -278,33 +238,16 @@ TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   return organ_mesh(shape.V, mesh.T, labels, tissues);
 }
 
-void describe(Report& report, const Options& options, const Armature& rig, const Pose& pose) {
-  report.method = options.method;
+// Adds to the report what only this command knows: the options of the pose and the input files.
+void describe(Report& report, const Options& options) {
   auto& settings = report.settings;
-  settings["method"] = options.method;
-  settings["nearest"] = options.nearest;
-  settings["mass_exact"] = options.mass_exact;
-  if (options.mass_exact) settings["mass_limit_percent"] = options.mass_limit;
-  settings["fit_joints"] = options.fit_joints;
-  settings["glide"] = glide_word(options.glide, options.pose);
-  if (options.method == kFiniteElements) {
-    settings["contact"] = options.contact;
-    settings["quality"] = options.quality.empty() ? std::string("normal") : options.quality;
-    if (!options.mesher.empty()) settings["mesher"] = options.mesher;
-  }
   if (!options.field.empty()) settings["field_direction"] = options.field_direction;
-  if (options.spacing) settings["spacing_mm"] = *options.spacing;
   if (!options.pose.body.name.empty())
     settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
   if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
   if (options.pose.up != "y") settings["up"] = options.pose.up;
-  std::vector<std::string> turned;
-  for (size_t b = 0; b < rig.bones.size(); ++b)
-    if (pose.rotation[b] != glm::dquat(1, 0, 0, 0)) turned.push_back(rig.bones[b].name);
-  settings["turned_bones"] = turned;
-  report.joints = turned_joints(rig, pose);
   for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights,
                                   options.pose.pose, options.pose.motion, options.pose.map})
     if (!path.empty()) report.inputs.push_back(describe_input(path));
@@ -338,102 +281,76 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
-// Warns of tissues with 5000 voxels or more whose mass still differs from its mass at rest by more than 0.1 %.
-void note_masses(Report& report, const MassExactReport& exact, const TissueTable& tissues) {
-  for (const auto& [label, tissue] : exact.tissues) {
-    if (tissue.wanted < 5000 || std::abs(tissue.after - tissue.wanted) * 1000 <= tissue.wanted) continue;
-    const Tissue* known = tissues.find(label);
-    note(report,
-         {(known ? known->name : "label " + std::to_string(label)) + " is " +
-          std::to_string(std::abs(tissue.after - tissue.wanted)) + " voxels " +
-          (tissue.after < tissue.wanted ? "short of" : "above") + " its mass at rest: no border could move further"});
-  }
-}
-
-// The landmarks at rest, and the body's tissue voxels and weights, which move the landmarks into the pose.
-struct Landmarks {
-  std::vector<Landmark> rest;
-  const TissueVoxels& tissue;
-  const SkinWeights& weights;
-};
-
-std::vector<Landmark> posed_landmarks(const Landmarks& landmarks, const Options& options, const Body& body,
-                                      const Pose& pose, const FemShape* shape) {
+std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, const Options& options, const Body& body,
+                                      const BoundBody& bound, const BodyInPose& posed) {
   std::vector<glm::dvec3> places;
-  for (const Landmark& landmark : landmarks.rest) places.push_back(landmark.position);
+  for (const Landmark& landmark : landmarks) places.push_back(landmark.position);
   const Blend blend = find_method(options.method)->blend.value_or(Blend::Linear);
-  places = posed_points(body.file.volume, landmarks.tissue, body.tissues, landmarks.weights, body.rig, pose, blend,
-                        shape, places);
-  std::vector<Landmark> there = landmarks.rest;
+  places = posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose, blend,
+                        posed.posed.shape.get(), places);
+  std::vector<Landmark> there = landmarks;
   for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
   return there;
 }
 
-// Measures the posed volume for the report.
-//   asked  #bones: motions from rest to the requested pose, by the rig from the file (before --fit-joints and --glide)
-void measure(const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked, Posed& posed,
-             Report& report) {
-  report.doubts = body.doubts;
-  report.metrics = compare(body.file.volume, posed.volume, body.tissues);
-  const JudgedPose judged{body.file.volume,
-                          posed.volume,
-                          body.tissues,
-                          {posed.displacement.data(), posed.displacement.size()},
-                          &body.rig,
-                          asked,
-                          posed_from_rest(body.rig, posed.shape ? posed.shape->pose : pose)};
-  measure_body(judged, body.bone_map, report);
-  report.deform = std::move(posed.report);
-}
-
-// Warns of anatomical bones whose weights follow a wrong rig bone. The cause may be a weights file that is older than
-// the rig or from another program.
-void note_foreign_weights(const Body& body, const Pose& pose, const Landmarks& landmarks, const Posed& posed,
-                          Report& report) {
-  const auto motions = bone_motions(landmarks.weights.bones(), body.rig, posed.shape ? posed.shape->pose : pose);
-  note(report, astray_bones(whole_bones(body.file.volume, landmarks.tissue, body.tissues, body.rig, landmarks.weights,
-                                        motions, body.bone_map)));
+PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
+  return {.method = options.method,
+          .contact = options.contact,
+          .quality = options.quality,
+          .mesher = options.mesher,
+          .glide = glide_word(options.glide, options.pose),
+          .fit_joints = options.fit_joints,
+          .resample = {.nearest = options.nearest,
+                       .mass_exact = options.mass_exact,
+                       .mass_limit_percent = options.mass_limit,
+                       .spacing = options.spacing,
+                       .displacement = !options.field.empty() || !options.report.empty() || options.strict,
+                       .jacobian = !options.jacobian.empty(),
+                       .overlap = !options.overlap.empty(),
+                       .grey = grey}};
 }
 
 // Writes the outputs and the report of one posed volume. Returns false if a gate failed that makes --strict fail.
-bool finish(const Options& options, const Body& body, const Pose& pose, const std::vector<RigidTransform>& asked,
-            const Landmarks& landmarks, Posed& posed, Report& report, const Stopwatch& total) {
-  if (!options.mesh_out.empty() && !posed.shape)
+bool finish(const Options& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
+            const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total) {
+  const std::shared_ptr<const FemShape> shape = posed.posed.shape;
+  Report& report = posed.report;
+  if (!options.mesh_out.empty() && !shape)
     throw Error("the pose bends nothing, so there is no mesh", options.mesh_out,
                 "leave --mesh-out out, or give a pose");
-  report.seconds.mesh = posed.report.seconds_mesh;
-  report.seconds.solve = posed.report.seconds_solve;
-  report.seconds.deform = posed.report.seconds_deform;
-  report.seconds.rasterize = posed.report.seconds_rasterize;
-  if (const std::string overlap = overlap_warning(report.glide, posed.report.bone_overlap_voxels); !overlap.empty())
-    note(report, {overlap});
-  note_shape(report, posed.report, pose, options.contact);
-  if (posed.report.mass_exact) note_masses(report, *posed.report.mass_exact, body.tissues);
-
-  if (!options.weights.empty()) note_foreign_weights(body, pose, landmarks, posed, report);
-  if (!options.mesh_out.empty()) note(report, {share_of_body(posed.shape->model, body.file.volume)});
+  if (!options.mesh_out.empty()) note(report, {share_of_body(shape->model, body.file.volume)});
 
   Outputs outputs;
   const Stopwatch writing;
-  write_outputs(options, body, posed, outputs);
-  if (!landmarks.rest.empty()) {
+  write_outputs(options, body, posed.posed, outputs);
+  if (!landmarks.empty()) {
     const std::string to = landmark_paths(options.landmarks).to;
-    outputs.write(to, [&] { write_landmarks(posed_landmarks(landmarks, options, body, pose, posed.shape.get()), to); });
+    outputs.write(to, [&] { write_landmarks(posed_landmarks(landmarks, options, body, bound, posed), to); });
   }
   report.seconds.write = writing.seconds();
   if (!options.report.empty() || options.strict) {
-    const Stopwatch comparing;
-    measure(body, pose, asked, posed, report);
-    describe(report, options, body.rig, pose);
-    report.seconds.report = comparing.seconds();
+    measure_posed_body(body, settings, posed);
+    describe(report, options);
     report.seconds.total = total.seconds();
-    judge(report);
     outputs.write(options.report, [&] { write_report(report, options.report); });
     if (!options.report.empty()) print_table(report);
     tell_failed_gates(failed_gates(report));
   }
   outputs.complete();
   return failed_gates(report).empty();
+}
+
+// The requested poses, and for a sequence the number of each one's frame.
+struct RequestedPoses {
+  std::vector<Pose> poses;
+  std::vector<int> frames;
+};
+RequestedPoses read_poses(const Options& options, const Armature& rig) {
+  if (options.frames.empty()) return {{read_pose_options(options.pose, rig)}, {}};
+  const std::vector<Pose> all = read_all_poses(options.pose, rig);
+  RequestedPoses requested{{}, frames_of(options.frames, int(all.size()))};
+  for (const int frame : requested.frames) requested.poses.push_back(all[frame]);
+  return requested;
 }
 
 void run(const Options& options) {
@@ -447,16 +364,8 @@ void run(const Options& options) {
   Report report;
 
   const Stopwatch reading;
-  Body body = read_body(options.body, progress);
-  std::vector<Pose> poses;
-  std::vector<int> frames;
-  if (options.frames.empty()) {
-    poses = {read_pose_options(options.pose, body.rig)};
-  } else {
-    const std::vector<Pose> all = read_all_poses(options.pose, body.rig);
-    frames = frames_of(options.frames, int(all.size()));
-    for (const int frame : frames) poses.push_back(all[frame]);
-  }
+  const Body body = read_body(options.body, progress);
+  const auto [poses, frames] = read_poses(options, body.rig);
   std::optional<GreyVolume> grey;
   if (!options.grey.empty()) grey = read_grey_volume(grey_paths(options.grey).from, progress);
   std::vector<Landmark> landmarks;
@@ -464,63 +373,32 @@ void run(const Options& options) {
   report.seconds.read = reading.seconds();
 
   const Stopwatch weighting;
-  TissueVoxels tissue(body.file.volume);
-  std::optional<BoneParts> known_parts;  // computed only when needed, since splitting bones is slow
-  const auto parts = [&]() -> const BoneParts& {
-    if (!known_parts)
-      known_parts = split_bones(body.file.volume, tissue, body.tissues, body.rig, progress, body.bone_map);
-    return *known_parts;
-  };
-  std::optional<WeightsFile> given;
-  if (!options.weights.empty()) given = read_weights(options.weights, body.file.volume, tissue, body.rig);
-  if (given && given->seams && options.seams.empty()) tissue.set_seams(*given->seams);
-  else set_seams(tissue, options.seams, body, parts, progress);
-  if (given) note(report, given->warnings);
-  const SkinWeights weights = given ? std::move(given->weights) : new_weights(body, tissue, parts(), report, progress);
-  // Bone motions of each requested pose. They are stored now because fitting changes the poses and the rig later.
-  std::vector<std::vector<RigidTransform>> asked;
-  for (const Pose& pose : poses) asked.push_back(posed_from_rest(body.rig, pose));
-  if (options.fit_joints) {
-    FittedPose fitted = fit_joints(body.file.volume, tissue, parts(), body.rig, poses[0], progress);
-    note(report, fitted.warnings);
-    body.rig = std::move(fitted.armature);
-    poses[0] = std::move(fitted.pose);
-  }
+  const SeamChoice seams = read_seam_choice(options.seams, body.file.volume, progress);
+  BoundBody bound = options.weights.empty() ? bind_body(body, Binding::Heat, seams, progress)
+                                            : read_bound_body(body, options.weights, seams, progress);
+  note(report, bound.warnings);
   report.seconds.weights = weighting.seconds();
-  const Stopwatch gliding;
-  std::vector<std::vector<GlidedJoint>> glided;  // the shifted joints of each pose; empty where joints do not glide
-  SkinWeights resampled = weights;
-  const glm::dvec3 voxel = body.file.volume.grid.spacing;
-  if (const auto settings = glide_settings(options.glide, options.pose, std::max({voxel.x, voxel.y, voxel.z}))) {
-    glided = glide_poses(poses, *settings, body, tissue, resampled, progress);
-    report.seconds.glide = gliding.seconds();
-  }
 
-  const ResampleSettings settings{.nearest = options.nearest,
-                                  .mass_exact = options.mass_exact,
-                                  .mass_limit_percent = options.mass_limit,
-                                  .spacing = options.spacing,
-                                  .displacement = !options.field.empty() || !options.report.empty() || options.strict,
-                                  .jacobian = !options.jacobian.empty(),
-                                  .overlap = !options.overlap.empty(),
-                                  .grey = grey ? &*grey : nullptr,
-                                  .seams = tissue.shared_seams()};
-  SolveProgress solve(progress, options, weights.bones(), body.rig, poses[0]);
+  const PosingSettings settings = posing_settings(options, grey ? &*grey : nullptr);
+  SolveProgress solve(progress, options, bound.weights.bones());
   bool all_reached = true, all_passed = true;
   std::optional<CommandProgress::LeavesAtOnce> nothing_is_being_written(std::in_place);
-  resample_sequence(
-      body.file.volume, body.tissues, body.rig, resampled, poses, method_of(options, solve), settings,
-      [&](std::size_t place, Posed posed) {
+  const PosingEvents events{.on_warning = [](const std::string& line) { warn(line); },
+                            .on_pose =
+                                [&](const Armature& rig, const Pose& pose) {
+                                  solve.aim_at(rig, pose);
+                                  nothing_is_being_written.emplace();
+                                },
+                            .on_mesh = [&](const TissueModel& model) { solve.begin(model); },
+                            .on_step = [&](const SolveStep& step) { solve.show(step); }};
+  pose_body(
+      body, bound, poses, settings, report, events,
+      [&](BodyInPose& posed) {
         nothing_is_being_written.reset();
-        if (posed.shape && frames.empty()) solve.end(*posed.shape);
-        all_reached &= !posed.report.solve || posed.report.solve->converged;
-        Report of_pose = report;
-        if (!glided.empty()) of_pose.glide = glided[place];
-        all_passed &= finish(frames.empty() ? options : of_frame(options, frames[place]), body, poses[place],
-                             asked[place], {landmarks, tissue, weights}, posed, of_pose, total);
-        if (place + 1 == poses.size()) return;
-        solve.aim_at(poses[place + 1]);
-        nothing_is_being_written.emplace();
+        if (posed.posed.shape && frames.empty()) solve.end(*posed.posed.shape);
+        all_reached &= !posed.posed.report.solve || posed.posed.report.solve->converged;
+        all_passed &= finish(frames.empty() ? options : of_frame(options, frames[posed.index]), body, bound, landmarks,
+                             settings, posed, total);
       },
       progress);
   if (!all_reached) throw PoseNotReached();

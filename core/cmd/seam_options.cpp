@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
 
 namespace limber::cmd {
@@ -16,13 +15,10 @@ void add_seam_option(CLI::App& command, std::string& seams) {
       ->type_name("FILE|none");
 }
 
-void set_seams(TissueVoxels& tissue, const std::string& seams, const Body& body,
-               const std::function<const BoneParts&()>& parts, Progress& progress) {
-  const LabelVolume& volume = body.file.volume;
-  if (seams == "none") return;
-  tissue.set_seams(std::make_shared<const Seams>(
-      seams.empty() ? find_seams(volume, tissue, body.tissues, body.rig, parts(), progress)
-                    : read_seams(seams, volume, progress)));
+SeamChoice read_seam_choice(const std::string& seams, const LabelVolume& volume, Progress& progress) {
+  if (seams.empty()) return std::nullopt;
+  if (seams == "none") return std::shared_ptr<const Seams>();
+  return std::make_shared<const Seams>(read_seams(seams, volume, progress));
 }
 
 }  // namespace limber::cmd

@@ -4,13 +4,10 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "core/base/parallel.h"
-#include "core/binding/geodesic.h"
-#include "core/binding/heat_diffusion.h"
-#include "core/binding/rigid.h"
-#include "core/bones/bone_parts.h"
-#include "core/bones/unsure_bones.h"
+#include "core/body/bind_body.h"
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
@@ -89,17 +86,11 @@ void make_weights(const Options& options) {
   const LabelVolume& volume = body.file.volume;
   const Armature& rig = body.rig;
 
-  TissueVoxels tissue(volume);
-  const BoneParts parts = split_bones(volume, tissue, body.tissues, rig, progress, body.bone_map);
-  set_seams(
-      tissue, options.seams, body, [&]() -> const BoneParts& { return parts; }, progress);
-  WeightsReport report;
-  const SkinWeights weights = options.method == "rigid" ? bind_rigid(volume, tissue, rig, parts, progress, &report)
-                              : options.method == "geodesic"
-                                  ? bind_geodesic(volume, tissue, rig, parts, {}, progress, &report)
-                                  : diffuse_heat(volume, tissue, body.tissues, rig, parts, {}, progress, &report);
-  warn(report.warnings);
-  warn(unsure_bones(parts, body.tissues, rig));
+  const SeamChoice seams = read_seam_choice(options.seams, volume, progress);
+  const Binding binding = require_binding(options.method, "--method " + options.method);
+  const BoundBody bound = bind_body(body, binding, seams, progress);
+  const auto& [tissue, weights, parts, solve] = std::tie(bound.tissue, bound.weights, *bound.parts, bound.solve);
+  warn(bound.warnings);
   if (!options.bender_folder.empty()) write_bender_weights(weights, volume, tissue, options.bender_folder);
   write_weights(weights, volume, tissue, options.output, SeamsOfWeights::OfTissue);
 
@@ -107,7 +98,7 @@ void make_weights(const Options& options) {
         one_line(body.tissues.source).c_str());
   print_table(parts, rig);
   print_identities(parts, body.tissues, rig);
-  if (options.method == "heat") print("heat: residual %.1e in %d iterations\n", report.residual, report.iterations);
+  if (options.method == "heat") print("heat: residual %.1e in %d iterations\n", solve.residual, solve.iterations);
   if (!options.strict) return;
   const std::vector<std::string> failed = failed_gates_of(body, tissue, weights);
   tell_failed_gates(failed);
@@ -119,8 +110,7 @@ void add_weights(CLI::App& app) {
   auto* command = app.add_subcommand("weights", "how tissue follows the bones: up to four bones and weights a voxel");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--method", options->method, "heat, geodesic or rigid")
-      ->check(CLI::IsMember({"heat", "geodesic", "rigid"}));
+  command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember(binding_words()));
   add_seam_option(*command, options->seams);
   writes(command->add_option("-o,--output", options->output, "W.nrrd"))->required();
   writes(command->add_option("--bender-dir", options->bender_folder,

@@ -118,7 +118,7 @@ render::Clip clip_of(const Options& options, const Visibility& visibility) {
 
 Document read_files(const Options& options, Progress& progress) {
   Document document;
-  cmd::Body body;
+  Body body;
   if (options.body.rig.empty()) {
     if (cmd::wants_pose(options.pose) || !options.weights.empty())
       throw Error("a pose needs a skeleton", "--rig", "name the rig");

@@ -19,7 +19,6 @@ const std::map<std::string, std::string> kLong = {
     {"core/autorig/joint_axis_fit.cpp", "one solver, whose steps share their state"},
     {"core/bones/bone_parts.cpp", "one algorithm in the order of its steps"},
     {"core/bones/joint_cuts.cpp", "one algorithm in the order of its steps"},
-    {"core/cmd/resample.cpp", "every option of one command beside what it does"},
     {"core/deform/preview_map.cpp", "one inner loop in its variants for lanes and blends"},
     {"core/motion/retarget.cpp", "one algorithm in the order of its steps"},
     {"core/paint/brush_region.cpp", "one inner loop in its variants for distances and depths"},

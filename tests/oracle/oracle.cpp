@@ -57,7 +57,7 @@ struct Options {
 
 // A body with its bones and seams told.
 struct ToldBody {
-  cmd::Body body;
+  Body body;
   TissueVoxels tissue;
   BoneParts parts;
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Poses a bound body: fits and glides its joints, resamples it by any method, warns of what differs from the request,
+// and measures and judges the result for its report.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/body/bind_body.h"
+#include "core/body/body.h"
+#include "core/fem/solve_pose.h"
+#include "core/report/report.h"
+#include "core/resample/deformation_method.h"
+#include "core/resample/resample.h"
+
+namespace limber {
+
+struct PosingSettings {
+  std::string method = deformation_methods().front().word;  // a word of deformation_methods()
+  bool contact = false;                                     // fem: skin touches skin instead of passing through
+  std::string quality, mesher;  // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
+  std::string glide = "joint";  // a word of glide_poses.h
+  bool fit_joints = false;      // fits the axes of joints to the bones around them first; only for one pose
+  ResampleSettings resample;    // its seams are those of the bound body
+};
+
+// Called during the work; each may be empty.
+struct PosingEvents {
+  std::function<void(const std::string&)> on_warning;
+  std::function<void(const Armature& rig, const Pose& pose)> on_pose;  // before each pose is computed
+  std::function<void(const TissueModel&)> on_mesh;                     // fem: before the first iteration
+  std::function<void(const SolveStep&)> on_step;                       // fem: after every iteration
+};
+
+// The body in one pose of a sequence.
+struct BodyInPose {
+  std::size_t index = 0;              // of the pose in the sequence
+  const Armature& rig;                // the body's rig, with joints fitted to the pose if that was asked for
+  const Pose& pose;                   // the pose after joints were fitted and shifted
+  std::vector<RigidTransform> asked;  // #bones: motions from rest to the requested pose, by the body's rig
+  const SkinWeights& weights;         // as bound
+  Posed posed;
+  Report report;  // warnings, shifted joints and times; see measure_posed_body()
+};
+
+// Computes each pose of a sequence and calls on_posed for it. With finite elements, each solve starts from the shape
+// that the one before reached. Throws Error for a bad setting, and as resample() does.
+//   report  what the report of each pose starts from
+void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, const PosingSettings& settings,
+               const Report& report, const PosingEvents& events, const std::function<void(BodyInPose&)>& on_posed,
+               Progress& progress);
+
+// Fills the report: settings, turned joints, measures and gates. Call it once, after posed.volume and its displacement
+// were used: it takes posed.report.
+void measure_posed_body(const Body& body, const PosingSettings& settings, BodyInPose& posed);
+
+}  // namespace limber
