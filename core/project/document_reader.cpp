@@ -347,12 +347,11 @@ class Reading {
   // Calls take(i, bytes) for each leaf, in order. Throws Error where a leaf is missing or damaged.
   template <class Take>
   void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take) {
-    for_leaves(leaves, first, what, take, [&](std::int64_t) { throw damaged(what); });
+    for_each_leaf(leaves, first, take, [&](std::int64_t) { throw damaged(what); });
   }
   // Calls take(i, bytes) for each undamaged leaf, and lost(i) for each missing or damaged leaf, in the leaves' order.
   template <class Take, class Lost>
-  void for_leaves(const std::vector<ChunkHash>& leaves, std::size_t first, const std::string& what, const Take& take,
-                  const Lost& lost) {
+  void for_each_leaf(const std::vector<ChunkHash>& leaves, std::size_t first, const Take& take, const Lost& lost) {
     const std::int64_t count = std::ssize(leaves) - static_cast<std::int64_t>(first);
     for (std::int64_t begin = 0; begin < count; begin += kBatch) {
       progress_.update("open", static_cast<double>(begin) / static_cast<double>(count));
@@ -455,8 +454,8 @@ class Reading {
     volume.voxels.resize(grid.voxel_count());
     char* to = reinterpret_cast<char*>(volume.voxels.data());
     std::vector<std::int64_t> lost;
-    for_leaves(
-        node.leaves, 0, "volume",
+    for_each_leaf(
+        node.leaves, 0,
         [&](std::int64_t i, const std::string& leaf) {
           in.require(std::ssize(leaf) == std::min(kLeafBytes, bytes - i * kLeafBytes));
           if (!is_all_zero(leaf.data(), leaf.size())) std::memcpy(to + i * kLeafBytes, leaf.data(), leaf.size());
@@ -501,8 +500,8 @@ class Reading {
 
     std::vector<std::shared_ptr<const SkinWeights::Chunk>> chunks;
     std::vector<std::int64_t> lost;
-    for_leaves(
-        node.leaves, 1, "weights",
+    for_each_leaf(
+        node.leaves, 1,
         [&](std::int64_t group, const std::string& leaf) {
           const auto first = lengths.begin() + group * kGroupBricks;
           const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));

@@ -52,7 +52,7 @@ InfluenceChunk::InfluenceChunk(std::span<const Influence> influences)
   stride_ = static_cast<std::uint8_t>(set_bytes_ + 2 * weights_);
   records_ = static_cast<std::uint32_t>(sets.numbers().size() * kSetBytes);
   auto bytes = std::make_unique_for_overwrite<std::uint8_t[]>(static_cast<std::size_t>(heap_bytes()));
-  std::memcpy(bytes.get(), sets.numbers().data(), records_);
+  if (records_ > 0) std::memcpy(bytes.get(), sets.numbers().data(), records_);
   std::uint8_t* at = bytes.get() + records_;
   for (std::size_t i = 0; i < influences.size(); ++i) {
     std::memcpy(at, &set[i], set_bytes_);  // the set's index; its lowest byte comes first
