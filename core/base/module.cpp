@@ -13,14 +13,16 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Returns the folders that may hold Limber's modules and helper programs: the folder of the running program,
-// ../lib/limber relative to it, and where Limber was installed. The last one serves another program that uses Limber as
-// a library.
+// Returns the folders that may hold Limber's modules and helper programs: the folder of the shared object that holds
+// this code, the folder of the running program, ../lib/limber relative to it, and where Limber was installed. The last
+// one serves another program that uses Limber as a library.
 std::vector<Path> own_folders() {
   std::error_code error;
   const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};
-  return {folder, folder / "../lib/limber", Path(LIMBER_INSTALLED_IN) / "lib/limber"};
+  std::vector<Path> folders = {folder, folder / "../lib/limber", Path(LIMBER_INSTALLED_IN) / "lib/limber"};
+  if (const Path own = own_shared_object(); !own.empty()) folders.insert(folders.begin(), own.parent_path());
+  return folders;
 }
 
 bool is_program(const Path& path) {
@@ -28,6 +30,13 @@ bool is_program(const Path& path) {
   return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
 }
 }  // namespace
+
+Path own_shared_object() {
+  Dl_info info{};
+  if (!::dladdr(reinterpret_cast<void*>(&own_shared_object), &info) || !info.dli_fname) return {};
+  const Path file = info.dli_fname;
+  return file.is_absolute() && file.extension() == ".so" ? file : Path();
+}
 
 void* open_module(const std::string& name) {
   for (const Path& folder : own_folders())

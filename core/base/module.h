@@ -11,9 +11,13 @@
 
 namespace limber {
 
-// Opens the module NAME.so, a shared library. Searches the program's folder, ../lib/limber relative to it and where
-// Limber was installed. Returns nullptr when no folder has a module that can be opened. The module stays open until the
-// program ends.
+// Returns the path of the shared object that holds this code, as in a Python module. Empty in a program, which holds
+// the code itself.
+Path own_shared_object();
+
+// Opens the module NAME.so, a shared library. Searches the folder of own_shared_object(), the program's folder,
+// ../lib/limber relative to it and where Limber was installed. Returns nullptr when no folder has a module that can be
+// opened. The module stays open until the program ends.
 void* open_module(const std::string& name);
 
 // Returns the path of the helper program NAME, which is a part of Limber and not a command. Searches the same folders

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A vector whose values start as zero and use no memory until they are written. A body's grid is mostly air: where the
 // program only reads zeros, the system maps one shared page of zeros. std::vector cannot do this, because it writes
-// every value that it creates; with a custom allocator it would still visit every value to destroy it.
+// every value that it creates; with a custom allocator it would still visit every value to destroy it. A
+// ZeroedVector can also hold values in memory that another owner keeps, such as an array of another language, without
+// copying them.
 #pragma once
 
 #include <algorithm>
@@ -33,6 +35,13 @@ class ZeroedVector {
   explicit ZeroedVector(std::size_t count) { resize(count); }
   ZeroedVector(std::size_t count, const T& value) { assign(count, value); }
   ZeroedVector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
+  // Holds values that lie in the memory of `owner`, which this vector keeps alive. Nothing is copied.
+  static ZeroedVector of_owner(T* values, std::size_t count, std::shared_ptr<const void> owner) {
+    ZeroedVector held;
+    held.values_ = std::unique_ptr<T[], Delete>(values, Delete{0, std::move(owner)});
+    held.size_ = held.capacity_ = count;
+    return held;
+  }
   // Copies only memory pages that are not all zero, so that the copy uses no more memory than the original.
   ZeroedVector(const ZeroedVector& other) {
     constexpr std::size_t kPage = 4096 / sizeof(T);
@@ -95,7 +104,10 @@ class ZeroedVector {
  private:
   struct Delete {
     std::size_t bytes = 0;
-    void operator()(T* values) const { delete_zeros(values, bytes); }
+    std::shared_ptr<const void> owner{};  // keeps the values; null: they are this vector's own
+    void operator()(T* values) const {
+      if (!owner) delete_zeros(values, bytes);
+    }
   };
 
   void grow(std::size_t capacity) {

@@ -72,9 +72,10 @@ Error no_label(LabelDecoder::Problem problem, double value, const Path& path) {
                "this looks like a grey image or a weight; give a label volume");
 }
 
-// Returns one tissue for each label. `values` lists the labels of the volume with their values in the file. `named`
-// holds what the file's header states about such values.
-TissueTable tissues_of(const std::vector<std::pair<Label, double>>& values, const TissueTable& named) {
+const char* const kNoTissue = "every voxel is air (0)";
+}  // namespace
+
+TissueTable tissues_of_values(const std::vector<std::pair<Label, double>>& values, const TissueTable& named) {
   const FileValueIndex by_value(named);
   TissueTable table;
   table.source = named.source;
@@ -90,9 +91,6 @@ TissueTable tissues_of(const std::vector<std::pair<Label, double>>& values, cons
   }
   return table;
 }
-
-const char* const kNoTissue = "every voxel is air (0)";
-}  // namespace
 
 VolumeFile read_volume(const Path& path, Progress& progress) {
   OpenedVolume opened = open_volume(path, progress);
@@ -121,7 +119,7 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
     }
   });
   append(file.warnings, opened.voxels->finish());
-  file.tissues = tissues_of(decoder.values(), header.named);
+  file.tissues = tissues_of_values(decoder.values(), header.named);
   if (file.tissues.tissues.empty())
     file.warnings.push_back(std::string(kNoTissue) + ": " + path.string() + ": there is nothing to pose");
   return file;

@@ -13,6 +13,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/file.h"
@@ -77,6 +78,10 @@ struct WeightsSummary {
   std::int64_t voxels = 0;
 };
 WeightsSummary summarize_weights(const Path& path);
+
+// Returns one tissue for each label except air. `values` lists the labels of a volume with their values in files.
+// `named` holds what is known about such values, as a file's header states it.
+TissueTable tissues_of_values(const std::vector<std::pair<Label, double>>& values, const TissueTable& named);
 
 // Throws Error when no volume can be written to `path`: no format has its extension, or its folder is missing. Commands
 // call this first, so that no computed result is lost.

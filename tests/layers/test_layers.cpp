@@ -22,6 +22,7 @@ struct Door {
 };
 
 const std::vector<Door> kDoors = {
+    {"pybind11", {"pybind11/"}, {"core/python/"}},
     {"GDCM", {"gdcm"}, {"core/volume_io/dicom_codec.cpp"}},
     {"HDF5", {"hdf5"}, {"core/export/hdf5_codec.cpp"}},
     {"ISA-L", {"isa-l"}, {"core/base/deflate.cpp"}},
