@@ -38,7 +38,8 @@ void add_tissues(CLI::App& app);
 void add_weights(CLI::App& app);
 
 // Adds all subcommands of this header, and --version.
-void add_commands(CLI::App& app);
+//   commit  the commit that the program was built from (program_commit.h); "": unknown
+void add_commands(CLI::App& app, const std::string& commit);
 // Parses and runs the command line. Prints an error as one line and returns the exit code. Only this function turns
 // exceptions into exit codes.
 int run(CLI::App& app, int argc, char** argv);

@@ -80,6 +80,14 @@ CLI::Option* writes(CLI::Option* option, FilesOfValue files) {
   return option->check(CLI::Validator(tell, "", kFiles).active(false));
 }
 
+bool names_outputs(CLI::Option& option) {
+  try {
+    return option.get_validator(kFiles) != nullptr;
+  } catch (const CLI::OptionNotFound&) {
+    return false;
+  }
+}
+
 void check_files(CLI::App& command, const Path& job) {
   check_numbers(command);
   std::vector<NamedFile> inputs, outputs;

@@ -26,6 +26,9 @@ using FilesOfValue = std::function<OptionFiles(const std::string& value)>;
 // its format writes beside it.
 CLI::Option* writes(CLI::Option* option, FilesOfValue files = {});
 
+// Returns whether the option was marked by writes().
+bool names_outputs(CLI::Option& option);
+
 // Checks the files of a command whose options have been parsed. Throws UsageError for an output that is also an input
 // or another output, and for an option whose number is "nan" or "inf".
 //   job  the job file (job.cpp) that contains the command, which also counts as an input; "": none

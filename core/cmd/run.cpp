@@ -11,6 +11,7 @@
 #include "core/base/leftovers.h"
 #include "core/base/named_files.h"
 #include "core/cmd/command_files.h"
+#include "core/cmd/slicer_xml.h"
 #include "core/cmd/surface_options.h"
 
 namespace limber::cmd {
@@ -23,9 +24,9 @@ constexpr const char* kExitCodes =
     "outputs are written.";
 }  // namespace
 
-void add_commands(CLI::App& app) {
-  app.footer(kExitCodes);
-  app.set_version_flag("--version", LIMBER_VERSION);
+void add_commands(CLI::App& app, const std::string& commit) {
+  app.footer(std::string(kExitCodes) + "\n\nlimber COMMAND --xml describes a command for 3D Slicer and its like.");
+  app.set_version_flag("--version", LIMBER_VERSION + (commit.empty() ? "" : ", commit " + commit));
   add_convert(app);
   add_export_gltf(app);
   add_fit_joint(app);
@@ -100,7 +101,9 @@ int run(CLI::App& app, int argc, char** argv) {
   keep_standard_streams();
   remove_leftovers();
   check_files_of_all(app);
-  const int code = run_command(app, argc, argv);
+  const std::string xml = requested_slicer_xml(app, std::vector<std::string>(argv + 1, argv + argc));
+  print_text(xml);
+  const int code = xml.empty() ? run_command(app, argc, argv) : 0;
   if (all_is_printed()) return code;
   return told(
       "what was printed could not be written: standard output: check that its disk has room and that it is open",

@@ -4,6 +4,7 @@
 
 #include "core/cmd/command.h"
 #include "core/cmd/experiment.h"
+#include "core/cmd/program_commit.h"
 #include "editor/app/main_loop.h"
 #include "editor/cli/command.h"
 #include "editor/files/study_pictures.h"
@@ -17,7 +18,7 @@ int main(int argc, char** argv) {
     return is_word && !std::filesystem::exists(name) ? "there is neither a command nor a file " + name : std::string();
   });
   app.require_subcommand(0, 1);
-  limber::cmd::add_commands(app);
+  limber::cmd::add_commands(app, limber::cmd::kProgramCommit);
   limber::cmd::add_experiment(app, limber::editor::start_pictures);
   limber::editor::add_editor(app);
   limber::editor::add_render(app);

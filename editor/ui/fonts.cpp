@@ -4,16 +4,19 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <imgui.h>
 #include <imgui_freetype.h>
 
+#include "core/base/asset.h"
 #include "core/base/error.h"
 
 namespace limber::editor {
 
 namespace {
 
+// The fonts' files, where Debian's packages put them.
 constexpr char kInter[] = "/usr/share/fonts/opentype/inter/Inter-Regular.otf";
 constexpr char kInterSemiBold[] = "/usr/share/fonts/opentype/inter/Inter-SemiBold.otf";
 constexpr char kMono[] = "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
@@ -26,19 +29,23 @@ constexpr ImWchar kText[] = {0x20,   0x24F,  0x370,  0x3FF,  0x400,  0x4FF,  0x1
 constexpr ImWchar kLatin[] = {0x20, 0xFF, 0x2010, 0x2026, 0x2190, 0x2193, 0x2212, 0x2212, 0};
 constexpr ImWchar kIconRange[] = {0xF000, 0xF2E0, 0};
 
-void check_present(const char* path, const char* package) {
-  if (!std::filesystem::exists(path))
-    throw Error("a font is missing", path, std::string("install the package ") + package);
+// Returns the file of a font: one that came with the program, else that of Debian's package. Throws Error if there is
+// neither.
+std::string font_file(const std::string& system_file, const char* package) {
+  const std::filesystem::path path = system_file;
+  if (const auto own = find_asset("fonts/" + path.filename().string())) return own->string();
+  if (std::filesystem::exists(path)) return system_file;
+  throw Error("a font is missing", system_file, std::string("install the package ") + package);
 }
 
 class Builder {
  public:
-  explicit Builder(double scale) : scale_(scale) {}
+  Builder(double scale, std::string icons) : scale_(scale), icons_(std::move(icons)) {}
 
-  ImFont* text(const char* path, int size, const ImWchar* range, int icon_size) {
+  ImFont* text(const std::string& path, int size, const ImWchar* range, int icon_size) {
     ImFontConfig config;
     config.FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
-    ImFont* font = atlas().AddFontFromFileTTF(path, pixels(size), &config, range);
+    ImFont* font = atlas().AddFontFromFileTTF(path.c_str(), pixels(size), &config, range);
     if (icon_size) icons(icon_size, true, std::round((size - icon_size) / 2.0 * scale_));
     return font;
   }
@@ -49,36 +56,35 @@ class Builder {
     config.MergeMode = merged;
     config.GlyphMinAdvanceX = pixels(16);
     config.GlyphOffset.y = static_cast<float>(lower);
-    return atlas().AddFontFromFileTTF(kIcons, pixels(size), &config, kIconRange);
+    return atlas().AddFontFromFileTTF(icons_.c_str(), pixels(size), &config, kIconRange);
   }
 
  private:
   static ImFontAtlas& atlas() { return *ImGui::GetIO().Fonts; }
   float pixels(int size) const { return static_cast<float>(std::round(size * scale_)); }
   double scale_;
+  std::string icons_;  // file of the icons' font
 };
 
 }  // namespace
 
 Fonts build_fonts(double scale) {
-  check_present(kInter, "fonts-inter");
-  check_present(kInterSemiBold, "fonts-inter");
-  check_present(kMono, "fonts-jetbrains-mono");
-  check_present(kIcons, "fonts-font-awesome");
+  const std::string regular = font_file(kInter, "fonts-inter"), semibold = font_file(kInterSemiBold, "fonts-inter"),
+                    mono = font_file(kMono, "fonts-jetbrains-mono");
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
   atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;  // pixels; OpenGL 3.3 guarantees 1024, current drivers allow 8192
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
 
-  Builder build(scale);
+  Builder build(scale, font_file(kIcons, "fonts-font-awesome"));
   Fonts fonts;
-  fonts.regular = build.text(kInter, 16, kText, 14);
-  fonts.semibold = build.text(kInterSemiBold, 16, kText, 14);
-  fonts.small = build.text(kInter, 14, kText, 12);
-  fonts.title = build.text(kInterSemiBold, 32, kLatin, 0);
-  fonts.mono = build.text(kMono, 16, kLatin, 0);
-  fonts.small_mono = build.text(kMono, 14, kLatin, 0);
+  fonts.regular = build.text(regular, 16, kText, 14);
+  fonts.semibold = build.text(semibold, 16, kText, 14);
+  fonts.small = build.text(regular, 14, kText, 12);
+  fonts.title = build.text(semibold, 32, kLatin, 0);
+  fonts.mono = build.text(mono, 16, kLatin, 0);
+  fonts.small_mono = build.text(mono, 14, kLatin, 0);
   fonts.icons = build.icons(16, false, 0);
   if (!atlas.Build()) throw Error("the fonts cannot be prepared", kInter, "install the package fonts-inter again");
   return fonts;

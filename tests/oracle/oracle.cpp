@@ -119,7 +119,7 @@ int run_limber(std::vector<std::string> words) {
   for (std::string& word : words) pointers.push_back(word.data());
   CLI::App app("The program itself.", "limber");
   app.require_subcommand(1);
-  cmd::add_commands(app);
+  cmd::add_commands(app, "");
   return cmd::run(app, static_cast<int>(pointers.size()), pointers.data());
 }
 

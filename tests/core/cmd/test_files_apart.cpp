@@ -149,7 +149,7 @@ TEST_CASE("command files: what is apart is written, also over an older output") 
 
 TEST_CASE("command files: every command that takes -o says that it is written") {
   CLI::App app;
-  cmd::add_commands(app);
+  cmd::add_commands(app, "");
   int outputs = 0;
   for (CLI::App* command : app.get_subcommands({}))
     for (CLI::Option* option : command->get_options([](const CLI::Option* one) { return one->check_name("-o"); })) {
