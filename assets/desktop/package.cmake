@@ -23,6 +23,6 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libegl1, libgl1, libgl1-mesa-dri, libegl-mesa0")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "bash-completion")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Limber reads a label volume (NRRD, MetaImage, NIfTI, DICOM) and a skeleton, works out how every voxel of tissue
- follows the bones, takes a pose or motion capture, and writes a new label volume with a report of what changed.
- It is an editor and a command line.")
+follows the bones, takes a pose or motion capture, and writes a new label volume with a report of what changed.
+It is an editor and a command line.")
 include(CPack)
