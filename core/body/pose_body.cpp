@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 
 #include "core/autorig/joint_axis_fit.h"
 #include "core/body/glide_poses.h"

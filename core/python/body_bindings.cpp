@@ -27,6 +27,7 @@ namespace {
 struct PosedVolume {
   std::shared_ptr<Posed> posed;
   Volume volume;
+  Armature rig;
   Pose pose;
   std::string report;  // JSON; empty: not measured
   std::vector<std::string> warnings;
@@ -179,6 +180,7 @@ std::shared_ptr<GreyVolume> grey_from(const py::object& grey, const Grid& grid) 
 PosedVolume result_of(const Body& body, const PosingSettings& settings, bool with_report, BodyInPose& in_pose) {
   PosedVolume result;
   result.reached = in_pose.posed.report.solve ? in_pose.posed.report.solve->reached : 1;
+  result.rig = in_pose.rig;
   result.pose = in_pose.posed.shape ? in_pose.posed.shape->pose : in_pose.pose;
   if (with_report) {
     measure_posed_body(body, settings, in_pose);
@@ -297,9 +299,16 @@ void export_volume(const Volume& volume, const Path& path, std::optional<double>
   if (exporter->needs_frequency) {
     if (!frequency)
       throw Error("permittivity and conductivity go by frequency", path.string(), "add frequency=900e6, in Hz");
-    materials = tissue_materials(volume.file->tissues, read_dielectric_table({}), *frequency).materials;
+    TissueMaterials found = tissue_materials(volume.file->tissues, read_dielectric_table({}), *frequency);
+    std::string unknown;
+    for (const std::string& name : found.unmatched) unknown += (unknown.empty() ? "" : ", ") + name;
+    if (!unknown.empty())
+      throw Error("no dielectric properties are known of: " + unknown, path.string(),
+                  "give these tissues other names or kinds, or merge their labels");
+    materials = std::move(found.materials);
   }
   std::vector<std::string> warnings;
+  if (const std::string line = stand_ins_text(materials); !line.empty()) warnings.push_back(line);
   call_long(progress, [&](Progress& shown) {
     write_export(
         *exporter,
@@ -386,7 +395,8 @@ bones, weights  N x 4, in the order of Weights.voxels; the weights of a voxel ar
           py::arg("progress") = py::none(), R"(Computes the label volume of a pose; of a list of poses a list.
 
 method        lbs, dqs, mix or fem
-glide         how far joints shift whose bones would enter each other: joint, voxel, off, or mm as a string
+glide         how far joints shift whose bones would enter each other: joint, voxel, off, or mm as a string (the
+              command line takes voxel for poses from files and motions, as their feet should stay where they are)
 quality       fem: draft, normal or fine; mesher: lattice or tetgen; contact: skin touches skin
 nearest       labels of the nearest rest voxel, nothing repaired
 mass_exact    soft tissues keep their volumes
@@ -405,7 +415,9 @@ progress      a function of (stage, fraction), or a tqdm bar)");
             return voxel_array(p.volume.file->volume.grid, p.volume.file->volume.voxels.data(), p.volume.file);
           },
           "uint16 [x, y, z], read-only, x fastest in memory; not a copy.")
-      .def_readonly("pose", &PosedVolume::pose, "The pose that was reached, with fitted and shifted joints.")
+      .def_readonly("rig", &PosedVolume::rig,
+                    "The body's rig, with joints fitted to the pose where that was asked for.")
+      .def_readonly("pose", &PosedVolume::pose, "The pose of this rig that was reached, with shifted joints.")
       .def_readonly("reached", &PosedVolume::reached, "The share of the way from rest that fem reached; 1: all of it.")
       .def_property_readonly("report", &report_of, "The report as a dict, as the command line writes it; None without.")
       .def_readonly("warnings", &PosedVolume::warnings)

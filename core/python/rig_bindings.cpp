@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Rigs and poses for Python.
+#include <algorithm>
+#include <map>
+#include <optional>
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

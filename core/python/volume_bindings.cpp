@@ -124,8 +124,7 @@ Volume read_volume_from(const Path& path, const py::object& progress) {
 void save_volume(const Volume& volume, const Path& path) {
   const py::gil_scoped_release without_lock;
   check_writable(path);
-  FileType type = volume.file->type;
-  write_volume(volume.file->volume, path, volume.file->tissues, type);
+  write_volume(volume.file->volume, path, volume.file->tissues, volume.file->type);
 }
 
 py::object compare_volumes(const Volume& before, const Volume& after) {

@@ -173,6 +173,25 @@ class Bodies(InFolder):
         self.assertEqual(total["voxels_before"], np.count_nonzero(volume.labels))
         self.assertEqual(total["voxels_after"], np.count_nonzero(posed.labels))
 
+    def test_an_export_without_properties_of_a_tissue_is_refused(self):
+        labels = np.zeros((6, 6, 6), np.uint16, order="F")
+        labels[1:3], labels[3:5] = 1, 2
+        tissues = limber.Tissues([limber.Tissue(1, "muscle"), limber.Tissue(2, "unobtainium")])
+        volume = limber.Volume(labels, tissues=tissues)
+        with self.assertRaisesRegex(limber.Error, "unobtainium"):
+            limber.export(volume, "body.xml", frequency=900e6)
+        self.assertFalse((self.folder / "body.xml").exists())
+        with self.assertRaisesRegex(limber.Error, "frequency"):
+            limber.export(volume, "body.xml")
+
+    def test_fitted_joints_come_with_their_rig(self):
+        volume, rig = arm()
+        posed = limber.Body(volume, rig).weights().resample(rig.pose(flex={"Forearm": 90}), fit_joints=True)
+        self.assertEqual(posed.rig.names, rig.names)
+        self.assertEqual(len(posed.rig.transforms(posed.pose)), len(rig))
+        plain = limber.Body(volume, rig).weights().resample(rig.pose(flex={"Forearm": 90}))
+        self.assertEqual(plain.rig, rig)
+
     def test_exports_are_written(self):
         volume, _ = arm(6)
         limber.export(volume, "arm.vtu")
