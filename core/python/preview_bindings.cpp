@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The live preview for Python: a coarse inverse map of the posed body, quick enough for every frame of a display.
 #include <limits>
+#include <mutex>
 
 #include <pybind11/stl.h>
 
@@ -53,7 +54,9 @@ class Preview {
         live_(std::shared_ptr<const LabelVolume>(weights.body, &weights.body->file.volume), weights.body->tissues,
               weights.bound->tissue, weights.bound->weights, step ? step : preview_step(weights.bound->tissue)) {}
 
+  // Threads of Python may share a preview; they are served one after the other.
   PosedPreview posed(const Pose& pose, Blend blend) {
+    const std::lock_guard lock(mutex_);
     return {live_.update(bone_motions(bones_, body_->rig, pose), blend), body_};
   }
   std::size_t bone_count() const { return body_->rig.bones.size(); }
@@ -61,6 +64,7 @@ class Preview {
  private:
   std::shared_ptr<const Body> body_;
   std::vector<std::string> bones_;
+  std::mutex mutex_;
   LivePreview live_;
 };
 

@@ -131,6 +131,26 @@ class Previews(InFolder):
         far = limber.Preview(weights).pose(pose).rest_points([[9000, 0, 0]])
         self.assertTrue(np.isnan(far).all())
 
+    def test_threads_share_a_preview(self):
+        volume, rig = arm(6)
+        weights = limber.Body(volume, rig).weights()
+        preview = limber.Preview(weights)
+        points = (weights.voxels[::29] * volume.spacing) @ volume.direction.T + volume.origin
+        alone = [limber.Preview(weights).pose(rig.pose(flex={"Forearm": 20 * i})).labels(points) for i in range(4)]
+        wrong = []
+
+        def turn(i):
+            for _ in range(25):
+                if (preview.pose(rig.pose(flex={"Forearm": 20 * i})).labels(points) != alone[i]).any():
+                    wrong.append(i)
+
+        threads = [threading.Thread(target=turn, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
     def test_many_poses_leave_no_memory_behind(self):
         count = int(os.environ.get("LIMBER_PREVIEW_POSES", 400))
         volume, rig = arm(4)
