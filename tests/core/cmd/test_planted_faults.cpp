@@ -332,7 +332,8 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
   const auto run = run_limber(
       {"report", folder / "volume.nrrd", folder / "volume.nrrd", "--tissues", folder / "tissues.json", "--json"});
   REQUIRE(run.exit_code == 0);
-  for (const json& gate : json::parse(run.out)["gates"])
+  const json report = json::parse(run.out);
+  for (const json& gate : report["gates"])
     for (const char* id : {"inputs", "whole", "follows", "directions", "exposed", "bands"})
       if (gate["id"] == id) {
         CHECK(gate["state"] == "not checked");

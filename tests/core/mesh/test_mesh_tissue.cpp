@@ -74,8 +74,10 @@ struct Regions {
 
 // Bones as the rig has them.
 Regions regions_of(LabelVolume volume, TissueTable table, const Armature& rig) {
-  if (const auto guess = guess_bone_tissue(volume, table, rig))
-    table = with_bones(std::move(table), {table.find(guess->label)->file_value});
+  if (const auto guess = guess_bone_tissue(volume, table, rig)) {
+    const double label = table.find(guess->label)->file_value;
+    table = with_bones(std::move(table), {label});
+  }
   Regions regions{std::move(volume), {}, {}};
   regions.tissue = TissueVoxels(regions.volume);
   const BoneParts parts = split_bones(regions.volume, regions.tissue, table, rig);

@@ -194,6 +194,7 @@ TEST_CASE("worker: one that is frozen is said not to answer, not to have a few s
   CHECK(told.back().stage == kNotAnswering);
   CHECK_FALSE(told.back().seconds_left);
   CHECK(progress.last == kNotAnswering);
+  for (int i = 0; i < 100 && alive(folder / "pid"); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
   CHECK_FALSE(alive(folder / "pid"));
 }
 
