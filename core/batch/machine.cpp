@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/study/machine.h"
+#include "core/batch/machine.h"
 
 #include <cmath>
 #include <fstream>

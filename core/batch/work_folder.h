@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes a folder completely or not at all: a working folder with another name, beside the final path, is filled and
-// then renamed. If two programs make the same folder, the second one waits and uses the folder of the first one.
+// Makes a folder completely or not at all, also when programs on several machines make the same folder of a shared
+// disk: each fills a working folder of its own beside the final path and then renames it. The first rename wins. A lock
+// keeps the others from doing the work twice. Where a shared disk does not carry locks from one machine to another, two
+// machines may do the same work, and the result is that of the first.
 #pragma once
 
 #include "core/base/file.h"
@@ -8,27 +10,34 @@
 
 namespace limber {
 
+enum class IfBusy { Wait, Leave };
+
 class WorkFolder {
  public:
-  // Creates and locks an empty working folder; removes files that a killed program left in it. Waits while another
-  // program holds the lock. If the finished folder `place` then exists, made() is true and nothing is left to do.
-  // Throws Error if the folder cannot be made, and Cancelled if the user cancels during the wait.
-  WorkFolder(const Path& place, Progress& progress);
+  // Makes an empty working folder; removes those that killed programs of this machine left. If the finished folder
+  // `place` exists, made() is true and nothing is left to do. If another program holds the lock, waits for it, or with
+  // IfBusy::Leave returns with busy() true. Throws Error if the folder cannot be made, and Cancelled if the user
+  // cancels during the wait.
+  WorkFolder(const Path& place, Progress& progress, IfBusy if_busy = IfBusy::Wait);
   // Removes the working folder unless commit() has been called.
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   bool made() const { return made_; }
+  bool busy() const { return !made_ && descriptor_ < 0; }
   Path operator/(const std::string& name) const { return working_ / name; }
-  void commit();  // renames the working folder to `place`; throws Error
+  // Renames the working folder to `place`, unless another program has just made it. Throws Error.
+  void commit();
   // Returns true if the disk has room for another megabyte in the folder.
   bool has_room() const;
 
  private:
   bool claim();
+  void remove_leftovers() const;
+  void release();
 
-  Path place_, working_;
+  Path place_, lock_, working_;
   int descriptor_ = -1;
   bool made_ = false;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv]: converts a file to the format that the
-// extension of OUT names.
+// limber convert IN OUT [--tissues T] [--frequency HZ] [--properties P.csv] [--threads N]: converts a file to the
+// format that the extension of OUT names.
 #include <memory>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/cmd/command.h"
@@ -21,7 +22,8 @@ namespace limber::cmd {
 
 namespace {
 struct Options {
-  std::string in, out, progress;
+  std::string in, out;
+  RunOptions run;
   MaterialOptions material;
 };
 
@@ -47,7 +49,9 @@ void convert_volume(const Options& options) {
     materials_of({}, options.material, options.out);  // throws an Error that says which option is missing
   if (exporter) check_place(options.out);
   else check_writable(options.out);
-  CommandProgress progress(options.progress);
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  CommandProgress progress(options.run.progress);
   const VolumeSummary summary = summarize_volume(options.in);
   if (!summary.is_label) {
     if (exporter) throw Error("this is no label volume", options.in, "give one whose voxels are labels");
@@ -98,8 +102,7 @@ void add_convert(CLI::App& app) {
       files_of_output)
       ->required();
   add_material_options(*command, options->material);
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
-      ->check(CLI::IsMember({"json"}));
+  add_run_options(*command, options->run);
   command->callback([options] { convert(*options); });
 }
 

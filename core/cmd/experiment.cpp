@@ -4,7 +4,6 @@
 //   and report. `arm` is the built-in study; DIR is a folder with its volumes, M a technique.
 #include "core/cmd/experiment.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -13,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
+#include "core/cmd/shard_option.h"
 #include "core/study/study_results.h"
 #include "core/study/text.h"
 
@@ -24,16 +24,6 @@ struct Options {
   std::vector<std::string> methods;
   RunOptions run;
 };
-
-// Reads a shard i/n, where i counts from 1.
-void read_shard(const std::string& text, StudyRun& run) {
-  int number = 0, of = 0, end = 0;
-  if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 ||
-      number < 1 || number > of)
-    throw Error("this is no shard", "--shard " + text, "write i/n with i from 1 to n, as in --shard 1/4");
-  run.shard = number - 1;
-  run.shards = of;
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -56,7 +46,11 @@ void run(const Options& options, const StartPictures& pictures) {
   Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
   if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");
   StudyRun run{.out = options.out, .threads = options.run.threads};
-  if (!options.shard.empty()) read_shard(options.shard, run);
+  if (!options.shard.empty()) {
+    const Shard shard = read_shard(options.shard);
+    run.shard = shard.index;
+    run.shards = shard.count;
+  }
   run.on_cell = [&](const CellOutcome& outcome, int done, int of, bool was_there, double left) {
     tell_cell(study, outcome, done, of, was_there, left);
   };
@@ -81,7 +75,8 @@ void run(const Options& options, const StartPictures& pictures) {
 
 OptionFiles files_of_folder(const std::string& folder) {
   OptionFiles files;
-  for (const char* name : {"cells.csv", "cells.json", "report.html"}) files.written.push_back(Path(folder) / name);
+  for (const char* name : {"cells.csv", "cells.json", "observations.csv", "report.html"})
+    files.written.push_back(Path(folder) / name);
   return files;
 }
 }  // namespace

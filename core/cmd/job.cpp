@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber job JOB.json: runs a command that is described in a file, as workers and cluster nodes do. The keys of the
 // JSON object are the command's options, so a job does exactly what the command line does. Jobs can run "resample" and
-// the commands that prepare it: "prepare", "weights" and "phantom" (with "subject" instead of "volume").
+// the commands around it: "prepare", "weights", "convert", and "phantom" (with "subject" instead of "volume").
 //   {"command": "resample", "volume": "arm.mha", "rig": "rig.json", "flex": ["Forearm=90"], "method": "dqs",
 //    "output": "posed.nrrd"}
 //   {..., "pose_name": "sit", "joints": ["left elbow flexion=30"], ...}
@@ -28,8 +28,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::map<std::string, void (*)(CLI::App&)> kCommands = {
-    {"phantom", add_phantom}, {"prepare", add_prepare}, {"resample", add_resample}, {"weights", add_weights}};
+struct JobCommand {
+  void (*add)(CLI::App&) = nullptr;
+  std::vector<std::string> places = {"volume"};  // keys whose values are written without an option, in their order
+};
+const std::map<std::string, JobCommand> kCommands = {{"convert", {add_convert, {"volume", "output"}}},
+                                                     {"phantom", {add_phantom, {"subject"}}},
+                                                     {"prepare", {add_prepare}},
+                                                     {"resample", {add_resample}},
+                                                     {"weights", {add_weights}}};
 constexpr std::uint64_t kLargestJob = 1 << 20;
 
 std::string text_of(const Json& value, const std::string& key, const Path& job) {
@@ -43,8 +50,9 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   throw Error("a setting is neither text nor a number", job.string() + ", " + key, "write \"" + key + "\": \"value\"");
 }
 
-// Returns the key of the job whose value is the first argument on the command line.
-const char* subject_of(const Json& job) { return job.at("command") == "phantom" ? "subject" : "volume"; }
+const std::vector<std::string>& places_of(const Json& job) {
+  return kCommands.at(job.at("command").get<std::string>()).places;
+}
 
 // Returns the command-line option that a key of the job stands for. A key may also be spelled as in reports:
 // "pose_name" for --pose-name, "joints" for --joint.
@@ -56,8 +64,10 @@ std::string option_of(std::string key) {
 // Returns the command line, as words, that the job stands for.
 std::vector<std::string> words_of(const Json& job, const Path& path) {
   std::vector<std::string> words{job.at("command").get<std::string>()};
+  const std::vector<std::string>& places = places_of(job);
+  for (const std::string& key : places) words.push_back(text_of(job.at(key), key, path));
   for (const auto& [key, value] : job.items()) {
-    if (key == "command" || key == subject_of(job)) continue;
+    if (key == "command" || std::find(places.begin(), places.end(), key) != places.end()) continue;
     if (value.is_boolean()) {
       if (value.get<bool>()) words.push_back(option_of(key));
     } else if (value.is_array()) {
@@ -66,7 +76,6 @@ std::vector<std::string> words_of(const Json& job, const Path& path) {
       words.push_back(option_of(key) + "=" + text_of(value, key, path));
     }
   }
-  words.insert(words.begin() + 1, text_of(job.at(subject_of(job)), subject_of(job), path));
   return words;
 }
 
@@ -74,16 +83,16 @@ Json read_job(const Path& path) {
   const Json job = Json::parse(checked_json(read_file(path, kLargestJob), path.string()), nullptr, false);
   if (!job.is_object())
     throw Error("this is not a job", path.string(), "write a JSON object with \"command\" and its options");
-  const auto require = [&](const char* key) {
+  const auto require = [&](const std::string& key) {
     if (!job.contains(key) || !job[key].is_string())
-      throw Error(std::string("the job has no \"") + key + "\"", path.string(),
+      throw Error("the job has no \"" + key + "\"", path.string(),
                   "add it: \"command\": \"resample\", \"volume\": FILE");
   };
   require("command");
   if (!kCommands.contains(job["command"].get<std::string>()))
     throw Error("a job cannot run this command", path.string() + ", " + job["command"].get<std::string>(),
                 "use \"command\": \"resample\"");
-  require(subject_of(job));
+  for (const std::string& key : places_of(job)) require(key);
   return job;
 }
 
@@ -106,7 +115,7 @@ void run(const Options& options) {
   std::filesystem::current_path(where.parent_path());
 
   CLI::App app;
-  kCommands.at(words.front())(app);
+  kCommands.at(words.front()).add(app);
   CLI::App* command = app.get_subcommand(words.front());
   command->parse_complete_callback([=] { check_files(*command, where); });
   std::reverse(words.begin(), words.end());  // CLI11 reads the words from the end of the list to its start

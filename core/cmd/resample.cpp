@@ -7,7 +7,6 @@
 //   [--threads N] [--progress json]: poses a label volume, or a sequence of frames.
 #include "core/resample/resample.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,6 +26,7 @@
 #include "core/export/exporter.h"
 #include "core/export/tet_phantom.h"
 #include "core/fem/solve_pose.h"
+#include "core/motion/frame_range.h"
 #include "core/report/report.h"
 #include "core/resample/deformation_method.h"
 #include "core/resample/fem_shape.h"
@@ -348,13 +348,13 @@ struct RequestedPoses {
 RequestedPoses read_poses(const Options& options, const Armature& rig) {
   if (options.frames.empty()) return {{read_pose_options(options.pose, rig)}, {}};
   const std::vector<Pose> all = read_all_poses(options.pose, rig);
-  RequestedPoses requested{{}, frames_of(options.frames, int(all.size()))};
+  RequestedPoses requested{{}, frames_in(options.frames, int(all.size()), "--frames " + options.frames)};
   for (const int frame : requested.frames) requested.poses.push_back(all[frame]);
   return requested;
 }
 
 void run(const Options& options) {
-  const Stopwatch total;
+  Stopwatch total;
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -362,7 +362,6 @@ void run(const Options& options) {
   check_sequence(options);
   check_outputs(options.frames.empty() ? options : of_frame(options, 0));
   Report report;
-
   const Stopwatch reading;
   const Body body = read_body(options.body, progress);
   const auto [poses, frames] = read_poses(options, body.rig);
@@ -396,9 +395,12 @@ void run(const Options& options) {
       [&](BodyInPose& posed) {
         nothing_is_being_written.reset();
         if (posed.posed.shape && frames.empty()) solve.end(*posed.posed.shape);
+        // What was done once for all frames is among the first frame's times.
+        if (posed.index > 0) posed.report.seconds.read = posed.report.seconds.weights = posed.report.seconds.glide = {};
         all_reached &= !posed.posed.report.solve || posed.posed.report.solve->converged;
         all_passed &= finish(frames.empty() ? options : of_frame(options, frames[posed.index]), body, bound, landmarks,
                              settings, posed, total);
+        total = {};
       },
       progress);
   if (!all_reached) throw PoseNotReached();

@@ -8,9 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "core/batch/computing_sources.h"
+#include "core/batch/machine.h"
 #include "core/study/charts.h"
-#include "core/study/computing_sources.h"
-#include "core/study/machine.h"
 #include "core/study/page_style.h"
 #include "core/study/text.h"
 
@@ -87,7 +87,7 @@ class Page {
   std::string marked_name(int technique) const { return mark_svg(look(technique)) + " " + technique_name(technique); }
   std::vector<std::string> pose_names() const {
     std::vector<std::string> names;
-    for (const StudyPose& pose : study_.poses) names.push_back(pose.name);
+    for (const DescribedPose& pose : study_.poses) names.push_back(pose.name);
     return names;
   }
 

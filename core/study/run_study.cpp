@@ -6,16 +6,9 @@
 #include <map>
 #include <optional>
 
-#include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
-#include "core/base/error.h"
-#include "core/base/json_text.h"
-#include "core/project/worker.h"
-#include "core/report/report.h"
-#include "core/study/computing_sources.h"
-#include "core/study/machine.h"
-#include "core/study/work_folder.h"
+#include "core/batch/cell_store.h"
 #include "core/volume_io/volume_io.h"
 
 namespace limber {
@@ -25,44 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 using Json = nlohmann::ordered_json;
 
-constexpr int kHashLetters = 12;
 constexpr double kStepsOfDoubling = 16;
 constexpr int kCodeOfOne = 128;
-
-double children_cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_CHILDREN, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-void make_folder(const Path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error("the folder cannot be made", folder.string(), error.message());
-}
-
-// Returns the text with only those characters that are safe in a file name.
-std::string plain(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.' || c == '_') result += c;
-  return result;
-}
-
-std::string hash_of(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return sha256_of_bytes(text.data(), text.size());
-}
-
-// Returns the extension of the file to which a copy of the volume `path` is written. It is the extension of `path` if
-// this format can be written, else .nrrd.
-std::string volume_ending(const Path& path) {
-  const std::string name = path.filename().string();
-  for (const char* ending : {".seg.nrrd", ".nrrd", ".mha", ".nii.gz", ".nii"})
-    if (name.ends_with(ending)) return ending;
-  return ".nrrd";
-}
 
 // Estimates the computing time of the remaining cells from the mean time of finished cells of the same technique. Cells
 // of the rest pose are ignored, since they are faster than bent poses.
@@ -120,14 +77,20 @@ class Runner {
       : study_(study),
         run_(run),
         progress_(progress),
-        cells_(cells_of(study)) {
-    for (int i = run.shard; i < std::ssize(cells_); i += run.shards) mine_.push_back(cells_[i]);
+        store_(run.out, run.threads),
+        settings_{.quality = study.quality,
+                  .fit_joints = study.fit_joints,
+                  .nearest = study.nearest,
+                  .outputs = {{"output", "posed.nrrd"},
+                              {"report", "report.json"},
+                              {"jacobian", "jacobian.nrrd"},
+                              {"overlap", "overlap.nrrd"}}} {
+    const std::vector<StudyCell> cells = cells_of(study);
+    for (int i = run.shard; i < std::ssize(cells); i += run.shards) mine_.push_back(cells[i]);
+    for (const std::optional<double>& spacing : study.spacings) bodies_.push_back(body_at(spacing));
   }
 
   std::vector<CellOutcome> operator()() {
-    make_folder(run_.out);
-    for (const char* name : {"inputs", "bodies", "cells"}) make_folder(run_.out / name);
-    take_inputs();
     std::vector<CellOutcome> outcomes;
     for (const StudyCell& cell : mine_) {
       outcomes.push_back(compute(cell));
@@ -137,179 +100,41 @@ class Runner {
   }
 
  private:
-  struct Input {
-    Path path;  // relative to the folder of a cell, which is two levels below the study's output folder
-    std::string sha256;
-  };
-
-  // Copies an input file into the study's output folder, so that the jobs in it can be run again after the folder has
-  // moved. A .gltf file is not copied, since it refers to other files by their paths.
-  Input take(const Path& file) {
-    if (file.empty()) return {};
-    Input input{fs::absolute(file), sha256_of_file(file)};
-    if (file.extension() == ".gltf") return input;
-    const std::string name =
-        plain(file.stem().string()) + "-" + input.sha256.substr(0, kHashLetters) + file.extension().string();
-    if (const Path copy = run_.out / "inputs" / name; !fs::exists(copy)) write_file_atomically(copy, read_file(file));
-    input.path = Path("../../inputs") / name;
-    return input;
-  }
-
-  void take_inputs() {
-    rig_ = take(study_.rig);
-    tissues_ = take(study_.tissues);
-    for (const StudyPose& pose : study_.poses) poses_.push_back({take(pose.pose), take(pose.motion), take(pose.map)});
-    bodies_.resize(study_.spacings.size());
-  }
-
-  Json body_description(int spacing) {
-    const std::optional<double> mm = study_.spacings[spacing];
-    Json json{{"sources", computing_sources()},
-              {"made", "body/1"},
-              {"spacing_mm", mm ? Json(*mm) : Json()},
-              {"weights", study_.weights}};
-    if (!study_.phantom.empty()) {
-      json["phantom"] = study_.phantom;
-    } else {
-      json["volume"] = sha256_of_file(source(spacing).first);
-      json["rig"] = rig_.sha256;
-      json["tissues"] = tissues_.sha256;
-      json["bones"] = study_.bones;
-    }
-    return json;
-  }
-
-  // Returns the file of the volume for a spacing (index into the study's spacings), and true if the volume must be
-  // resampled to this spacing.
-  std::pair<Path, bool> source(int spacing) const {
-    const std::optional<double> mm = study_.spacings[spacing];
-    if (mm)
-      if (const auto found = study_.ready.find(*mm); found != study_.ready.end()) return {found->second, false};
-    return {study_.volume, mm.has_value()};
-  }
-
-  std::string bones_text() const {
-    std::string text;
-    for (const double label : study_.bones) text += (text.empty() ? "" : ",") + Json(label).dump();
-    return text;
-  }
-  void add_body_words(Json& job, const Path& folder) const {
-    job["volume"] = (folder / ("volume" + (study_.phantom.empty() ? volume_ending(study_.volume) : ".nrrd"))).string();
-    job["rig"] = study_.phantom.empty() ? rig_.path.string() : (folder / "rig.json").string();
-    if (!study_.phantom.empty()) job["tissues"] = (folder / "tissues.json").string();
-    if (!tissues_.path.empty()) job["tissues"] = tissues_.path.string();
-    if (!study_.bones.empty()) job["bones"] = bones_text();
-  }
-
-  WorkerOutput work(const WorkFolder& folder, const std::string& name, Json job, Progress& progress) const {
-    write_file_atomically(folder / name, job.dump(1) + "\n");
-    if (run_.threads == 0) return run_worker(folder / name, progress);
-    // The worker gets a second job file with the number of threads. The job file that stays with the result does not
-    // contain this number, since results do not depend on it.
-    job["threads"] = run_.threads;
-    write_file_atomically(folder / "limited.json", job.dump(1) + "\n");
-    WorkerOutput output = run_worker(folder / "limited.json", progress);
-    fs::remove(folder / "limited.json");
-    return output;
-  }
-
-  // Name and key (hash of everything that it depends on) of the folder with the body's volume and skin weights at one
-  // spacing. Volume and weights are computed if there is no such folder yet.
-  struct Body {
-    std::string name, key;
-  };
-  const Body& body(int spacing, Progress& progress) {
-    if (bodies_[spacing]) return *bodies_[spacing];
-    const std::string key = hash_of(body_description(spacing));
-    const Body body{plain(spacing_text(study_.spacings[spacing])) + "-" + key.substr(0, kHashLetters), key};
-    if (const Path place = run_.out / "bodies" / body.name; !fs::exists(place)) {
-      WorkFolder folder(place, progress);
-      if (!folder.made()) {
-        make_body(folder, spacing, progress);
-        folder.commit();
+  DescribedBody body_at(const std::optional<double>& spacing) const {
+    DescribedBody body{.name = spacing_text(spacing),
+                       .phantom = study_.phantom,
+                       .volume = study_.volume,
+                       .rig = study_.rig,
+                       .tissues = study_.tissues,
+                       .bones = study_.bones,
+                       .spacing = spacing,
+                       .weights = study_.weights};
+    if (spacing)
+      if (const auto ready = study_.ready.find(*spacing); ready != study_.ready.end()) {
+        body.volume = ready->second;
+        body.spacing.reset();
       }
-    }
-    bodies_[spacing] = body;
-    return *bodies_[spacing];
-  }
-  void make_body(WorkFolder& folder, int spacing, Progress& progress) const {
-    const double before = children_cpu_seconds();
-    const auto [from, regrids] = source(spacing);
-    Json first;
-    if (!study_.phantom.empty()) {
-      first = {{"command", "phantom"}, {"subject", study_.phantom}, {"output", "."}};
-      if (study_.spacings[spacing]) first["spacing"] = *study_.spacings[spacing];
-    } else {
-      first = {{"command", "prepare"},
-               {"volume", fs::absolute(from).string()},
-               {"output", "volume" + volume_ending(study_.volume)}};
-      if (regrids) first["spacing"] = *study_.spacings[spacing];
-    }
-    work(folder, "volume-job.json", first, progress);
-    const double made = children_cpu_seconds();
-    Json job{{"command", "weights"}, {"method", study_.weights}, {"output", "weights.nrrd"}};
-    add_body_words(job, "");
-    work(folder, "weights-job.json", job, progress);
-    write_file_atomically(
-        folder / "body.json",
-        Json{{"cpu_seconds", {{"volume", made - before}, {"weights", children_cpu_seconds() - made}}}}.dump(1) + "\n");
+    return body;
   }
 
-  Json cell_job(const StudyCell& cell, const Body& body) const {
-    const StudyPose& pose = study_.poses[cell.pose];
-    const auto& [pose_file, motion, map] = poses_[cell.pose];
-    const Technique& technique = study_.techniques[cell.technique];
-    const Path folder = Path("../../bodies") / body.name;
-    Json job{{"command", "resample"}};
-    add_body_words(job, folder);
-    job["weights"] = (folder / "weights.nrrd").string();
-    if (!pose.flex.empty()) job["flex"] = pose.flex;
-    if (!pose.body.name.empty()) job["pose_name"] = pose.body.name;
-    if (!pose.body.joints.empty()) job["joints"] = pose.body.joints;
-    if (!pose_file.path.empty()) job["pose"] = pose_file.path.string();
-    if (!motion.path.empty()) job["motion"] = motion.path.string();
-    if (!map.path.empty()) job["map"] = map.path.string();
-    if (pose.frame) job["frame"] = *pose.frame;
-    if (!pose.up.empty()) job["up"] = pose.up;
-    job["method"] = technique.method;
-    if (technique.contact) job["contact"] = true;
-    if (technique.is_fem()) job["quality"] = study_.quality;
-    if (technique.mass_exact) job["mass-exact"] = true;
-    if (study_.fit_joints) job["fit-joints"] = true;
-    if (study_.nearest) job["nearest"] = true;
-    job.update({{"output", "posed.nrrd"},
-                {"report", "report.json"},
-                {"jacobian", "jacobian.nrrd"},
-                {"overlap", "overlap.nrrd"}});
-    return job;
-  }
-
-  std::string cell_key(const StudyCell& cell, const Body& body, const Json& job) const {
-    const auto& [pose, motion, map] = poses_[cell.pose];
-    return hash_of({{"sources", computing_sources()},
-                    {"made", "cell/1"},
-                    {"body", body.key},
-                    {"job", job},
-                    {"inputs", {pose.sha256, motion.sha256, map.sha256}}});
-  }
-
-  // Returns true if the folder contains a complete result of a cell with this key.
-  static bool is_done(const Path& folder, const std::string& key) {
-    if (!fs::exists(folder / "cell.json")) return false;
-    const Json json = Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false);
-    return json.is_object() && json.value("key", "") == key && fs::exists(folder / "report.json") &&
-           fs::exists(folder / "posed.nrrd");
-  }
-  static bool is_rest(const StudyPose& pose) {
-    return pose.flex.empty() && pose.body.empty() && pose.pose.empty() && pose.motion.empty();
-  }
   // Returns the technique from whose times the time of the cell is estimated. A cell of the rest pose takes as long as
   // skinning, whatever its technique is.
   Technique kind_of(const StudyCell& cell) const {
-    return is_rest(study_.poses[cell.pose]) ? Technique{"lbs"} : study_.techniques[cell.technique];
+    return study_.poses[cell.pose].is_rest() ? Technique{"lbs"} : study_.techniques[cell.technique];
   }
-  static double wall_seconds_of(const Path& folder) {
-    return Json::parse(sound_json(read_file(folder / "cell.json")), nullptr, false).value("wall_seconds", 0.0);
+
+  CellRequest request_of(const StudyCell& cell) const {
+    const DescribedPose& pose = study_.poses[cell.pose];
+    const Technique& technique = study_.techniques[cell.technique];
+    const std::optional<double>& spacing = study_.spacings[cell.spacing];
+    const Json facts{
+        {"spacing_mm", spacing ? Json(*spacing) : Json()}, {"pose", pose.name}, {"method", word_of(technique)}};
+    return {bodies_[cell.spacing],
+            pose,
+            technique,
+            settings_,
+            file_word(spacing_text(spacing)) + "-" + file_word(pose.name) + "-" + word_of(technique),
+            facts.dump(-1, ' ', false, Json::error_handler_t::replace)};
   }
 
   CellOutcome compute(const StudyCell& cell) {
@@ -318,60 +143,12 @@ class Runner {
     CellProgress progress(progress_,
                           std::to_string(number) + " of " + std::to_string(mine_.size()) + ", " + text_of(study_, cell),
                           (number - 1) / of, number / of);
-    const Body& of_body = body(cell.spacing, progress);
-    const Json job = cell_job(cell, of_body);
-    const std::string key = cell_key(cell, of_body, job);
-    const std::string name = plain(spacing_text(study_.spacings[cell.spacing])) + "-" +
-                             plain(study_.poses[cell.pose].name) + "-" + word_of(study_.techniques[cell.technique]) +
-                             "-" + key.substr(0, kHashLetters);
-    CellOutcome outcome{cell, run_.out / "cells" / name, {}};
-    bool was_there = true;
-    if (fs::exists(outcome.folder) && !is_done(outcome.folder, key))
-      fs::remove_all(outcome.folder);  // the result in the folder is damaged
-    if (!fs::exists(outcome.folder)) {
-      WorkFolder folder(outcome.folder, progress);
-      was_there = folder.made();
-      if (!was_there) outcome.failure = compute_into(folder, cell, key, job, progress);
-    }
-    if (outcome.failure.empty() && !is_rest(study_.poses[cell.pose]))
+    const StoredCell stored = store_.compute(request_of(cell), IfBusy::Wait, progress, code_ratios);
+    const CellOutcome outcome{cell, stored.folder, stored.failure};
+    if (outcome.failure.empty() && !study_.poses[cell.pose].is_rest())
       pace_.took(kind_of(cell), wall_seconds_of(outcome.folder));
-    tell(outcome, number, was_there);
+    tell(outcome, number, stored.state == CellState::WasThere);
     return outcome;
-  }
-
-  // Computes a cell and writes its result to the folder. Returns the message of the error if the cell failed, else an
-  // empty text. Throws Error if no other cell could be computed either, because the disk is full.
-  std::string compute_into(WorkFolder& folder, const StudyCell& cell, const std::string& key, const Json& job,
-                           Progress& progress) const {
-    const Stopwatch wall;
-    const double before = children_cpu_seconds();
-    bool reached = true;
-    try {
-      reached = work(folder, "job.json", job, progress).pose_reached;
-    } catch (const Error& error) {
-      if (!folder.has_room())
-        throw Error("the results cannot be written", run_.out.string(),
-                    "make room on the disk, then run the same again");
-      return error.what();
-    }
-    const double cpu = children_cpu_seconds() - before, seconds = wall.seconds();
-    code_ratios(folder);
-    write_file_atomically(
-        folder / "cell.json",
-        Json{{"schema", "limber-cell/1"},
-             {"key", key},
-             {"spacing_mm", study_.spacings[cell.spacing] ? Json(*study_.spacings[cell.spacing]) : Json()},
-             {"pose", study_.poses[cell.pose].name},
-             {"method", word_of(study_.techniques[cell.technique])},
-             {"pose_reached", reached},
-             {"cpu_seconds", cpu},
-             {"wall_seconds", seconds},
-             {"machine", machine_text()},
-             {"sources", computing_sources()}}
-                .dump(1, ' ', false, Json::error_handler_t::replace) +
-            "\n");
-    folder.commit();
-    return {};
   }
 
   static void code_ratios(const WorkFolder& folder) {
@@ -396,11 +173,10 @@ class Runner {
   const Study& study_;
   const StudyRun& run_;
   Progress& progress_;
-  const std::vector<StudyCell> cells_;
+  CellStore store_;
+  const CellSettings settings_;
   std::vector<StudyCell> mine_;
-  Input rig_, tissues_;
-  std::vector<std::array<Input, 3>> poses_;  // for each pose: its pose file, motion file and retarget map
-  std::vector<std::optional<Body>> bodies_;
+  std::vector<DescribedBody> bodies_;  // at each of the study's spacings
   Pace pace_;
   int started_ = 0;
 };

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the cells of a study and writes them to a folder. A cell is one combination of spacing, pose and technique
-// (way of posing). A worker process runs each cell as a `limber job`. The same job can be run from the command line,
-// and the process's memory and processor time can be measured. Finished cells are stored under a hash of everything
-// that they depend on, including the program's own sources, and are not computed again. The folder contains:
-//   inputs/   copies of rig, tissues and poses, to which the jobs refer
-//   bodies/   volume and skin weights at each spacing
-//   cells/    job.json, report.json (limber-report/1), posed.nrrd, ratio.nrrd, overlap.nrrd, cell.json
-// A cell's folder appears only when it is complete, so a run may be killed at any moment and continued later.
+// Computes the cells of a study and stores them in a folder (batch/cell_store.h). A cell is one combination of spacing,
+// pose and technique (way of posing). Finished cells are not computed again, so a run may be killed at any moment and
+// continued later. Each cell's folder also contains ratio.nrrd and overlap.nrrd.
 #pragma once
 
 #include <functional>

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/tissue/tissue_match.h"
+
 namespace limber {
 
 namespace {
@@ -42,14 +44,6 @@ Json cell_json(const Study& study, const CellResult& cell) {
 }
 
 using Row = std::map<std::string, std::string>;
-
-// Quotes a text for a CSV file if it contains commas, quotation marks or line ends [RFC 4180].
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
 
 // Adds the figures in a JSON value to a row of the table. A column's name is the path to the figure, joined by dots. In
 // a list of objects, the object's "name", "bone", "path" or "label" is part of the path. A list of plain values becomes

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (study.poses.empty() || study.techniques.empty() || study.spacings.empty()) std::abort();
     for (const auto& spacing : study.spacings)
       if (spacing && !(*spacing > 0)) std::abort();
-    for (const StudyPose& pose : study.poses)
+    for (const DescribedPose& pose : study.poses)
       for (const std::string& flex : pose.flex) parse_flex_request(flex, "f");
     to_json(study);
   } catch (const Error&) {

@@ -111,6 +111,9 @@ TEST_CASE(
   }
   CHECK(seen.size() == 6);
 
+  const std::string observations = read_file(whole / "observations.csv");
+  CHECK(observations.starts_with("spacing,pose,frame,method,group,item,quantity,value\r\n"));
+  CHECK(observations.find("tissues,skin,volume_change_percent,") != std::string::npos);
   const std::string table = read_file(whole / "cells.csv");
   CHECK(count(table, "\r\n") == 7);
   CHECK(table.starts_with("spacing_mm,pose,method,"));

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
-#include "core/study/computing_sources.h"
+#include "core/batch/computing_sources.h"
 #include "core/study/run_study.h"
 #include "tests/support/program.h"
 
@@ -112,7 +112,7 @@ TEST_CASE(
     std::ofstream(folder / "a.h") << a;
     std::ofstream(folder / "b.cpp") << b;
     REQUIRE(test::run_program("cmake", {"-DFOLDER=" + folder.path().string(), "-DOUT=" + (folder / "out.cpp").string(),
-                                        "-DFILES=" + files, "-P", LIMBER_SOURCE_DIR "/core/study/hash_sources.cmake"})
+                                        "-DFILES=" + files, "-P", LIMBER_SOURCE_DIR "/core/batch/hash_sources.cmake"})
                 .exit_code == 0);
     return read_file(folder / "out.cpp");
   };

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/batch/cell_store.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <sys/resource.h>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/json_text.h"
+#include "core/batch/computing_sources.h"
+#include "core/batch/machine.h"
+#include "core/project/worker.h"
+#include "core/report/report.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+using Json = nlohmann::ordered_json;
+
+constexpr int kHashLetters = 12;
+constexpr std::size_t kLongestName = 60;
+
+double children_cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+void make_folder(const Path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error("the folder cannot be made", folder.string(), error.message());
+}
+
+std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::string hash_of(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return sha256_of_bytes(text.data(), text.size());
+}
+
+// Returns the extension of the file to which a copy of the volume `path` is written. It is the extension of `path` if
+// this format can be written, else .nrrd.
+std::string volume_ending(const Path& path) {
+  const std::string name = path.filename().string();
+  for (const char* ending : {".seg.nrrd", ".nrrd", ".mha", ".nii.gz", ".nii"})
+    if (name.ends_with(ending)) return ending;
+  return ".nrrd";
+}
+
+std::string labels_text(const std::vector<double>& labels) {
+  std::string text;
+  for (const double label : labels) text += (text.empty() ? "" : ",") + Json(label).dump();
+  return text;
+}
+
+Json read_facts(const Path& file) { return Json::parse(sound_json(read_file(file)), nullptr, false); }
+
+// Returns true if the folder contains a complete result with this key.
+bool is_done(const Path& folder, const std::string& key) {
+  if (!fs::exists(folder / "cell.json")) return false;
+  const Json json = read_facts(folder / "cell.json");
+  if (!json.is_object() || json.value("key", "") != key) return false;
+  // Of what the job writes, only files that have one name are known here; a report and a posed volume are always there.
+  return !json.contains("files") || std::all_of(json["files"].begin(), json["files"].end(), [&](const Json& name) {
+    return name.is_string() && fs::exists(folder / name.get<std::string>());
+  });
+}
+
+StoredCell found(const Path& folder, const std::string& key) {
+  return {is_done(folder, key) ? CellState::WasThere : CellState::Missing, folder, key, {}};
+}
+}  // namespace
+
+// What a store knows of the inputs and bodies that its cells use.
+struct CellStore::Parts {
+  struct Body {
+    std::string name, key;  // the folder's name, and the hash of everything that the body depends on
+    std::string failure;    // why volume or weights could not be computed; empty: not tried, or there
+  };
+
+  Path folder;
+  int threads = 0;
+  std::map<Path, Input> inputs;
+  std::map<Path, std::string> hashes;
+  std::map<const DescribedBody*, Body> bodies;
+
+  const std::string& hash_of_file(const Path& file) {
+    const auto [at, is_new] = hashes.try_emplace(file);
+    if (is_new) at->second = sha256_of_file(file);
+    return at->second;
+  }
+
+  const Input& take(const Path& file) {
+    const auto [at, is_new] = inputs.try_emplace(file);
+    if (!is_new || file.empty()) return at->second;
+    Input input{fs::absolute(file), hash_of_file(file)};
+    if (file.extension() != ".gltf") {
+      const std::string name =
+          file_word(file.stem().string()) + "-" + input.sha256.substr(0, kHashLetters) + file.extension().string();
+      if (const Path copy = folder / "inputs" / name; !fs::exists(copy)) write_file_atomically(copy, read_file(file));
+      input.path = Path("../../inputs") / name;
+    }
+    return at->second = input;
+  }
+
+  Body& body(const DescribedBody& described) {
+    const auto [at, is_new] = bodies.try_emplace(&described);
+    if (!is_new) return at->second;
+    Json json{{"sources", computing_sources()},
+              {"made", "body/1"},
+              {"spacing_mm", described.spacing ? Json(*described.spacing) : Json()},
+              {"weights", described.weights_file.empty() ? described.weights : take(described.weights_file).sha256}};
+    if (described.no_seams) json["seams"] = "none";
+    if (!described.seams.empty()) json["seams"] = take(described.seams).sha256;
+    if (!described.phantom.empty()) {
+      json["phantom"] = described.phantom;
+    } else {
+      json["volume"] = hash_of_file(described.volume);
+      json["rig"] = take(described.rig).sha256;
+      json["tissues"] = take(described.tissues).sha256;
+      json["bone_map"] = take(described.bone_map).sha256;
+      json["bones"] = described.bones;
+    }
+    at->second.key = hash_of(json);
+    at->second.name = file_word(described.name) + "-" + at->second.key.substr(0, kHashLetters);
+    return at->second;
+  }
+
+  // Adds the options of a job that name the body's files. `where` is the body's folder, as seen from the job's.
+  void add_body_options(Json& job, const DescribedBody& body, const Path& where) {
+    const bool is_phantom = !body.phantom.empty();
+    job["volume"] = (where / ("volume" + (is_phantom ? ".nrrd" : volume_ending(body.volume)))).string();
+    job["rig"] = is_phantom ? (where / "rig.json").string() : take(body.rig).path.string();
+    if (is_phantom) job["tissues"] = (where / "tissues.json").string();
+    if (!body.tissues.empty()) job["tissues"] = take(body.tissues).path.string();
+    if (!body.bone_map.empty()) job["bone-map"] = take(body.bone_map).path.string();
+    if (!body.bones.empty()) job["bones"] = labels_text(body.bones);
+  }
+
+  WorkerOutput work(const WorkFolder& into, const std::string& name, Json job, Progress& progress) const {
+    write_file_atomically(into / name, text_of(job));
+    if (threads == 0) return run_worker(into / name, progress);
+    // The worker gets a second job file with the number of threads. The job file that stays with the result does not
+    // contain this number, since results do not depend on it.
+    job["threads"] = threads;
+    write_file_atomically(into / "limited.json", text_of(job));
+    WorkerOutput output = run_worker(into / "limited.json", progress);
+    fs::remove(into / "limited.json");
+    return output;
+  }
+
+  // Runs `work` in the working folder, and returns its failure, or nothing. Throws Error if the disk is full.
+  std::string failure_of(const WorkFolder& into, const Path& place, const std::function<void()>& work) const {
+    try {
+      work();
+    } catch (const Error& error) {
+      if (fs::exists(place)) return {};  // another machine was faster
+      if (!into.has_room())
+        throw Error("the results cannot be written", folder.string(), "make room on the disk, then run the same again");
+      return error.what();
+    }
+    return {};
+  }
+
+  void make_body(WorkFolder& into, const DescribedBody& body, Progress& progress) {
+    const double before = children_cpu_seconds();
+    const bool is_phantom = !body.phantom.empty();
+    Json first;
+    if (is_phantom) first = {{"command", "phantom"}, {"subject", body.phantom}, {"output", "."}};
+    else
+      first = {{"command", "prepare"},
+               {"volume", fs::absolute(body.volume).string()},
+               {"output", "volume" + volume_ending(body.volume)}};
+    if (body.spacing) first["spacing"] = *body.spacing;
+    work(into, "volume-job.json", first, progress);
+    const double made = children_cpu_seconds();
+    if (body.weights_file.empty()) {
+      Json job{{"command", "weights"}, {"method", body.weights}, {"output", "weights.nrrd"}};
+      add_body_options(job, body, "");
+      if (body.no_seams) job["seams"] = "none";
+      if (!body.seams.empty()) job["seams"] = take(body.seams).path.string();
+      work(into, "weights-job.json", job, progress);
+    }
+    write_file_atomically(
+        into / "body.json",
+        text_of({{"cpu_seconds", {{"volume", made - before}, {"weights", children_cpu_seconds() - made}}}}));
+    into.commit();
+  }
+
+  // Makes the body's folder unless it is there. Returns false if another program is making it. A body that failed is
+  // not tried again for its other cells.
+  bool provide_body(const DescribedBody& described, IfBusy if_busy, Progress& progress) {
+    Body& mine = body(described);
+    const Path place = folder / "bodies" / mine.name;
+    if (!mine.failure.empty() || fs::exists(place)) return true;
+    WorkFolder into(place, progress, if_busy);
+    if (into.busy()) return false;
+    if (!into.made()) mine.failure = failure_of(into, place, [&] { make_body(into, described, progress); });
+    return true;
+  }
+
+  Json job_of(const CellRequest& request) {
+    const auto& [body, pose, technique, settings, name, facts] = request;
+    const Path where = Path("../../bodies") / this->body(body).name;
+    Json job{{"command", "resample"}};
+    add_body_options(job, body, where);
+    job["weights"] =
+        body.weights_file.empty() ? (where / "weights.nrrd").string() : take(body.weights_file).path.string();
+    if (!pose.flex.empty()) job["flex"] = pose.flex;
+    if (!pose.body.name.empty()) job["pose_name"] = pose.body.name;
+    if (!pose.body.joints.empty()) job["joints"] = pose.body.joints;
+    for (const auto& [key, file] : {std::pair{"pose", &pose.pose}, {"motion", &pose.motion}, {"map", &pose.map}})
+      if (!file->empty()) job[key] = take(*file).path.string();
+    if (pose.frame) job["frame"] = *pose.frame;
+    if (!pose.up.empty()) job["up"] = pose.up;
+    job["method"] = technique.method;
+    if (technique.contact) job["contact"] = true;
+    if (technique.is_fem()) job["quality"] = settings.quality;
+    if (technique.mass_exact) job["mass-exact"] = true;
+    if (settings.fit_joints) job["fit-joints"] = true;
+    if (settings.nearest) job["nearest"] = true;
+    if (!settings.glide.empty()) job["glide"] = settings.glide;
+    for (const auto& [option, file] : settings.outputs) job[option] = file;
+    if (technique.is_fem() && !pose.is_rest() && !settings.mesh.empty()) job["mesh-out"] = settings.mesh;
+    if (!body.grey.empty()) job["with"] = take(body.grey).path.string() + "=grey" + volume_ending(body.grey);
+    if (!body.landmarks.empty()) job["landmarks"] = take(body.landmarks).path.string() + "=landmarks.csv";
+    return job;
+  }
+
+  std::string key_of(const CellRequest& request, const Json& job) {
+    const DescribedPose& pose = request.pose;
+    return hash_of({{"sources", computing_sources()},
+                    {"made", "cell/1"},
+                    {"body", body(request.body).key},
+                    {"job", job},
+                    {"inputs",
+                     {take(pose.pose).sha256, take(pose.motion).sha256, take(pose.map).sha256,
+                      take(request.body.grey).sha256, take(request.body.landmarks).sha256}}});
+  }
+
+  // Computes a cell into its working folder and puts that in its place.
+  void make_cell(WorkFolder& into, const CellRequest& request, const Json& job, const std::string& key,
+                 const std::function<void(const WorkFolder&)>& finish, Progress& progress) const {
+    const Stopwatch wall;
+    const double before = children_cpu_seconds();
+    const bool reached = work(into, "job.json", job, progress).pose_reached;
+    const double cpu = children_cpu_seconds() - before, seconds = wall.seconds();
+    if (finish) finish(into);
+    Json facts{{"schema", "limber-cell/1"}, {"key", key}};
+    facts.update(Json::parse(request.facts));
+    facts.update({{"pose_reached", reached},
+                  {"cpu_seconds", cpu},
+                  {"wall_seconds", seconds},
+                  {"machine", machine_text()},
+                  {"sources", computing_sources()},
+                  {"files", {"report.json", request.settings.outputs.at("output")}}});
+    write_file_atomically(into / "cell.json", text_of(facts));
+    into.commit();
+  }
+};
+
+CellStore::CellStore(const Path& folder, int threads) : folder_(folder), parts_(std::make_unique<Parts>()) {
+  parts_->folder = folder;
+  parts_->threads = threads;
+  make_folder(folder);
+  for (const char* name : {"inputs", "bodies", "cells", "exports"}) make_folder(folder / name);
+}
+CellStore::~CellStore() = default;
+
+const CellStore::Input& CellStore::take(const Path& file) { return parts_->take(file); }
+
+StoredCell CellStore::find(const CellRequest& request) {
+  const std::string key = parts_->key_of(request, parts_->job_of(request));
+  return found(folder_ / "cells" / (request.name + "-" + key.substr(0, kHashLetters)), key);
+}
+
+StoredCell CellStore::compute(const CellRequest& request, IfBusy if_busy, Progress& progress,
+                              const std::function<void(const WorkFolder&)>& finish) {
+  StoredCell cell = find(request);
+  if (cell.state == CellState::WasThere) return cell;
+  if (!parts_->provide_body(request.body, if_busy, progress)) {
+    cell.state = CellState::Busy;
+    return cell;
+  }
+  cell.failure = parts_->body(request.body).failure;
+  if (cell.failure.empty()) {
+    if (fs::exists(cell.folder)) fs::remove_all(cell.folder);  // the result in the folder is damaged
+    WorkFolder into(cell.folder, progress, if_busy);
+    cell.state = into.made() ? CellState::WasThere : into.busy() ? CellState::Busy : CellState::Made;
+    if (cell.state == CellState::Made)
+      cell.failure = parts_->failure_of(into, cell.folder, [&] {
+        parts_->make_cell(into, request, parts_->job_of(request), cell.key, finish, progress);
+      });
+  }
+  if (!cell.failure.empty()) cell.state = CellState::Failed;
+  return cell;
+}
+
+StoredCell CellStore::find_export(const StoredCell& cell, const std::string& name, const std::string& job) const {
+  const std::string key =
+      hash_of({{"made", "export/1"}, {"version", LIMBER_VERSION}, {"cell", cell.key}, {"job", job}});
+  return found(folder_ / "exports" / (name + "-" + key.substr(0, kHashLetters)), key);
+}
+
+StoredCell CellStore::compute_export(const StoredCell& cell, const std::string& name, const std::string& job,
+                                     IfBusy if_busy, Progress& progress) const {
+  StoredCell made = find_export(cell, name, job);
+  if (made.state == CellState::WasThere) return made;
+  if (fs::exists(made.folder)) fs::remove_all(made.folder);
+  WorkFolder into(made.folder, progress, if_busy);
+  made.state = into.made() ? CellState::WasThere : into.busy() ? CellState::Busy : CellState::Made;
+  if (made.state != CellState::Made) return made;
+  made.failure = parts_->failure_of(into, made.folder, [&] {
+    parts_->work(into, "job.json", Json::parse(job), progress);
+    write_file_atomically(into / "cell.json", text_of({{"schema", "limber-cell/1"}, {"key", made.key}}));
+    into.commit();
+  });
+  if (!made.failure.empty()) made.state = CellState::Failed;
+  return made;
+}
+
+double wall_seconds_of(const Path& cell_folder) {
+  const Json json = read_facts(cell_folder / "cell.json");
+  return json.is_object() ? json.value("wall_seconds", 0.0) : 0;
+}
+
+std::string file_word(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '+' || c == '-' || c == '.' || c == '_') result += c;
+  return result.substr(0, kLongestName);
+}
+
+}  // namespace limber

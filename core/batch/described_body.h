@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// One body of a study or batch, as its description gives it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/file.h"
+
+namespace limber {
+
+struct DescribedBody {
+  std::string name;
+  std::string phantom;  // "arm", "body", or empty for a body in files
+  Path volume, rig, tissues, bone_map, seams;
+  std::vector<double> bones;      // labels of bone, as values in the volume's file; empty: the tissue table's
+  std::optional<double> spacing;  // voxel spacing to resample the volume to, mm; empty: the volume's own
+  std::string weights = "heat";   // how skin weights are computed: a word of binding_words()
+  Path weights_file;              // skin weights that are there already; empty: they are computed
+  bool no_seams = false;          // true: what touches in the volume is connected
+  Path grey, landmarks;           // a grey volume and a list of landmarks that move with the body; empty: none
+};
+
+}  // namespace limber
