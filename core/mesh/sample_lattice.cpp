@@ -104,6 +104,15 @@ void coarsen(SampleLattice& lattice, int size) {
 struct Filling {
   std::vector<float> tissue;                          // mm3 of any tissue, one per sample
   std::vector<std::pair<std::uint64_t, float>> bone;  // (sample << 16 | region, mm3), sorted by that key
+  // [axis][i]: how many boxes count for a sample at coordinate i if all is tissue. Boxes are counted whole, so a cube
+  // of 2.6 voxels has two of them along an axis, or three.
+  std::vector<int> boxes[3];
+  float box = 0;  // mm3
+
+  // Returns the volume that counts for sample p if all around it is tissue, mm3.
+  float full(const glm::ivec3& p) const {
+    return box * static_cast<float>(boxes[0][p.x] * boxes[1][p.y] * boxes[2][p.z]);
+  }
 };
 
 void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
@@ -115,6 +124,27 @@ void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
   parts.resize(kept);
 }
 
+// Returns the coordinate of the sample, a multiple of `stride`, for which a box with this centre is counted.
+int nearest_sample(double fine, int stride) {
+  return static_cast<int>(std::floor(fine / double(stride) + 0.5)) * stride;
+}
+
+// Returns the place of the centre of piece i of `pieces` in a voxel, as a share of the voxel, from its centre.
+double centre_of_piece(int i, int pieces) { return (i + 0.5) / pieces - 0.5; }
+
+// Returns Filling::boxes of one axis. The grid is taken to go on beyond its faces.
+std::vector<int> count_boxes(const SampleLattice& lattice, const Grid& grid, int axis, int pieces, int stride) {
+  std::vector<int> boxes(lattice.size[axis], 0);
+  const double voxel = lattice.fine_from_voxel.linear[axis][axis], offset = lattice.fine_from_voxel.offset[axis];
+  const int beyond = static_cast<int>(std::ceil(lattice.size[axis] / std::abs(voxel))) + 1;
+  for (int v = -beyond; v < grid.size[axis] + beyond; ++v)
+    for (int i = 0; i < pieces; ++i) {
+      const int at = nearest_sample(voxel * (v + centre_of_piece(i, pieces)) + offset, stride);
+      if (at >= 0 && at < lattice.size[axis]) ++boxes[at];
+    }
+  return boxes;
+}
+
 // Sums up the volumes of tissue around the samples whose coordinates are multiples of `stride`. Splits voxels larger
 // than half the distance between these samples into smaller boxes, each of which is counted at its own centre.
 Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int stride) {
@@ -123,14 +153,19 @@ Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int strid
   const double spacing = lattice.step * stride;
   const glm::ivec3 pieces = glm::max(glm::ivec3(1), glm::ivec3(glm::ceil(2.0 * voxels.grid.spacing / spacing)));
   const float part = static_cast<float>(voxels.grid.voxel_volume() / (double(pieces.x) * pieces.y * pieces.z));
+  filling.box = part;
+  for (int axis = 0; axis < 3; ++axis)
+    filling.boxes[axis] = count_boxes(lattice, voxels.grid, axis, pieces[axis], stride);
   voxels.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     const std::uint16_t region = voxels.region[place];
     for (int k = 0; k < pieces.z; ++k)
       for (int j = 0; j < pieces.y; ++j)
         for (int i = 0; i < pieces.x; ++i) {
-          const glm::dvec3 inside = (glm::dvec3(i, j, k) + 0.5) / glm::dvec3(pieces) - 0.5;
+          const glm::dvec3 inside(centre_of_piece(i, pieces.x), centre_of_piece(j, pieces.y),
+                                  centre_of_piece(k, pieces.z));
           const glm::dvec3 fine = lattice.fine_from_voxel * (glm::dvec3(v) + inside);
-          const glm::ivec3 p = glm::ivec3(glm::floor(fine / double(stride) + 0.5)) * stride;
+          const glm::ivec3 p(nearest_sample(fine.x, stride), nearest_sample(fine.y, stride),
+                             nearest_sample(fine.z, stride));
           const std::int64_t at = lattice.index(p);
           filling.tissue[at] += part;
           if (region == TetMesh::kSoft) continue;
@@ -153,8 +188,9 @@ int smallest_around(const SampleLattice& lattice, const glm::ivec3& p) {
 bool is_multiple(const glm::ivec3& p, int size) { return ((p.x | p.y | p.z) & (size - 1)) == 0; }
 
 struct Candidate {
-  float share;  // share of the cube around the sample that the bone fills, [0, 1]
-  float volume;
+  float share;   // share of the cube around the sample that the bone fills, [0, 1]
+  float mm3;     // volume of the bone there
+  float volume;  // of the cube, mm3
   std::int64_t at;
   std::uint16_t region;
 };
@@ -171,7 +207,7 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   for (auto& [region, candidates] : by_bone) {
     std::sort(candidates.begin(), candidates.end(), fuller);
     double volume = 0, given = 0;
-    for (const Candidate& candidate : candidates) volume += double{candidate.share} * candidate.volume;
+    for (const Candidate& candidate : candidates) volume += candidate.mm3;
     for (const Candidate& candidate : candidates) {
       if (given > 0 && given + 0.5 * candidate.volume > volume) break;
       (given > 0 ? wanted : seeds).push_back(candidate);
@@ -268,11 +304,12 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
         for (p.x = 0; p.x < lattice.size.x; p.x += stride) {
           const std::int64_t at = lattice.index(p);
           if (filling.tissue[at] == 0 || !is_of_stride(p)) continue;
-          if (filling.tissue[at] >= 0.5 * volume) lattice.label[at] = TetMesh::kSoft;
+          const float full = filling.full(p);
+          if (filling.tissue[at] >= 0.5F * full) lattice.label[at] = TetMesh::kSoft;
           while (next < filling.bone.size() && std::int64_t(filling.bone[next].first >> 16) < at) ++next;
           for (; next < filling.bone.size() && std::int64_t(filling.bone[next].first >> 16) == at; ++next)
-            bones.push_back({static_cast<float>(filling.bone[next].second / volume), static_cast<float>(volume), at,
-                             static_cast<std::uint16_t>(filling.bone[next].first & 0xffff)});
+            bones.push_back({filling.bone[next].second / full, filling.bone[next].second, static_cast<float>(volume),
+                             at, static_cast<std::uint16_t>(filling.bone[next].first & 0xffff)});
         }
     if (lattice.usual == 1) break;
   }

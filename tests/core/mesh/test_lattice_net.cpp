@@ -248,7 +248,7 @@ TEST_CASE("lattice net: deep inside a body its tets are larger, step by step, al
     CHECK(largest == doctest::Approx(64 * usual));
     CHECK(smallest < (fine ? 0.2 : 1.01) * usual);
     CHECK(angle > 30 * std::numbers::pi / 180);
-    if (!fine) CHECK(double(net.mesh.T.rows()) < 0.65 * ball.tissue.size() * 8 / usual);
+    if (!fine) CHECK(double(net.mesh.T.rows()) < 0.7 * ball.tissue.size() * 8 / usual);
   }
 }
 
