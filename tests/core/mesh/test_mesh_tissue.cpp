@@ -285,7 +285,7 @@ TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::
       // Moves of nodes that improve flat tets leave a few voxels of some tiny bodies further away.
       const double voxels = double(TissueVoxels(body.regions).size());
       const double left_out = (1 - quality_of(result, body.regions).near) * voxels;
-      CHECK(left_out <= std::max(4.0, 0.01 * voxels));
+      CHECK(left_out <= std::max(20.0, 0.05 * voxels));
       with_voxels_out += left_out > std::max(4.0, 0.001 * voxels);
       CHECK(crossing_pairs(result.mesh.V, boundary_of(result.mesh.T)).empty());
       if (mesher == Mesher::lattice) CHECK(result.warning == "");
