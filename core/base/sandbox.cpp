@@ -51,14 +51,16 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
   ::setrlimit(what, &wanted);
 }
 
+#ifdef LIMBER_SANITIZED
+constexpr bool kLimitsMemory = false;  // AddressSanitizer takes several times the memory that it is asked for
+#else
+constexpr bool kLimitsMemory = true;
+#endif
+
 void limit_resources(const SandboxSettings& settings, std::size_t mapped) {
   const rlim_t seconds = static_cast<rlim_t>(std::clamp(std::ceil(settings.processor_seconds), 1.0, 1e9));
   const std::size_t most = std::max(settings.most_memory, settings.memory_bytes);
-#ifndef LIMBER_SANITIZED  // AddressSanitizer takes several times the memory that it is asked for
-  limit(RLIMIT_AS, mapped + settings.memory_bytes, mapped + std::min(most, kMostMemory));
-#else
-  static_cast<void>(mapped + most);
-#endif
+  if (kLimitsMemory) limit(RLIMIT_AS, mapped + settings.memory_bytes, mapped + std::min(most, kMostMemory));
   limit(RLIMIT_CPU, seconds, seconds + 1);
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_FSIZE, 0, 0);
@@ -177,6 +179,7 @@ Sandbox enter_sandbox(const SandboxSettings& settings) {
 }
 
 void allow_memory(const Sandbox& sandbox, std::size_t bytes) {
+  if (!kLimitsMemory) return;
   rlimit now{};
   if (::getrlimit(RLIMIT_AS, &now) != 0) return;
   now.rlim_cur = std::min<rlim_t>(now.rlim_max, sandbox.mapped_bytes + std::min(bytes, kMostMemory));
