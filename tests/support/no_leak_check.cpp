@@ -5,5 +5,7 @@
 #include "tests/support/sanitizer.h"
 
 #ifdef LIMBER_ADDRESS_SANITIZER
-extern "C" const char* __asan_default_options() { return "detect_leaks=0:handle_segv=0:handle_sigbus=0:handle_abort=0"; }
+extern "C" const char* __asan_default_options() {
+  return "detect_leaks=0:handle_segv=0:handle_sigbus=0:handle_abort=0";
+}
 #endif
