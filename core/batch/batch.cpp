@@ -74,7 +74,6 @@ CellSettings read_settings(const Description& description) {
   settings.glide = description.text("glide");
   if (!settings.glide.empty()) glide_settings(settings.glide, 1, description.where("glide"));
   settings.fit_joints = description.flag("fit_joints");
-  settings.nearest = description.flag("nearest");
   const std::string format = description.text("format", ".nrrd");
   if (!is_ending(format) || !how_written("posed" + format))
     description.refuse("no volume is written under this ending: \"" + format + "\"", "format",
@@ -119,10 +118,7 @@ Batch read_batch(const Path& path) {
   }
   check_distinct(description, "exports", endings);
   batch.settings = read_settings(description);
-  if (batch.settings.nearest && std::any_of(batch.techniques.begin(), batch.techniques.end(),
-                                            [](const Technique& technique) { return technique.mass_exact; }))
-    description.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
-                       "leave one of the two out");
+  batch.settings.nearest = read_nearest(description, batch.techniques);
   return batch;
 }
 

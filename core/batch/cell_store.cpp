@@ -67,7 +67,7 @@ bool is_done(const Path& folder, const std::string& key) {
   if (!fs::exists(folder / "cell.json")) return false;
   const Json json = read_facts(folder / "cell.json");
   if (!json.is_object() || json.value("key", "") != key) return false;
-  // Of what the job writes, only files that have one name are known here; a report and a posed volume are always there.
+  // An export names no files, since some formats write one for each tissue.
   return !json.contains("files") || std::all_of(json["files"].begin(), json["files"].end(), [&](const Json& name) {
     return name.is_string() && fs::exists(folder / name.get<std::string>());
   });

@@ -235,6 +235,15 @@ DescribedBody read_described_body(const Description& description, const std::str
   return body;
 }
 
+bool read_nearest(const Description& description, const std::vector<Technique>& techniques) {
+  const bool nearest = description.flag("nearest");
+  if (nearest && std::any_of(techniques.begin(), techniques.end(),
+                             [](const Technique& technique) { return technique.mass_exact; }))
+    description.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
+                       "leave one of the two out");
+  return nearest;
+}
+
 void check_distinct(const Description& description, const std::string& key, std::vector<std::string> values) {
   std::sort(values.begin(), values.end());
   if (std::adjacent_find(values.begin(), values.end()) != values.end())

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/batch/observations.h"
+#include "core/batch/part_of_progress.h"
 
 namespace limber {
 
@@ -16,27 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr auto kPause = std::chrono::milliseconds(200);  // between two looks at cells that other programs compute
-
-// Reports the progress of a cell as its part of the progress of the run.
-class PartOfProgress final : public Progress {
- public:
-  PartOfProgress(Progress& whole, std::string name, double begin, double end)
-      : whole_(whole),
-        name_(std::move(name)),
-        begin_(begin),
-        end_(end) {}
-  bool cancelled() const override { return whole_.cancelled() || Progress::cancelled(); }
-
- protected:
-  void on_update(std::string_view stage, double fraction) override {
-    whole_.update(name_ + ": " + std::string(stage), begin_ + (end_ - begin_) * std::clamp(fraction, 0.0, 1.0));
-  }
-
- private:
-  Progress& whole_;
-  std::string name_;
-  double begin_, end_;
-};
 
 class BatchStore {
  public:

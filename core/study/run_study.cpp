@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/batch/cell_store.h"
+#include "core/batch/part_of_progress.h"
 #include "core/volume_io/volume_io.h"
 
 namespace limber {
@@ -48,27 +49,6 @@ class Pace {
   };
   static double weight(const Technique& technique) { return technique.is_fem() ? 5 : 1; }
   std::map<std::string, Taken> taken_;  // computing times of each technique, by the technique's word ("fem-contact")
-};
-
-// Reports the progress of one cell's worker process as part [begin, end] of the whole study's progress.
-class CellProgress final : public Progress {
- public:
-  CellProgress(Progress& study, std::string name, double begin, double end)
-      : study_(study),
-        name_(std::move(name)),
-        begin_(begin),
-        end_(end) {}
-  bool cancelled() const override { return study_.cancelled() || Progress::cancelled(); }
-
- protected:
-  void on_update(std::string_view stage, double fraction) override {
-    study_.update(name_ + ": " + std::string(stage), begin_ + (end_ - begin_) * std::clamp(fraction, 0.0, 1.0));
-  }
-
- private:
-  Progress& study_;
-  std::string name_;
-  double begin_, end_;
 };
 
 class Runner {
@@ -140,9 +120,9 @@ class Runner {
   CellOutcome compute(const StudyCell& cell) {
     const int number = ++started_;
     const double of = double(mine_.size());
-    CellProgress progress(progress_,
-                          std::to_string(number) + " of " + std::to_string(mine_.size()) + ", " + text_of(study_, cell),
-                          (number - 1) / of, number / of);
+    PartOfProgress progress(
+        progress_, std::to_string(number) + " of " + std::to_string(mine_.size()) + ", " + text_of(study_, cell),
+        (number - 1) / of, number / of);
     const StoredCell stored = store_.compute(request_of(cell), IfBusy::Wait, progress, code_ratios);
     const CellOutcome outcome{cell, stored.folder, stored.failure};
     if (outcome.failure.empty() && !study_.poses[cell.pose].is_rest())

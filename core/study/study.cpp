@@ -107,11 +107,7 @@ Study read_study(const Path& path) {
   study.weights = description.text("weights", study.weights, {"heat", "geodesic", "rigid"});
   study.quality = description.text("quality", study.quality, {"draft", "normal", "fine"});
   study.fit_joints = description.flag("fit_joints");
-  study.nearest = description.flag("nearest");
-  if (study.nearest && std::any_of(study.techniques.begin(), study.techniques.end(),
-                                   [](const Technique& technique) { return technique.mass_exact; }))
-    description.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
-                       "leave one of the two out");
+  study.nearest = read_nearest(description, study.techniques);
   if (description.has("gates")) study.gates = read_gates(description.object("gates"));
   return study;
 }
