@@ -31,7 +31,8 @@ class BoxBins {
   }
 
   // Writes the indices of the boxes that intersect `range` into `found`, ascending.
-  void meeting(const VoxelRange& range, std::vector<int>& found) const {
+  template <class Index>
+  void meeting(const VoxelRange& range, std::vector<Index>& found) const {
     found.clear();
     if (begin_.empty() || range.empty()) return;
     const glm::ivec3 low = glm::max(bin_of(range.low) - first_, glm::ivec3(0)),

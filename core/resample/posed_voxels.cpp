@@ -9,8 +9,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/deform/inverse_map.h"
 #include "core/resample/air_pockets.h"
+#include "core/resample/body_tracer.h"
 #include "core/resample/bone_volumes.h"
 #include "core/resample/grey_sampler.h"
 #include "core/resample/organ_volumes.h"
@@ -74,7 +74,6 @@ class PosedVoxels {
         labels_(body.labels),
         lattice_(body.lattice),
         bones_(body.bones),
-        tets_(body.tets),
         depth_(body.depth),
         settings_(settings),
         output_(body.output),
@@ -83,6 +82,7 @@ class PosedVoxels {
         rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
                      [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
         sampler_(volume_),
+        tracer_(lattice_, bones_, body.tets, depth_, labels_.priority, sampler_, output_.range, settings.nearest),
         world_from_rest_(world_from_voxel(volume_.grid)) {
     posed.volume.grid = output_.grid;
     const std::int64_t voxels = output_.grid.voxel_count();
@@ -306,8 +306,6 @@ class PosedVoxels {
     return Error(text, "mass-exact", "pose by finite elements, bend less, or allow more by --mass-limit");
   }
 
-  static bool meet(const VoxelRange& a, const VoxelRange& b) { return !intersect(a, b).empty(); }
-
   void run_tile(const VoxelRange& range, TileCounts& counts) {
     thread_local InverseMap map;
     map.has_volume_ratio = settings_.jacobian;
@@ -316,25 +314,7 @@ class PosedVoxels {
     if (mends_) rest_points_.keep(map);
   }
 
-  // Fills the inverse map of a range of voxels. Returns false without filling it if the range has no tissue and no grey
-  // values are wanted.
-  bool fill(InverseMap& map, const VoxelRange& range) const {
-    std::vector<std::int64_t> bricks, pieces;
-    for (std::int64_t b = 0; b < std::ssize(lattice_.tissue().bricks()); ++b) {
-      const auto& box = lattice_.bounds(b);
-      if (meet({box.low >> 16, (box.high + (kFixedOne - 1)) >> 16}, range)) bricks.push_back(b);
-    }
-    for (std::int64_t p = 0; p < std::ssize(bones_.pieces()); ++p)
-      if (meet(bones_.pieces()[p].posed, range)) pieces.push_back(p);
-    const bool has_tets = tets_ && tets_->reaches(range);
-    if (bricks.empty() && pieces.empty() && !has_tets && !settings_.grey) return false;
-    map.reset(range);
-    if (has_tets) tets_->rasterize(map, labels_.priority, depth_);
-    rasterize_cells(map, lattice_, bricks, labels_.priority, depth_, tets_ ? &tets_->instead_of() : nullptr);
-    if (has_tets) tets_->rasterize_riders(map, labels_.priority, depth_);
-    bones_.paint(map, pieces, sampler_, settings_.nearest, depth_);
-    return true;
-  }
+  bool fill(InverseMap& map, const VoxelRange& range) const { return tracer_.fill(map, range, settings_.grey); }
 
   void write(const InverseMap& map, TileCounts& counts) {
     counts.range = map.range;
@@ -466,7 +446,6 @@ class PosedVoxels {
   const LabelSets& labels_;
   const PosedLattice& lattice_;
   const RigidBones& bones_;
-  const PosedTets* tets_;
   const TissueDepth* depth_;
   const ResampleSettings& settings_;
   const OutputGrid& output_;
@@ -479,7 +458,8 @@ class PosedVoxels {
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // 1 for each row of the output that has tissue, that has bone tissue
   LabelVolume posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
-  LabelSampler sampler_;
+  const LabelSampler sampler_;
+  const BodyTracer tracer_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;
   float outside_ = 0;
