@@ -72,7 +72,7 @@ void SurfaceSoup::add_point(const glm::dvec3& p) {
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(p[axis]) <= kFarthestSurfacePoint))
       refuse(std::isfinite(p[axis]) ? "a point is more than a kilometre from the origin" : "a point is not finite",
-             "move the object to the origin and export it again, in millimetres (glTF: metres)");
+             "export the object near the origin and in its true size: in millimetres, or glTF in metres");
   if (points_.size() >= 3 * kMostSurfaceTriangles)
     refuse("the surface has more than " + std::to_string(3 * kMostSurfaceTriangles) + " points",
            "simplify it in the program that made it");

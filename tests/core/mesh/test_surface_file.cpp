@@ -2,6 +2,7 @@
 #include "core/mesh/surface_file.h"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <random>
 
@@ -32,6 +33,23 @@ double largest_difference(const Corners& a, const Corners& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, glm::length(a[i] - b[i]));
   return largest;
+}
+
+// Returns the largest distance from a triangle to the nearest one of the others, which may start at another corner.
+double farthest_triangle(const Corners& triangles, const Corners& others) {
+  double farthest = 0;
+  for (std::size_t a = 0; a < triangles.size(); a += 3) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < others.size(); b += 3)
+      for (std::size_t turn = 0; turn < 3; ++turn) {
+        double distance = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+          distance = std::max(distance, glm::length(triangles[a + i] - others[b + (i + turn) % 3]));
+        nearest = std::min(nearest, distance);
+      }
+    farthest = std::max(farthest, nearest);
+  }
+  return farthest;
 }
 
 // Two tissues side by side, whose corners are no round numbers.
@@ -102,6 +120,29 @@ TEST_CASE("surface file: what the exporter writes is read back, triangle by tria
       CHECK(open_edges(mesh) == 0);
       CHECK(volume_inside(mesh) == doctest::Approx(enclosed_volume(all, all.surfaces[s])).epsilon(1e-5));
     }
+  }
+}
+
+// An independent writer. Blender's axes are the world's own.
+TEST_CASE("surface file: what Blender writes is read, in every format, as the triangles that it has") {
+  NEEDS_PROGRAM("blender");
+  const TemporaryFolder folder;
+  const ProgramRun run =
+      run_program("blender", {"-b", "--factory-startup", "--python-exit-code", "1", "--python",
+                              LIMBER_SOURCE_DIR "/tests/core/mesh/blender_surfaces.py", "--", folder.path().string()});
+  INFO(run.out, run.err);
+  REQUIRE(run.exit_code == 0);
+  Corners truth;
+  std::ifstream in(folder / "triangles.txt");
+  for (glm::dvec3 p; in >> p.x >> p.y >> p.z;) truth.push_back(p);
+  REQUIRE(truth.size() == 3 * 80);
+  for (const char* name :
+       {"binary.stl", "ascii.stl", "binary.ply", "ascii.ply", "a.obj", "a.glb", "inside.gltf", "beside.gltf"}) {
+    CAPTURE(name);
+    const TriangleMesh mesh = read_surface(folder / name);
+    CHECK(mesh.V.size() == 42);
+    CHECK(open_edges(mesh) == 0);
+    CHECK(farthest_triangle(truth, corners_of(mesh)) < 1e-3);
   }
 }
 
