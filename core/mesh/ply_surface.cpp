@@ -131,9 +131,9 @@ class PlyReader {
   void read_element(const PlyElement& element) {
     if (element.properties.empty()) return;  // its rows take no bytes, however many they are
     std::uint64_t row = 0;
-    soup_.place = [this, &element, &row] {
-      return ", " + element.name.substr(0, 60) + " " + std::to_string(row + 1) + line_text();
-    };
+    const bool is_known = element.name == "vertex" || element.name == "face";
+    const std::string name = is_known ? element.name : in_quotes(element.name);
+    soup_.place = [this, &name, &row] { return ", " + name + " " + std::to_string(row + 1) + line_text(); };
     if (element.name == "vertex") {
       const std::vector<int> axes = axes_of(element);
       for (; row < element.rows; ++row) read_vertex(element, axes);
