@@ -126,6 +126,14 @@ Json solve_of(const SolveReport& solve) {
               {"analyses", solve.analyses},
               {"residual", solve.residual_mm},
               {"bone_drift_mm", solve.bone_drift_mm}});
+  const SolveParameters& used = solve.parameters;
+  row["parameters"] = {{"tet_mm", used.tet_mm},
+                       {"finest_tet_mm", used.finest_tet_mm},
+                       {"step_degrees", used.step_degrees},
+                       {"step_tolerance_mm", used.step_tolerance_mm},
+                       {"tolerance_mm", used.tolerance_mm},
+                       {"joint_mm", used.joint_mm}};
+  if (used.contact_mm) row["parameters"]["contact_mm"] = *used.contact_mm;
   return row;
 }
 

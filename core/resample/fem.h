@@ -51,6 +51,15 @@ struct MeshReport {
   std::string fallback;  // tells the user that larger tets or another mesher were used; empty: as requested
 };
 
+// What a solve was computed with, after all limits by the size of the body and of its voxels.
+struct SolveParameters {
+  double tet_mm = 0, finest_tet_mm = 0;            // edge length of the tets, and of the smallest tets around joints
+  double step_degrees = 0;                         // largest rotation of any joint in one step
+  double step_tolerance_mm = 0, tolerance_mm = 0;  // see SolveSettings (fem/solve_pose.h)
+  double joint_mm = 0;               // ends of bones within this distance of another bone belong to the joint
+  std::optional<double> contact_mm;  // distance below which skin is pushed apart; none: no contact
+};
+
 struct SolveReport {
   bool converged = false;
   double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
@@ -61,6 +70,7 @@ struct SolveReport {
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
   // are written at their exact positions.
   double bone_drift_mm = 0;
+  SolveParameters parameters;
 };
 
 }  // namespace limber

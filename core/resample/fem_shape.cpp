@@ -252,6 +252,13 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   shape->pose = pose_between(from, to, solved.reached);
   shape->cpu = solved.seconds;
   shape->solve = report_of(solved);
+  shape->solve.parameters = {.tet_mm = spacing_,
+                             .finest_tet_mm = finest_,
+                             .step_degrees = settings.step_degrees,
+                             .step_tolerance_mm = settings.step_tolerance_mm,
+                             .tolerance_mm = settings.tolerance_mm,
+                             .joint_mm = kJoint * spacing_,
+                             .contact_mm = fem_.contact ? std::optional(settings.contact_mm) : std::nullopt};
   shape->mesh = {.fallback = shape->mesh.fallback};
   measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {

@@ -168,7 +168,8 @@ TEST_CASE(
                              .blocked_by = "bone Forearm",
                              .steps = 6,
                              .iterations = 30,
-                             .residual_mm = 0.25};
+                             .residual_mm = 0.25,
+                             .parameters = {.tet_mm = 8, .tolerance_mm = 0.3, .contact_mm = 1.4}};
   report.deform = deform;
   json written = json::parse(to_json(report));
   CHECK(written["seconds"]["mesh"] == 1.25);
@@ -190,6 +191,9 @@ TEST_CASE(
   CHECK(solve["steps"] == 6);
   CHECK(solve["iterations"] == 30);
   CHECK(solve["residual"] == 0.25);
+  CHECK(solve["parameters"]["tet_mm"] == 8);
+  CHECK(solve["parameters"]["tolerance_mm"] == 0.3);
+  CHECK(solve["parameters"]["contact_mm"] == 1.4);
   std::ostringstream table;
   print_report(table, report);
   CHECK(table.str().find("NOT SOLVED, ended at 75.0 % of the pose") != std::string::npos);
