@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
+#include "core/base/deflate.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/batch/computing_sources.h"
@@ -61,6 +62,57 @@ std::string labels_text(const std::vector<double>& labels) {
 }
 
 Json read_facts(const Path& file) { return Json::parse(sound_json(read_file(file)), nullptr, false); }
+
+// Returns the SHA-256 of a file, or for a packed NRRD file that of its unpacked content, because the packer chooses
+// among codes of the same length by the addresses of its memory.
+std::string content_hash(const Path& file) {
+  std::string bytes = read_file(file);
+  const std::size_t header = bytes.find("\n\n");
+  if (file.extension() == ".nrrd" && header != std::string::npos && bytes.find("encoding: gzip") < header) {
+    std::string_view packed = std::string_view(bytes).substr(header + 2);
+    std::string content = bytes.substr(0, header), piece(1 << 20, '\0');
+    Inflater inflater;
+    for (Inflater::Step step{.made = 1}; step.made > 0 && !step.damaged;) {
+      step = inflater.inflate(packed, piece.data(), piece.size());
+      packed.remove_prefix(step.taken);
+      content.append(piece, 0, step.made);
+    }
+    if (!inflater.ended()) throw Error("the file is damaged", file.string(), "run the same again");
+    bytes = std::move(content);
+  }
+  return sha256_of_bytes(bytes.data(), bytes.size());
+}
+
+// Returns the hashes of what a job has written into its folder, by the names of the files. Times and memory in the
+// report do not count.
+std::map<std::string, std::string> hashes_of(const WorkFolder& into,
+                                             const std::map<std::string, std::string>& outputs) {
+  std::map<std::string, std::string> hashes;
+  for (const auto& [option, file] : outputs) {
+    if (option != "report") {
+      hashes[file] = content_hash(into / file);
+      continue;
+    }
+    Json report = read_facts(into / file);
+    for (const char* key : {"seconds", "peak_memory_mb"}) report.erase(key);
+    hashes[file] = hash_of(report);
+  }
+  return hashes;
+}
+
+// Returns the name of the first file whose hash differs; "" if none does.
+std::string other_file(const std::map<std::string, std::string>& hashes,
+                       const std::map<std::string, std::string>& expected) {
+  for (const auto& [file, hash] : hashes)
+    if (expected.at(file) != hash) return file;
+  return "";
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
 
 // Returns true if the folder contains a complete result with this key.
 bool is_done(const Path& folder, const std::string& key) {
@@ -236,31 +288,47 @@ struct CellStore::Parts {
 
   std::string key_of(const CellRequest& request, const Json& job) {
     const DescribedPose& pose = request.pose;
-    return hash_of({{"sources", computing_sources()},
-                    {"made", "cell/1"},
-                    {"body", body(request.body).key},
-                    {"job", job},
-                    {"inputs",
-                     {take(pose.pose).sha256, take(pose.motion).sha256, take(pose.map).sha256,
-                      take(request.body.grey).sha256, take(request.body.landmarks).sha256}}});
+    Json json{{"sources", computing_sources()},
+              {"made", "cell/1"},
+              {"body", body(request.body).key},
+              {"job", job},
+              {"inputs",
+               {take(pose.pose).sha256, take(pose.motion).sha256, take(pose.map).sha256, take(request.body.grey).sha256,
+                take(request.body.landmarks).sha256}}};
+    if (request.settings.repeats > 1) json["repeats"] = request.settings.repeats;
+    return hash_of(json);
   }
 
   // Computes a cell into its working folder and puts that in its place.
   void make_cell(WorkFolder& into, const CellRequest& request, const Json& job, const std::string& key,
                  const std::function<void(const WorkFolder&)>& finish, Progress& progress) const {
-    const Stopwatch wall;
-    const double before = children_cpu_seconds();
-    const bool reached = work(into, "job.json", job, progress).pose_reached;
-    const double cpu = children_cpu_seconds() - before, seconds = wall.seconds();
+    std::vector<double> cpu, wall;
+    bool reached = false;
+    std::map<std::string, std::string> first;
+    for (int run = 1; run <= request.settings.repeats; ++run) {
+      const Stopwatch watch;
+      const double before = children_cpu_seconds();
+      reached = work(into, "job.json", job, progress).pose_reached;
+      cpu.push_back(children_cpu_seconds() - before);
+      wall.push_back(watch.seconds());
+      if (request.settings.repeats == 1) break;
+      const auto hashes = hashes_of(into, request.settings.outputs);
+      if (run == 1) first = hashes;
+      if (const std::string other = other_file(hashes, first); !other.empty())
+        throw Error("repeat " + std::to_string(run) + " gave another " + other + " than the first", request.name,
+                    "trust neither: results must not differ from run to run, so this is a fault of Limber or of the "
+                    "machine");
+    }
     if (finish) finish(into);
     Json facts{{"schema", "limber-cell/1"}, {"key", key}};
     facts.update(Json::parse(request.facts));
     facts.update({{"pose_reached", reached},
-                  {"cpu_seconds", cpu},
-                  {"wall_seconds", seconds},
+                  {"cpu_seconds", median(cpu)},
+                  {"wall_seconds", median(wall)},
                   {"machine", machine_text()},
                   {"sources", computing_sources()},
                   {"files", {"report.json", request.settings.outputs.at("output")}}});
+    if (request.settings.repeats > 1) facts["repeats"] = {{"cpu_seconds", cpu}, {"wall_seconds", wall}};
     write_file_atomically(into / "cell.json", text_of(facts));
     into.commit();
   }

@@ -29,6 +29,7 @@ struct CellSettings {
   std::string quality = "normal";  // of solves by finite elements
   std::string glide;               // as for `limber resample --glide`; empty: its default
   bool fit_joints = false, nearest = false;
+  int repeats = 1;  // how often a cell is computed, for its time; its results must be the same
   // The file names of a cell's outputs, by the option of `limber resample` that names them: {"output", "posed.nrrd"}.
   std::map<std::string, std::string> outputs;
   std::string mesh;  // file name of the mesh of a solve by finite elements; empty: none

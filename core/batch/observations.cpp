@@ -56,7 +56,12 @@ void add_value(Rows& rows, const std::vector<std::string>& fields, const std::st
     for (const auto& [key, inner] : value.items())
       add_value(rows, fields, group, item, quantity.empty() ? key : quantity + "." + key, inner);
   } else if (value.is_array() && !value.empty() && value.front().is_object()) {
-    for (const Json& inner : value) add_value(rows, fields, group, item_of(inner), quantity, inner);
+    std::set<std::string> seen;
+    for (const Json& inner : value) {
+      std::string of = item_of(inner);
+      if (!seen.insert(of).second && inner.contains("label")) of += " (" + inner["label"].dump() + ")";
+      add_value(rows, fields, group, of, quantity, inner);
+    }
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i)
       add_value(rows, fields, group, item, quantity + "." + std::to_string(i), value[i]);
