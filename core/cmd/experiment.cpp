@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber experiment STUDY.json|arm [DIR] [--methods M,M] -o OUT [--shard i/n] [--threads N] [--progress json]: computes
+// limber experiment STUDY.json|arm [DIR] [--methods M,M] -o OUT [--shard i/n] [--threads N] [--progress json]
+//   [--rating-form] [--scores FILE,FILE] [--bundle FOLDER [--without-volumes]] [--expect expected.json]: computes
 //   those combinations of spacing, pose and technique of a study that have no result yet, and writes the study's tables
 //   and report. `arm` is the built-in study; DIR is a folder with its volumes, M a technique.
 #include "core/cmd/experiment.h"
@@ -13,6 +14,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/shard_option.h"
+#include "core/study/bundle.h"
 #include "core/study/study_results.h"
 #include "core/study/text.h"
 
@@ -22,6 +24,9 @@ namespace {
 struct Options {
   std::string study, folder, out, shard;
   std::vector<std::string> methods;
+  bool rating_form = false, without_volumes = false;
+  std::vector<std::string> scores;
+  std::string bundle, expect;
   RunOptions run;
 };
 
@@ -38,13 +43,34 @@ void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of,
   tell(line);
 }
 
-void run(const Options& options, const StartPictures& pictures) {
+// Writes tables, report and what else was asked for, and compares the results with expected ones.
+void write(const Options& options, const Study& study, const std::vector<CellOutcome>& outcomes,
+           const std::string& commit, const StartPictures& pictures, Progress& progress) {
+  const std::vector<CellResult> cells = read_results(study, outcomes);
+  const std::string command = "limber experiment " + options.study +
+                              (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out +
+                              (options.methods.empty() ? "" : " --methods " + joined(options.methods));
+  ResultsRequest request{.out = options.out, .command = command, .commit = commit, .rating_form = options.rating_form};
+  request.scores.assign(options.scores.begin(), options.scores.end());
+  write_results(study, cells, request, pictures, progress);
+  for (const char* name : {"report.html", "cells.csv", "cells.json"}) print("%s\n", (Path(options.out) / name).c_str());
+  if (options.rating_form) print("%s\n", (Path(options.out) / "rating.html").c_str());
+  if (!options.bundle.empty()) {
+    write_bundle(study, cells, options.bundle, options.without_volumes ? BundleVolumes::LeaveOut : BundleVolumes::Copy,
+                 commit, progress);
+    print("%s\n", options.bundle.c_str());
+  }
+  if (!options.expect.empty()) print("%s\n", check_results(study, cells, options.expect, progress).c_str());
+}
+
+void run(const Options& options, const std::string& commit, const StartPictures& pictures) {
   CommandProgress progress(options.run.progress);
   if (options.study != "arm" && !options.folder.empty())
     throw Error("only the arm's study takes a folder", options.folder,
                 "write: limber experiment arm " + options.folder + " -o " + options.out);
   Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
   if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");
+  if (!options.expect.empty()) check_inputs(study, options.expect);
   StudyRun run{.out = options.out, .threads = options.run.threads};
   if (!options.shard.empty()) {
     const Shard shard = read_shard(options.shard);
@@ -59,12 +85,7 @@ void run(const Options& options, const StartPictures& pictures) {
   std::size_t failed = 0;
   for (const CellOutcome& outcome : outcomes) failed += !outcome.failure.empty();
   if (run.shards == 1) {
-    const std::string command = "limber experiment " + options.study +
-                                (options.folder.empty() ? "" : " " + options.folder) + " -o " + options.out +
-                                (options.methods.empty() ? "" : " --methods " + joined(options.methods));
-    write_results(study, outcomes, options.out, command, pictures, progress);
-    print("%s\n%s\n%s\n", (Path(options.out) / "report.html").c_str(), (Path(options.out) / "cells.csv").c_str(),
-          (Path(options.out) / "cells.json").c_str());
+    write(options, study, outcomes, commit, pictures, progress);
   } else {
     tell("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
   }
@@ -75,13 +96,13 @@ void run(const Options& options, const StartPictures& pictures) {
 
 OptionFiles files_of_folder(const std::string& folder) {
   OptionFiles files;
-  for (const char* name : {"cells.csv", "cells.json", "observations.csv", "report.html"})
+  for (const char* name : {"cells.csv", "cells.json", "observations.csv", "times.csv", "report.html"})
     files.written.push_back(Path(folder) / name);
   return files;
 }
 }  // namespace
 
-void add_experiment(CLI::App& app, const StartPictures& pictures) {
+void add_experiment(CLI::App& app, const std::string& commit, const StartPictures& pictures) {
   auto* command = app.add_subcommand(
       "experiment",
       "a study: poses x techniques x spacings, with tables and a report; what is done is kept, run it again to go on");
@@ -103,8 +124,23 @@ void add_experiment(CLI::App& app, const StartPictures& pictures) {
       ->delimiter(',')
       ->type_name("M,M");
   command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
+  command->add_flag("--rating-form", options->rating_form,
+                    "also writes rating.html, on which raters score the pictures without knowing the techniques, and "
+                    "its key rating_key.csv");
+  command
+      ->add_option("--scores", options->scores,
+                   "files that raters saved from rating.html: their scores and agreement are added to the report")
+      ->delimiter(',')
+      ->type_name("FILE,FILE");
+  auto* bundle = writes(command->add_option(
+      "--bundle", options->bundle,
+      "new folder for the description, all inputs and the results, to compute again elsewhere and compare"));
+  command->add_flag("--without-volumes", options->without_volumes, "the bundle names volumes by their hash alone")
+      ->needs(bundle);
+  command->add_option("--expect", options->expect,
+                      "expected.json of a bundle: fails unless every voxel and every figure is the same");
   add_run_options(*command, options->run);
-  command->callback([options, pictures] { run(*options, pictures); });
+  command->callback([options, commit, pictures] { run(*options, commit, pictures); });
 }
 
 }  // namespace limber::cmd

@@ -3,6 +3,8 @@
 // report.
 #pragma once
 
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 #include "core/study/picture.h"
@@ -10,8 +12,9 @@
 namespace limber::cmd {
 
 // Adds the subcommand `experiment`.
+//   commit    the commit that the program was built from (program_commit.h); "": unknown
 //   pictures  returns an object that draws bodies in 3D for the report. Empty in a program without the renderer; the
 //             report then says that it has no pictures.
-void add_experiment(CLI::App& app, const StartPictures& pictures = {});
+void add_experiment(CLI::App& app, const std::string& commit, const StartPictures& pictures = {});
 
 }  // namespace limber::cmd

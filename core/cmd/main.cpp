@@ -8,6 +8,6 @@ int main(int argc, char** argv) {
   CLI::App app("Limber changes the pose of labelled voxel anatomy.", "limber");
   app.require_subcommand(1);
   limber::cmd::add_commands(app, limber::cmd::kProgramCommit);
-  limber::cmd::add_experiment(app);
+  limber::cmd::add_experiment(app, limber::cmd::kProgramCommit);
   return limber::cmd::run(app, argc, argv);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/study/cell_result.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -73,6 +75,11 @@ std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits
   return all_gates(report, limits);
 }
 
+std::optional<bool> label_passes(const TissueFigures& tissue, const QualityLimits& limits) {
+  if (tissue.voxels_before < limits.least_voxels || !tissue.volume_percent) return {};
+  return std::abs(*tissue.volume_percent) <= limits.tissue_percent;
+}
+
 CellResult read_result(const Study& study, const CellOutcome& outcome) {
   CellResult result{.cell = outcome.cell, .folder = outcome.folder, .failure = outcome.failure};
   if (!result.done()) return result;
@@ -83,6 +90,9 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
                cell = Json::parse(checked_json(result.cell_json, outcome.folder.string()));
     result.cpu_seconds = cell.at("cpu_seconds");
     result.wall_seconds = cell.at("wall_seconds");
+    result.cpu_repeats = {result.cpu_seconds};
+    if (cell.contains("repeats")) result.cpu_repeats = cell["repeats"].at("cpu_seconds").get<std::vector<double>>();
+    if (result.cpu_repeats.empty()) result.cpu_repeats = {result.cpu_seconds};
     result.machine = cell.at("machine");
     result.peak_memory_mb = report.at("peak_memory_mb");
     for (const auto& [stage, value] : report.at("seconds").items()) result.seconds[stage] = value;

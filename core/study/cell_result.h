@@ -50,7 +50,8 @@ struct CellResult {
   StudyCell cell;
   Path folder;
   std::string failure;  // why the cell could not be computed; empty if it was computed
-  double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;
+  double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;  // medians of the repeats; memory: of the last one
+  std::vector<double> cpu_repeats;                               // processor seconds of each repeat, at least one
   std::string machine;
   std::map<std::string, double> seconds;  // wall-clock seconds of each stage
   std::vector<TissueFigures> tissues;
@@ -75,6 +76,9 @@ struct CellResult {
 
 // Judges a cell's report. Returns each quality gate (a check of one figure against a limit) with its outcome.
 std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits);
+
+// Judges the change of a label's volume by the study's limit. Returns nothing if the label is too small for a gate.
+std::optional<bool> label_passes(const TissueFigures& tissue, const QualityLimits& limits);
 
 // Reads the result of a cell of the study. Throws Error if files in the cell's folder cannot be read.
 CellResult read_result(const Study& study, const CellOutcome& outcome);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/study/joint_view.h"
 #include "core/volume_io/volume_io.h"
 
 namespace limber {
@@ -14,7 +15,6 @@ namespace {
 
 constexpr glm::ivec2 kSliceSize{480, 360}, kBodySize{480, 420}, kCloseSize{360, 300};
 constexpr double kCloseUp_mm = 80;  // height of the region that a close-up shows
-constexpr double kTurn = 0.35;      // angle by which the camera is turned to show a body's side, radians
 constexpr double kWithoutJoint_mm = 400;
 
 struct PosedBody {
@@ -41,18 +41,9 @@ const JointFigures* furthest_joint(const CellResult& cell) {
   return furthest;
 }
 
-// Returns a picture frame in the plane in which a joint turns, through the joint. If possible, the head end of the body
-// is up in the picture.
-PictureFrame frame_of(const JointFigures& joint) {
-  PictureFrame frame{.centre = joint.head, .size = kSliceSize};
-  const auto across = [&](const glm::dvec3& v) { return v - joint.axis * glm::dot(v, joint.axis); };
-  glm::dvec3 up = across({0, 0, 1});
-  if (glm::length(up) < 0.3) up = across(joint.parent_head - joint.head);
-  if (glm::length(up) < 1e-6) up = across({0, 1, 0});
-  frame.up = glm::normalize(up);
-  frame.right = glm::normalize(glm::cross(frame.up, joint.axis));
-  frame.height_mm = std::clamp(
-      0.9 * std::max(glm::distance(joint.head, joint.parent_head), glm::distance(joint.head, joint.tail)), 40.0, 500.0);
+PictureFrame slice_frame(const JointFigures& joint) {
+  PictureFrame frame = joint_plane(joint);
+  frame.size = kSliceSize;
   return frame;
 }
 
@@ -114,6 +105,7 @@ class Maker {
     each([&](const CellResult& cell) { draw_bodies(cell); });
     std::stable_sort(figures_.close_ups.begin(), figures_.close_ups.end(),
                      [](const CloseUp& a, const CloseUp& b) { return a.region.voxels > b.region.voxels; });
+    for (auto& [value, tissue] : figures_.overlaps.legend) tissue.colour = dulled(tissue.colour);
     progress_.update("pictures", 1);
     return std::move(figures_);
   }
@@ -133,7 +125,8 @@ class Maker {
         furthest = joint, figures_.largest_pose = cell.cell.pose;
       if (cell.cell.pose < kShownPoses || cell.cell.pose == figures_.largest_pose) shown_.push_back(&cell);
     }
-    if (furthest) figures_.joint = furthest->bone, rest_frame_ = frame_of(*furthest);
+    furthest_ = furthest;
+    if (furthest) figures_.joint = furthest->bone;
   }
 
   void start_drawing(const StartPictures& start) {
@@ -159,8 +152,8 @@ class Maker {
   }
 
   PictureFrame frame_of_cell(const CellResult& cell, const LabelVolume& volume) const {
-    if (const JointFigures* joint = furthest_joint(cell)) return frame_of(*joint);
-    if (rest_frame_) return *rest_frame_;
+    if (const JointFigures* joint = furthest_joint(cell)) return slice_frame(*joint);
+    if (furthest_) return slice_frame(*furthest_);
     const Grid& grid = volume.grid;
     return {.centre = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0),
             .height_mm = kWithoutJoint_mm,
@@ -178,15 +171,19 @@ class Maker {
     const int technique = cell.cell.technique;
     figures_.slices.width_mm = figures_.ratios.width_mm = figures_.overlaps.width_mm =
         frame.height_mm * frame.size.x / frame.size.y;
-    if (const auto column = column_of(cell); column >= 0)
+    if (const auto column = column_of(cell); column >= 0) {
       figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
-    box_.add(*body.volume, body_plane(frame));
+      add_shown(*body.volume, body.tissues, frame, ShownPart::Slice, figures_.slices.legend);
+    }
+    box_.add(*body.volume, body_frame(cell, *body.volume));
 
     // Results of an editor session may lack the files overlap.nrrd and ratio.nrrd.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
-    if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap))
+    if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap)) {
       figures_.overlaps.png[technique][0] =
           finished(marked_picture(*body.volume, read_values(overlap), colours, frame), frame);
+      add_shown(*body.volume, body.tissues, frame, ShownPart::Slice, figures_.overlaps.legend);
+    }
     if (!std::filesystem::exists(cell.folder / "ratio.nrrd")) return;
     const LabelVolume ratios = read_values(cell.folder / "ratio.nrrd");
     if (is_largest) figures_.ratios.png[technique][0] = finished(slice_picture(ratios, ratio_colours(), frame), frame);
@@ -218,10 +215,15 @@ class Maker {
     else figures_.close_ups.push_back(std::move(close));
   }
 
-  // Returns the frame of a slice for a 3D picture of the body, turned a little so that the body's side is visible.
-  static PictureFrame body_plane(PictureFrame frame) {
-    const glm::dvec3 eye = frame.towards_eye();
-    frame.right = glm::normalize(std::cos(kTurn) * frame.right + std::sin(kTurn) * eye);
+  // Returns the frame for a 3D picture of the cell's body, before its size is known. All poses of the joint that turns
+  // the furthest are seen from one side.
+  PictureFrame body_frame(const CellResult& cell, const LabelVolume& volume) const {
+    const Grid& grid = volume.grid;
+    const glm::dvec3 middle = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0);
+    const JointFigures* joint = furthest_joint(cell);
+    PictureFrame frame{.centre = middle, .height_mm = kWithoutJoint_mm};
+    if (!joint || (furthest_ && joint->bone == furthest_->bone)) joint = furthest_;
+    if (joint) frame = folding_view(*joint, middle);
     frame.size = kBodySize;
     return frame;
   }
@@ -240,7 +242,7 @@ class Maker {
     const auto close = std::find_if(figures_.close_ups.begin(), figures_.close_ups.end(),
                                     [&](const CloseUp& one) { return one.cell == &cell; });
     const auto column = column_of(cell);
-    if (!draw_body_ || (column < 0 && close == figures_.close_ups.end())) return;
+    if (close == figures_.close_ups.end() && (column < 0 || !draw_body_)) return;
     const PosedBody body = read_posed(cell, progress_);
     PictureFrame frame = frame_of_cell(cell, *body.volume);
     if (close != figures_.close_ups.end()) {
@@ -248,20 +250,23 @@ class Maker {
       near.centre = close->region.centre;
       near.height_mm = kCloseUp_mm;
       near.size = kCloseSize;
-      close->body = draw_body_({body.volume, &body.tissues, near, true});
+      if (draw_body_) close->body = draw_body_({body.volume, &body.tissues, near, true});
+      if (draw_body_) add_shown(*body.volume, body.tissues, near, ShownPart::CutSurface, figures_.close_up_legend);
+      add_shown(*body.volume, body.tissues, near, ShownPart::Slice, figures_.close_up_legend);
     }
-    if (column < 0) return;
-    frame = body_plane(frame);
+    if (column < 0 || !draw_body_) return;
+    frame = body_frame(cell, *body.volume);
     frame.centre += frame.right * body_shift_.x + frame.up * body_shift_.y;
     frame.height_mm = body_height_;
     figures_.bodies.png[cell.cell.technique][column] = draw_body_({body.volume, &body.tissues, frame, false});
+    add_shown(*body.volume, body.tissues, frame, ShownPart::Surface, figures_.bodies.legend);
   }
 
   const Study& study_;
   Progress& progress_;
   StudyFigures figures_;
   std::vector<const CellResult*> shown_;
-  std::optional<PictureFrame> rest_frame_;
+  const JointFigures* furthest_ = nullptr;  // the joint that turns the furthest; null: no joint turns
   PictureMaker draw_body_;
   Box box_;
   double body_height_ = 1;

@@ -6,6 +6,7 @@
 #include "core/base/progress.h"
 #include "core/study/cell_result.h"
 #include "core/study/picture.h"
+#include "core/study/tissue_legend.h"
 
 namespace limber {
 
@@ -14,6 +15,7 @@ namespace limber {
 struct PictureGrid {
   std::vector<std::vector<std::string>> png;
   double width_mm = 0;  // width of the region that each picture shows
+  TissueLegend legend;  // the tissues that the pictures show
 };
 
 struct CloseUp {
@@ -30,7 +32,8 @@ struct StudyFigures {
   PictureGrid bodies, slices;
   PictureGrid ratios, overlaps;    // one column each, which shows the pose with the largest joint rotation
   std::vector<CloseUp> close_ups;  // sorted: the most compressed or stretched region first
-  std::string no_bodies;           // why there are no 3D pictures of bodies; empty if there are
+  TissueLegend close_up_legend;
+  std::string no_bodies;  // why there are no 3D pictures of bodies; empty if there are
 };
 constexpr int kShownPoses = 6;
 

@@ -11,8 +11,10 @@
 #include "core/batch/computing_sources.h"
 #include "core/batch/machine.h"
 #include "core/study/charts.h"
+#include "core/study/methods_text.h"
 #include "core/study/page_style.h"
 #include "core/study/text.h"
+#include "core/study/time_table.h"
 
 namespace limber {
 
@@ -22,19 +24,6 @@ constexpr std::size_t kMostBars = 6;     // largest number of bars in a group; o
 constexpr std::size_t kMostPanels = 12;  // largest number of tissues that get a chart of their own
 constexpr double kNarrow = 300;          // width of a tissue's chart, px
 constexpr double kWide = 460;            // width of each of two charts side by side, px
-
-std::string base64(const std::string& bytes) {
-  static const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? letters[three >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::string picture(const std::string& png, const std::string& what) {
   if (png.empty()) return "<span class=\"none\">not drawn</span>";
@@ -57,7 +46,7 @@ class Page {
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
         "content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-        escaped(study_.name) + "</title>\n<style>" + std::string(page_style()) + "</style>\n</head>\n<body>\n<main>\n";
+        escaped(study_.name) + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n";
     head();
     summary();
     time();
@@ -67,6 +56,8 @@ class Page {
     gates();
     tissues();
     if (facts_.sar) sar(*facts_.sar);
+    if (facts_.rating) rating(*facts_.rating);
+    methods();
     provenance();
     html_ += "</main>\n</body>\n</html>\n";
     return std::move(html_);
@@ -133,7 +124,7 @@ class Page {
              std::to_string(cells_.size()) + " cells. " +
              (study_.phantom.empty() ? "Volume: " + escaped(study_.volume.filename().string())
                                      : "Volume: the procedural " + study_.phantom) +
-             ". Limber " LIMBER_VERSION ", " + escaped(facts_.date) + ".</p></header>\n";
+             ". " + program() + ", written " + escaped(facts_.date) + ".</p></header>\n";
   }
 
   // The value with the largest magnitude among all poses of one technique at the finest spacing, and where it occurs.
@@ -232,7 +223,7 @@ class Page {
       if (too_many) group.values = {count ? std::optional(sum / count) : std::nullopt};
       bars.groups.push_back(group);
     }
-    bars.decimals = most < 20 ? 1 : 0;
+    bars.decimals = most < 1 ? 2 : most < 20 ? 1 : 0;
     figure(
         svg_of(bars),
         "Time by technique at " + finest() + ": " + time_word() + " of each " +
@@ -240,6 +231,14 @@ class Page {
             std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") +
             (facts_.of_session ? ""
                                : " Weights are computed once for each spacing and not counted" + weights_note() + "."));
+
+    std::vector<std::string> names;
+    for (int t = 0; t < techniques(); ++t) names.push_back(marked_name(t));
+    table(time_rows(study_, cells_, seconds_word(), names),
+          "Time of a bent pose: median and range over the poses" +
+              std::string(study_.repeats > 1 ? " and the " + std::to_string(study_.repeats) + " repeats of each" : "") +
+              ", and the time of each pose divided by linear blend’s for the same pose." +
+              (study_.repeats > 1 ? " All repeats gave the same voxels and digits." : ""));
 
     if (study_.spacings.size() > 1) {
       LineChart lines{.unit = "CPU s", .x_unit = "spacing", .logarithmic = true};
@@ -366,11 +365,11 @@ class Page {
       panel.high = nice_ceiling(*panel.high, high - low);
       inside += "<div>" + svg_of(panel) + "</div>";
     }
-    figure(inside + "</div>",
-           "Change of volume by technique, tissue by tissue, at " + finest() + ", all on one scale. Tissues of " +
-               grouped(study_.gates.least_voxels) + " voxels or more at rest" +
-               (left_out ? ", the " + std::to_string(kMostPanels) + " largest of them" : "") +
-               "; figures are in Table " + std::to_string(tables_ + 1 + int(study_.spacings.size())) + " and after.");
+    figure(inside + "</div>", "Change of volume by technique, tissue by tissue, at " + finest() +
+                                  ", all on one scale. Tissues of " + grouped(study_.gates.least_voxels) +
+                                  " voxels or more at rest" +
+                                  (left_out ? ", the " + std::to_string(kMostPanels) + " largest of them" : "") +
+                                  "; figures are in section <a href=\"#tissues\">Tissues</a>.");
   }
   static double nice_step(double range) {
     const double power = std::pow(10, std::floor(std::log10(std::max(range, 1e-3) / 5)));
@@ -414,9 +413,9 @@ class Page {
                                         std::to_string(study_.poses.size()) + " poses."
                                   : "";
     if (figures_.no_bodies.empty())
-      figure(grid(figures_.bodies, figures_.poses, "Body"),
+      figure(grid(figures_.bodies, figures_.poses, "Body") + html_of(figures_.bodies.legend),
              "The posed volumes in 3D at " + finest() + ", technique by pose, all at one scale: each picture is " +
-                 fixed(figures_.bodies.width_mm, 0) + " mm wide, seen along the joint's axis, turned by 20°." + shown,
+                 fixed(figures_.bodies.width_mm, 0) + " mm wide" + view_words() + shown,
              "grid");
     else
       html_ +=
@@ -424,10 +423,13 @@ class Page {
           (facts_.of_session ? ""
                              : "Run the same again with a program that draws; the cells need not be computed again.") +
           "</p>\n";
-    figure(grid(figures_.slices, figures_.poses, "Slice"),
+    figure(grid(figures_.slices, figures_.poses, "Slice") + html_of(figures_.slices.legend),
            "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) +
                " mm wide; the bar is 50 mm." + shown,
            "grid");
+  }
+  std::string view_words() const {
+    return figures_.joint.empty() ? "." : ", seen from the side of the bend and turned by 35° towards its fold.";
   }
   std::string where() const {
     return figures_.joint.empty()
@@ -456,7 +458,7 @@ class Page {
         "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: "
         "stretched</span><span class=\"gap\"><b class=\"twice\"></b> claimed by two places of the body</span><span><b "
         "class=\"bone\"></b> claimed by two bones</span></div>";
-    figure(html,
+    figure(html + html_of(figures_.overlaps.legend),
            "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() +
                ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; "
                "grey is 1). "
@@ -481,7 +483,7 @@ class Page {
           "</td><td>" + picture(close.tissues, "Slice, " + what) + "</td><td>" +
           picture(close.ratio, "Ratio, " + what) + "</td></tr>";
     }
-    figure(html + "</tbody></table>",
+    figure(html + "</tbody></table>" + html_of(figures_.close_up_legend),
            "Close-ups of the worst region of each technique at " + finest() +
                ", worst first: the box of about 48 mm with most voxels whose surroundings are pressed to less than "
                "half or stretched to more than twice their volume "
@@ -560,8 +562,10 @@ class Page {
 
   void tissues() {
     section("Tissues", "tissues");
-    html_ += "<p>Change of volume in %, at " + finest() +
-             ". Small tissues change by some percent where a rigid turn alone meets the voxel grid." +
+    html_ += "<p>Change of volume in %, at " + finest() + ". Each label of " + grouped(study_.gates.least_voxels) +
+             " voxels or more at rest has a gate: ✓ it changes by at most " + number(study_.gates.tissue_percent) +
+             " %, ✗ by more. Labels of a few thousand voxels change by up to 2 % where a rigid turn alone meets the "
+             "voxel grid, smaller ones by more." +
              (facts_.of_session ? "" : " Every figure of every cell is in cells.csv and cells.json beside this page.") +
              "</p>\n";
     for (int p = 0; p < poses(); ++p) {
@@ -574,7 +578,7 @@ class Page {
       for (const TissueFigures& tissue : any->tissues) {
         rows += "<tr><th class=\"row\">" + escaped(tissue.name) + "</th><td>" + number(tissue.label) + "</td><td>" +
                 grouped(tissue.voxels_before) + "</td>";
-        for (int t = 0; t < techniques(); ++t) rows += change_cell(cell(figures_.spacing, p, t), tissue.label);
+        for (int t = 0; t < techniques(); ++t) rows += change_cell(cell(figures_.spacing, p, t), tissue);
         rows += "</tr>";
       }
       rows +=
@@ -600,10 +604,15 @@ class Page {
     }
     return row + "</tr>";
   }
-  static std::string change_cell(const CellResult* one, double label) {
-    const TissueFigures* tissue = one ? tissue_of(*one, label) : nullptr;
+  // Returns the cell of a table with the change of a label and, if the label is large enough, its gate.
+  std::string change_cell(const CellResult* one, const TissueFigures& at_rest) const {
+    const TissueFigures* tissue = one ? tissue_of(*one, at_rest.label) : nullptr;
     if (!tissue || !tissue->volume_percent) return "<td class=\"none\">–</td>";
-    return "<td>" + signed_number(*tissue->volume_percent, 2) + "</td>";
+    const std::string change = signed_number(*tissue->volume_percent, 2);
+    const std::optional<bool> passed = label_passes(*tissue, study_.gates);
+    if (!passed) return "<td>" + change + "</td>";
+    return std::string("<td class=\"label-gate ") + (*passed ? "ok\"><span>✓</span> " : "bad\"><span>✗</span> ") +
+           change + "</td>";
   }
 
   void sar(const SarFigures& sar) {
@@ -651,6 +660,36 @@ class Page {
     table(rows + "</tbody>", "SAR of each pose.");
   }
 
+  void rating(const RatingResult& rating) {
+    section("Visual realism", "realism");
+    const auto figure_of = [](const std::optional<double>& value) { return value ? fixed(*value, 2) : "–"; };
+    html_ += "<p>" + counted(rating.raters.size(), "rater") + " scored " + counted(rating.pictures, "picture") +
+             " from " + std::to_string(kLeastScore) + " (not at all real) to " + std::to_string(kMostScore) +
+             " (fully real), in an order of their own and without knowing the techniques. Agreement: Krippendorff’s "
+             "alpha (ordinal) " +
+             figure_of(rating.alpha) + ", Cohen’s kappa (quadratic weights, mean over pairs of raters) " +
+             figure_of(rating.kappa) + ".</p>\n";
+    std::string rows =
+        "<thead><tr><th>Technique</th><th>Mean score</th><th>Standard "
+        "deviation</th><th>Scores</th></tr></thead><tbody>";
+    for (int t = 0; t < techniques(); ++t) {
+      const TechniqueScore& score = rating.techniques[std::size_t(t)];
+      rows += "<tr><th class=\"row\">" + marked_name(t) + "</th>" +
+              (score.scores ? "<td>" + fixed(score.mean, 2) + "</td><td>" + fixed(score.deviation, 2) + "</td>"
+                            : "<td class=\"none\">–</td><td class=\"none\">–</td>") +
+              "<td>" + std::to_string(score.scores) + "</td></tr>";
+    }
+    table(rows + "</tbody>", "Visual realism of each technique over all raters and bent poses at " + finest() +
+                                 ". Every score is in scores.csv.");
+  }
+
+  void methods() {
+    section("Methods", "methods");
+    const MethodsText text = methods_text(study_, cells_, facts_.of_session);
+    html_ += text.paragraphs;
+    if (!text.references.empty()) html_ += "<h3>References</h3><ol class=\"references\">" + text.references + "</ol>\n";
+  }
+
   void provenance() {
     section("Provenance", "provenance");
     std::set<std::string> machines;
@@ -660,8 +699,7 @@ class Page {
     const auto fact = [&](const std::string& name, const std::string& value) {
       list += "<dt>" + name + "</dt><dd>" + value + "</dd>";
     };
-    fact("Program",
-         "Limber " LIMBER_VERSION ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
+    fact("Program", program() + ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
     if (!facts_.of_session) fact("Command", "<code>" + escaped(facts_.command) + "</code>");
     fact("Made on", escaped(facts_.date));
     if (!facts_.of_session) {
@@ -689,6 +727,16 @@ class Page {
           "inputs");
     warnings();
     if (!facts_.of_session) html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
+    html_ += "<h3>How to cite</h3><pre>" + citation() + "</pre>\n";
+  }
+  std::string citation() const {
+    const std::string note = facts_.commit.empty() ? "" : "  note    = {commit " + escaped(facts_.commit) + "},\n";
+    return "@software{limber,\n  author  = {{The Limber contributors}},\n  title   = {Limber: posing of labelled voxel "
+           "anatomy},\n  version = {" LIMBER_VERSION "},\n" +
+           note + "  year    = {" + facts_.date.substr(0, 4) + "},\n  license = {AGPL-3.0-or-later}\n}";
+  }
+  std::string program() const {
+    return "Limber " LIMBER_VERSION + (facts_.commit.empty() ? "" : ", commit " + escaped(facts_.commit));
   }
   void warnings() {
     std::map<std::string, std::vector<std::string>> by_text;

@@ -9,15 +9,18 @@
 
 #include "core/study/figures.h"
 #include "core/study/sar_figures.h"
+#include "core/study/scores.h"
 
 namespace limber {
 
 struct ReportFacts {
   Path out;
   std::string command;  // the command line that made the study
+  std::string commit;   // the commit that the program was built from; "": unknown
   std::string date;     // date on which the report is written
   std::optional<SarFigures> sar;
-  bool of_session = false;  // true: results of an editor session, with wall-clock times and no cell folders
+  std::optional<RatingResult> rating;  // how real raters found the bodies; empty: nobody was asked
+  bool of_session = false;             // true: results of an editor session, with wall-clock times and no cell folders
 };
 std::string date_text();  // the present time: "2025-03-07 14:05"
 

@@ -97,14 +97,15 @@ Picture slice_picture(const LabelVolume& volume, const LabelColours& colours, co
   return picture;
 }
 
+glm::u8vec3 dulled(const glm::u8vec3& colour) {
+  const auto grey = static_cast<std::uint8_t>(0.3 * colour.r + 0.59 * colour.g + 0.11 * colour.b);
+  return mixed(kBackground, mixed(colour, glm::u8vec3(grey), 0.75), 0.55);
+}
+
 Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, const LabelColours& colours,
                        const PictureFrame& frame) {
   LabelColours dull(colours);
-  for (std::size_t label = 1; label < dull.size(); ++label) {
-    const auto grey =
-        static_cast<std::uint8_t>(0.3 * colours[label].r + 0.59 * colours[label].g + 0.11 * colours[label].b);
-    dull[label] = mixed(kBackground, mixed(colours[label], glm::u8vec3(grey), 0.75), 0.55);
-  }
+  std::transform(colours.begin() + 1, colours.end(), dull.begin() + 1, dulled);
   Picture picture = slice_picture(volume, dull, frame);
   for_each_pixel(marks.grid, frame, [&](int pixel, std::int64_t voxel) {
     if (voxel >= 0 && marks.voxels[voxel] != 0) put(picture, pixel, marks.voxels[voxel] == 2 ? kBoneInBone : kTwice);

@@ -61,6 +61,7 @@ class Runner {
         settings_{.quality = study.quality,
                   .fit_joints = study.fit_joints,
                   .nearest = study.nearest,
+                  .repeats = study.repeats,
                   .outputs = {{"output", "posed.nrrd"},
                               {"report", "report.json"},
                               {"jacobian", "jacobian.nrrd"},
@@ -126,7 +127,7 @@ class Runner {
     const StoredCell stored = store_.compute(request_of(cell), IfBusy::Wait, progress, code_ratios);
     const CellOutcome outcome{cell, stored.folder, stored.failure};
     if (outcome.failure.empty() && !study_.poses[cell.pose].is_rest())
-      pace_.took(kind_of(cell), wall_seconds_of(outcome.folder));
+      pace_.took(kind_of(cell), study_.repeats * wall_seconds_of(outcome.folder));
     tell(outcome, number, stored.state == CellState::WasThere);
     return outcome;
   }

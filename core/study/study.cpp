@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostCells = 100000;
+constexpr int kMostRepeats = 1000;
 
 // The techniques (ways of posing) that a study compares if its description names none.
 const std::vector<std::string> kUsualTechniques = {"lbs", "dqs", "fem", "fem-contact"};
@@ -33,7 +34,7 @@ void read_body(const Description& description, Study& study) {
 QualityLimits read_gates(const Description& gates) {
   gates.check_keys(
       {"tissue_percent", "least_voxels", "bone_residual_mm", "skin_share_percent", "joint_excess_degrees"});
-  QualityLimits limits;
+  QualityLimits limits = Study().gates;
   const auto take = [&](const char* key, auto& limit) {
     if (const auto number = gates.number(key, 0, 1e9))
       limit = static_cast<std::remove_reference_t<decltype(limit)>>(*number);
@@ -60,6 +61,17 @@ void read_cells(const Description& description, Study& study) {
   study.techniques = read_techniques(description, kUsualTechniques);
   if (study.spacings.size() * study.poses.size() * study.techniques.size() > kMostCells)
     description.refuse("the study has too many cells", "split it into several studies");
+}
+
+void read_volumes(const Description& description, Study& study) {
+  for (const Description& one : description.list("volumes")) {
+    one.check_keys({"spacing_mm", "volume"});
+    const auto spacing = one.number("spacing_mm", 1e-3, 1e3);
+    if (!spacing || !one.has("volume")) one.refuse("it needs a spacing and a file", "give both: spacing_mm and volume");
+    if (!study.phantom.empty()) one.refuse("a phantom has no volume files", "leave out \"volumes\"");
+    if (!study.ready.emplace(*spacing, one.file("volume")).second)
+      one.refuse("the spacing is there twice", "leave one of both out");
+  }
 }
 
 // Returns the volume files in the folder (man-arm-2mm.mha, man-arm-3mm.nrrd, ...), keyed by the spacing (mm) in their
@@ -100,7 +112,7 @@ std::string spacing_text(const std::optional<double>& spacing) {
 Study read_study(const Path& path) {
   const Description description(path, "study");
   description.check_keys({"name", "volume", "phantom", "rig", "tissues", "bones", "weights", "spacings_mm", "poses",
-                          "methods", "quality", "fit_joints", "nearest", "gates"});
+                          "methods", "quality", "fit_joints", "nearest", "gates", "repeats", "volumes"});
   Study study{.name = description.text("name", path.stem().string()), .description = path};
   read_body(description, study);
   read_cells(description, study);
@@ -108,6 +120,11 @@ Study read_study(const Path& path) {
   study.quality = description.text("quality", study.quality, {"draft", "normal", "fine"});
   study.fit_joints = description.flag("fit_joints");
   study.nearest = read_nearest(description, study.techniques);
+  if (const auto repeats = description.number("repeats", 1, kMostRepeats)) {
+    study.repeats = static_cast<int>(*repeats);
+    if (study.repeats != *repeats) description.refuse("it is no whole number", "repeats", "write how often, such as 5");
+  }
+  read_volumes(description, study);
   if (description.has("gates")) study.gates = read_gates(description.object("gates"));
   return study;
 }
@@ -143,15 +160,18 @@ Study paper_study(const Path& folder) {
   return study;
 }
 
-std::string to_json(const Study& study) {
+std::string to_json(const Study& study, const std::function<std::string(const Path&)>& name_of) {
+  const auto name = [&](const Path& file) { return name_of ? name_of(file) : file.filename().string(); };
   Json json{{"name", study.name}};
   if (study.phantom.empty()) {
-    json["volume"] = study.volume.filename().string();
-    json["rig"] = study.rig.filename().string();
+    json["volume"] = name(study.volume);
+    for (const auto& [spacing, file] : study.ready)
+      json["volumes"].push_back({{"spacing_mm", spacing}, {"volume", name(file)}});
+    json["rig"] = name(study.rig);
   } else {
     json["phantom"] = study.phantom;
   }
-  if (!study.tissues.empty()) json["tissues"] = study.tissues.filename().string();
+  if (!study.tissues.empty()) json["tissues"] = name(study.tissues);
   if (!study.bones.empty()) json["bones"] = study.bones;
   json["weights"] = study.weights;
   for (const auto& spacing : study.spacings) json["spacings_mm"].push_back(spacing ? Json(*spacing) : Json());
@@ -161,7 +181,7 @@ std::string to_json(const Study& study) {
     if (!pose.body.name.empty()) row["pose_name"] = pose.body.name;
     if (!pose.body.joints.empty()) row["joints"] = pose.body.joints;
     for (const auto& [key, file] : {std::pair{"pose", &pose.pose}, {"motion", &pose.motion}, {"map", &pose.map}})
-      if (!file->empty()) row[key] = file->filename().string();
+      if (!file->empty()) row[key] = name(*file);
     if (pose.frame) row["frame"] = *pose.frame;
     if (!pose.up.empty()) row["up"] = pose.up;
     json["poses"].push_back(row);
@@ -170,6 +190,7 @@ std::string to_json(const Study& study) {
   json["quality"] = study.quality;
   json["fit_joints"] = study.fit_joints;
   json["nearest"] = study.nearest;
+  json["repeats"] = study.repeats;
   json["gates"] = {{"tissue_percent", study.gates.tissue_percent},
                    {"least_voxels", study.gates.least_voxels},
                    {"bone_residual_mm", study.gates.bone_residual_mm},

@@ -6,12 +6,15 @@
 //    "bones"?: [111, 209], "weights"?: "heat"|"geodesic"|"rigid", "spacings_mm"?: [2, 3, 4],
 //    "methods"?: ["lbs", "dqs", "fem", "fem-contact", "fem-mass-exact"...],
 //    "poses": [{"name": "+45", "flex": ["Forearm=45"]}, ... (batch/described_pose.h)],
-//    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "gates"?: {"tissue_percent": 1, ...}}
+//    "quality"?: "draft"|"normal"|"fine", "fit_joints"?: true, "nearest"?: true, "repeats"?: 5,
+//    "gates"?: {"tissue_percent": 1, ...}, "volumes"?: [{"spacing_mm": 2, "volume": "arm-2mm.nrrd"}, ...]}
 // Without spacings_mm the volume keeps its own spacing; without methods the study compares lbs, dqs, fem and
-// fem-contact. A phantom has its own rig and tissues.
+// fem-contact. A phantom has its own rig and tissues. `volumes` are files of the same body at some of the spacings; at
+// other spacings `volume` is resampled. `repeats` computes each cell that often, for the spread of its time.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,10 +45,11 @@ struct Study {
   std::vector<double> bones;
   std::string weights = "heat", quality = "normal";
   bool fit_joints = false, nearest = false;
+  int repeats = 1;                              // how often each cell is computed, for its time
   std::vector<std::optional<double>> spacings;  // voxel spacings, mm; an empty entry: the volume's own spacing
   std::vector<DescribedPose> poses;
   std::vector<Technique> techniques;
-  QualityLimits gates;
+  QualityLimits gates{.least_voxels = 500};
 };
 
 // Reads the description of a study from a JSON file. Throws Error for a wrong value, with its key in the message.
@@ -58,7 +62,8 @@ Study read_study(const Path& path);
 Study paper_study(const Path& folder = {});
 
 // Returns the study as JSON for the file of results, with the values of all keys that were left at their defaults.
-std::string to_json(const Study& study);
+//   name_of  returns how the text calls a file; empty: by its name without its folder
+std::string to_json(const Study& study, const std::function<std::string(const Path&)>& name_of = {});
 
 // Returns "2 mm", or "as it is" for the volume's own spacing.
 std::string spacing_text(const std::optional<double>& spacing);

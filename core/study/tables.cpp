@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/batch/computing_sources.h"
 #include "core/tissue/tissue_match.h"
 
 namespace limber {
@@ -26,6 +27,19 @@ Json gates_json(const CellResult& cell) {
   return rows;
 }
 
+// The gates of all labels that are large enough for one.
+Json label_gates_json(const CellResult& cell, const QualityLimits& limits) {
+  Json rows = Json::array();
+  for (const TissueFigures& tissue : cell.tissues)
+    if (const std::optional<bool> passed = label_passes(tissue, limits))
+      rows.push_back({{"label", tissue.label},
+                      {"name", tissue.name},
+                      {"voxels", tissue.voxels_before},
+                      {"volume_change_percent", *tissue.volume_percent},
+                      {"passed", *passed}});
+  return rows;
+}
+
 Json cell_json(const Study& study, const CellResult& cell) {
   const auto& spacing = study.spacings[cell.cell.spacing];
   Json row{{"spacing_mm", spacing ? Json(*spacing) : Json()},
@@ -38,7 +52,9 @@ Json cell_json(const Study& study, const CellResult& cell) {
   const Json own = Json::parse(cell.cell_json);
   row["folder"] = "cells/" + cell.folder.filename().string();
   for (const char* key : {"key", "pose_reached", "cpu_seconds", "wall_seconds", "machine"}) row[key] = own.at(key);
+  if (own.contains("repeats")) row["repeats"] = own["repeats"];
   row["gates"] = gates_json(cell);
+  row["label_gates"] = label_gates_json(cell, study.gates);
   row["report"] = Json::parse(cell.report);
   return row;
 }
@@ -82,9 +98,11 @@ void flatten(const Json& value, const std::string& name, std::vector<std::string
 
 }  // namespace
 
-std::string cells_json(const Study& study, const std::vector<CellResult>& cells) {
+std::string cells_json(const Study& study, const std::vector<CellResult>& cells, const std::string& commit) {
   Json json{{"schema", "limber-study/1"},
             {"version", LIMBER_VERSION},
+            {"commit", commit},
+            {"sources", computing_sources()},
             {"study", Json::parse(to_json(study))},
             {"cells", Json::array()}};
   for (const CellResult& cell : cells) json["cells"].push_back(cell_json(study, cell));
@@ -97,6 +115,7 @@ std::string cells_csv(const Study& study, const std::vector<CellResult>& cells) 
   for (const CellResult& cell : cells) {
     Json json = cell_json(study, cell);
     json.erase("gates");
+    json.erase("label_gates");
     if (json.contains("report")) {
       Json report = std::move(json["report"]);
       json.erase("report");

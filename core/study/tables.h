@@ -9,10 +9,14 @@
 
 namespace limber {
 
-// Returns {"schema": "limber-study/1", "version", "study": {...}, "cells": [{"spacing_mm", "pose", "method", "key",
-//          "cpu_seconds", ..., "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}],
+// Returns {"schema": "limber-study/1", "version", "commit", "sources", "study": {...}, "cells": [{"spacing_mm", "pose",
+// "method", "key",
+//          "cpu_seconds", ..., "repeats"?: {"cpu_seconds": [...], "wall_seconds": [...]},
+//           "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}],
+//           "label_gates": [{"label", "name", "voxels", "volume_change_percent", "passed"}],
 //          "report": limber-report/1} | {..., "failure"}]}
-std::string cells_json(const Study& study, const std::vector<CellResult>& cells);
+//   commit  the commit that the program was built from; "": unknown
+std::string cells_json(const Study& study, const std::vector<CellResult>& cells, const std::string& commit);
 
 // Returns CSV with one row for each cell and one column for each figure in the cells' reports
 // ("tissues.fat.volume_change_percent"). A field is empty if the cell lacks the figure.

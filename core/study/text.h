@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Formats numbers and names for a report.
+// Formats numbers, names and files for a report.
 #pragma once
 
 #include <cstdint>
@@ -13,5 +13,6 @@ std::string signed_number(double value, int decimals);  // "+1.20", "0.00"; minu
 std::string grouped(std::int64_t value);   // "646 912": narrow no-break spaces between thousands, from five digits on
 std::string minutes_text(double seconds);  // "about 14 min"
 std::string escaped(const std::string& text);  // escapes the text for HTML
+std::string base64(const std::string& bytes);
 
 }  // namespace limber

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   });
   app.require_subcommand(0, 1);
   limber::cmd::add_commands(app, limber::cmd::kProgramCommit);
-  limber::cmd::add_experiment(app, limber::editor::start_pictures);
+  limber::cmd::add_experiment(app, limber::cmd::kProgramCommit, limber::editor::start_pictures);
   limber::editor::add_editor(app);
   limber::editor::add_render(app);
   app.callback([&] {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Descriptions of studies: read into cells that can be computed, or refused with Error.
+// Descriptions of studies, and files of scores: read into cells that can be computed and scores that can be averaged,
+// or refused with Error.
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/pose/flex_request.h"
+#include "core/study/scores.h"
 #include "core/study/study.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -23,6 +25,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const DescribedPose& pose : study.poses)
       for (const std::string& flex : pose.flex) parse_flex_request(flex, "f");
     to_json(study);
+  } catch (const Error&) {
+  }
+  try {
+    const RaterScores rater = read_scores(path);
+    if (rater.scores.empty() || rater.rater.empty()) std::abort();
+    for (const auto& [code, score] : rater.scores)
+      if (score.score < kLeastScore || score.score > kMostScore || score.order < 1) std::abort();
   } catch (const Error&) {
   }
   return 0;

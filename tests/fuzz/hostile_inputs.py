@@ -113,7 +113,9 @@ class Samples:
                                 '"rest": [1, 2, 3], "influence_offsets": [0, 1], "influence_bones": [0], "influence_weights": [1]}')
         self.write("job.json", '{"command": "prepare", "volume": "volume.nrrd", "output": "out/job.nrrd", "pad": 1}')
         self.write("study.json", '{"volume": "volume.nrrd", "rig": "rig.json", "poses": [{"name": "bent", "flex": ["Forearm=20"]}], "methods": ["lbs"]}')
-        self.limber("experiment", "study.json", "-o", "out/study")
+        self.limber("experiment", "study.json", "-o", "out/study", "--rating-form", "--bundle", "bundle")
+        code = (self.folder / "out/study/rating_key.csv").read_text().splitlines()[1].split(",")[0]
+        self.write("scores.csv", f'study,rater,order,picture,score,remark\r\n"study","R 1",1,{code},4,"a fold, ""flat"""\r\n')
         self.write("batch.json", '{"bodies": [{"volume": "volume.nrrd", "rig": "rig.json", "weights": "weights.nrrd"}], "methods": ["lbs"], "exports": [".stl"], '
                                  '"poses": [{"name": "walk", "motion": "motion.bvh", "frames": "0:1"}, {"name": "bent", "flex": ["Forearm=20"]}]}')
         self.limber("batch", "batch.json", "-o", "out/batch")
@@ -152,6 +154,8 @@ class Samples:
         self.add("job.json", ["job", "{}"])
         self.add("job2.json", ["job", "{}"])
         self.add("study.json", ["experiment", "{}", "-o", "{out}/new", "--shard", "1/9"])
+        self.add("scores.csv", ["experiment", "study.json", "-o", "{out}/study", "--scores", "{}"])
+        self.add("bundle/expected.json", ["experiment", "study.json", "-o", "{out}/study", "--expect", "{}"])
         for cell in sorted((self.folder / "out/study/cells").rglob("*.json")):
             self.add(str(cell.relative_to(self.folder)), ["experiment", "study.json", "-o", "{out}/study"])
         self.add("batch.json", ["batch", "{}", "-o", "{out}/new", "--plan"], ["batch", "{}", "-o", "{out}/new", "--cells", "1"])

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include <doctest/doctest.h>
@@ -91,6 +92,8 @@ TEST_CASE(
 
   const json cells = cells_of(whole);
   CHECK(cells["schema"] == "limber-study/1");
+  CHECK(cells["sources"].get<std::string>().size() == 64);
+  CHECK(cells.contains("commit"));
   REQUIRE(cells["cells"].size() == 6);
   std::set<std::string> seen;
   for (const json& cell : cells["cells"]) {
@@ -98,6 +101,10 @@ TEST_CASE(
     CHECK(cell["spacing_mm"] == 8);
     CHECK(cell["report"]["schema"] == "limber-report/1");
     CHECK(cell["gates"].size() == 20);
+    for (const json& gate : cell["label_gates"]) {
+      CHECK(gate["voxels"] >= 500);
+      CHECK(gate["passed"] == (std::abs(gate["volume_change_percent"].get<double>()) <= 1));
+    }
     for (const json& input : cell["report"]["inputs"]) CHECK_FALSE(input["path"].get<std::string>().starts_with("/"));
     if (cell["pose"] == "+0") {
       CHECK(cell["report"]["total"]["volume_change_percent"] == 0);
@@ -112,7 +119,12 @@ TEST_CASE(
   CHECK(seen.size() == 6);
 
   const std::string observations = read_file(whole / "observations.csv");
-  CHECK(observations.starts_with("spacing,pose,frame,method,group,item,quantity,value\r\n"));
+  CHECK(observations.starts_with("spacing_mm,pose,frame,method,group,item,quantity,value\r\n"));
+  std::istringstream rows(observations);
+  std::set<std::string> keys;
+  for (std::string row; std::getline(rows, row);) CHECK_MESSAGE(keys.insert(row.substr(0, row.rfind(','))).second, row);
+  CHECK(observations.find("8,+40,,fem,solve,,parameters.tet_mm,") != std::string::npos);
+  CHECK(read_file(whole / "times.csv").starts_with("spacing_mm,pose,frame,method,machine,quantity,value\r\n"));
   CHECK(observations.find("tissues,skin,volume_change_percent,") != std::string::npos);
   const std::string table = read_file(whole / "cells.csv");
   CHECK(count(table, "\r\n") == 7);
@@ -123,11 +135,15 @@ TEST_CASE(
   CHECK(page.starts_with("<!doctype html>"));
   CHECK(page.ends_with("</html>\n"));
   CHECK(page.find("Small &amp; quick") != std::string::npos);
-  for (const char* outside : {"<script", "http:", "https:", "<link", "src=\"/", "url("})
+  for (const char* outside : {"<script", "http:", "https:", "<link", "src=\"/"})
     CHECK_MESSAGE(page.find(outside) == std::string::npos, outside);
+  CHECK(count(page, "url(") == count(page, "url(data:font/woff2;base64,"));
+  CHECK(count(page, "url(") == 3);
+  CHECK(count(page, "class=\"tissue-legend\"") >= 3);
   CHECK(count(page, "data:image/png;base64,") >= 6);
-  for (const char* part : {"id=\"summary\"", "id=\"time\"", "id=\"volume\"", "id=\"pictures\"", "id=\"worst\"",
-                           "id=\"gates\"", "id=\"provenance\"", "prefers-color-scheme:dark", "@media print"})
+  for (const char* part :
+       {"id=\"summary\"", "id=\"time\"", "id=\"volume\"", "id=\"pictures\"", "id=\"worst\"", "id=\"gates\"",
+        "id=\"methods\"", "id=\"provenance\"", "How to cite", "prefers-color-scheme:dark", "@media print"})
     CHECK_MESSAGE(page.find(part) != std::string::npos, part);
   for (const char* tag : {"figure", "table", "tr", "td", "th", "svg", "figcaption", "thead"})
     CHECK_MESSAGE(count(page, std::string("</") + tag + ">") ==

@@ -71,13 +71,26 @@ TEST_CASE("study: a description says body, poses, techniques and spacings, and w
   CHECK(study.poses[2].body.name == "sit");
   CHECK(study.poses[2].body.joints == std::vector<std::string>{"left elbow flexion=30"});
   CHECK(study.gates.tissue_percent == 0.5);
-  CHECK(study.gates.least_voxels == 5000);
+  CHECK(study.gates.least_voxels == 500);
+  CHECK(study.repeats == 1);
   CHECK(cells_of(study).size() == 12);
 
   std::ofstream(folder / "short.json") << R"({"phantom": "arm", "poses": [{"name": "rest"}]})";
   const Study few = read_study(folder / "short.json");
   CHECK(few.name == "short");
   CHECK(cells_of(few).size() == 4);
+}
+
+TEST_CASE("study: its own JSON describes it again, with volumes that are ready at some spacings") {
+  const test::TemporaryFolder folder;
+  for (const char* file : {"v.nrrd", "v2.nrrd", "r.json", "p.json"}) std::ofstream(folder / file) << "x";
+  std::ofstream(folder / "study.json") << R"({"volume": "v.nrrd", "rig": "r.json", "spacings_mm": [2, 4], "repeats": 7,
+    "volumes": [{"spacing_mm": 2, "volume": "v2.nrrd"}], "poses": [{"name": "a", "pose": "p.json"}]})";
+  const Study study = read_study(folder / "study.json");
+  CHECK(study.ready.at(2) == folder / "v2.nrrd");
+  CHECK(study.repeats == 7);
+  std::ofstream(folder / "again.json") << to_json(study);
+  CHECK(to_json(read_study(folder / "again.json")) == to_json(study));
 }
 
 TEST_CASE("study: each method has a mass-exact variant, which is there only where it is asked for") {
@@ -123,6 +136,11 @@ TEST_CASE(
   CHECK(hash("int a;", "int b;", "a.h") != first);
 }
 
+TEST_CASE("study: the file that says how to cite the program has its version") {
+  CHECK(read_file(LIMBER_SOURCE_DIR "/assets/CITATION.cff").find("\nversion: " LIMBER_VERSION "\n") !=
+        std::string::npos);
+}
+
 TEST_CASE("study: a description that is wrong is refused in one line that names the key") {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "v.nrrd") << "x";
@@ -160,6 +178,14 @@ TEST_CASE("study: a description that is wrong is refused in one line that names 
            {"{" + body + ", " + pose + R"(, "gates": {"mass": 1}})", "mass"},
            {"{" + body + ", " + pose + R"(, "colour": "red"})", "colour"},
            {"{" + body + ", " + pose + R"(, "fit_joints": "yes"})", "fit_joints"},
+           {"{" + body + ", " + pose + R"(, "repeats": 0})", "repeats"},
+           {"{" + body + ", " + pose + R"(, "repeats": 2.5})", "repeats"},
+           {"{" + body + ", " + pose + R"(, "volumes": [{"spacing_mm": 2}]})", "spacing and a file"},
+           {"{" + body + ", " + pose + R"(, "volumes": [{"spacing_mm": 2, "volume": "none.nrrd"}]})", "none.nrrd"},
+           {"{" + body + ", " + pose +
+                R"(, "volumes": [{"spacing_mm": 2, "volume": "v.nrrd"}, {"spacing_mm": 2, "volume": "v.nrrd"}]})",
+            "twice"},
+           {R"({"phantom": "arm", "volumes": [{"spacing_mm": 2, "volume": "v.nrrd"}], )" + pose + "}", "phantom"},
        }) {
     std::ofstream(folder / "study.json") << text;
     std::string said;

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tabulates how long the techniques of a study take, and how many times as long as linear blend.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/study/cell_result.h"
+
+namespace limber {
+
+// The median, least and largest of some values.
+struct Spread {
+  double median = 0, least = 0, most = 0;
+};
+std::optional<Spread> spread_of(std::vector<double> values);  // nothing if there are no values
+
+// The times of one technique at one spacing, over its bent poses (over all poses, if none is bent).
+struct TechniqueTime {
+  std::optional<Spread> seconds;    // of all repeats of all poses
+  std::optional<Spread> of_linear;  // the time of a pose divided by linear blend's for this pose; empty: not computed
+};
+TechniqueTime time_of(const Study& study, const std::vector<CellResult>& cells, int spacing, int technique);
+
+// Returns the head and rows of a table in HTML, one row for each spacing and technique.
+//   unit  "CPU s" or "s"        names  HTML of the name of each technique
+std::string time_rows(const Study& study, const std::vector<CellResult>& cells, const std::string& unit,
+                      const std::vector<std::string>& names);
+
+}  // namespace limber
