@@ -727,7 +727,7 @@ class Page {
           "inputs");
     warnings();
     if (!facts_.of_session) html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
-    html_ += "<h3>How to cite</h3><pre>" + citation() + "</pre>\n";
+    html_ += "<h3>How to cite</h3><pre class=\"citation\">" + citation() + "</pre>\n";
   }
   std::string citation() const {
     const std::string note = facts_.commit.empty() ? "" : "  note    = {commit " + escaped(facts_.commit) + "},\n";

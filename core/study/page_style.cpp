@@ -144,8 +144,6 @@ th.pose{vertical-align:top}
  .references{font-size:8.6pt}.references li{break-inside:avoid}
  a{color:inherit;text-decoration:none}
  figure{margin:12pt 0 18pt;break-inside:avoid}
- figure.table{break-inside:auto}
- figure.tissues{break-inside:avoid}
  tfoot{display:table-row-group}
  figure>svg{max-width:135mm!important}
  .panels{grid-template-columns:repeat(3,1fr)!important;gap:10px 8px}
@@ -163,6 +161,7 @@ th.pose{vertical-align:top}
  table.pictures thead th:first-child{width:96px}
  table.pictures th.row,table.pictures thead th{font-size:8pt}
  pre{white-space:pre-wrap;font-size:7.4pt;columns:2;break-inside:auto}
+ pre.citation{columns:1;break-inside:avoid}
  .tissue-legend,.ramp{font-size:8pt;gap:2px 10px}
  h3+p,h3+ol{break-before:avoid}
  .hash{font-size:7pt}
