@@ -41,6 +41,8 @@ const JointFigures* furthest_joint(const CellResult& cell) {
   return furthest;
 }
 
+glm::dvec3 middle_of(const Grid& grid) { return world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0); }
+
 PictureFrame slice_frame(const JointFigures& joint) {
   PictureFrame frame = joint_plane(joint);
   frame.size = kSliceSize;
@@ -154,10 +156,7 @@ class Maker {
   PictureFrame frame_of_cell(const CellResult& cell, const LabelVolume& volume) const {
     if (const JointFigures* joint = furthest_joint(cell)) return slice_frame(*joint);
     if (furthest_) return slice_frame(*furthest_);
-    const Grid& grid = volume.grid;
-    return {.centre = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0),
-            .height_mm = kWithoutJoint_mm,
-            .size = kSliceSize};
+    return {.centre = middle_of(volume.grid), .height_mm = kWithoutJoint_mm, .size = kSliceSize};
   }
   std::ptrdiff_t column_of(const CellResult& cell) const {
     const auto found = std::find(figures_.poses.begin(), figures_.poses.end(), cell.cell.pose);
@@ -175,7 +174,8 @@ class Maker {
       figures_.slices.png[technique][column] = finished(slice_picture(*body.volume, colours, frame), frame);
       add_shown(*body.volume, body.tissues, frame, ShownPart::Slice, figures_.slices.legend);
     }
-    box_.add(*body.volume, body_frame(cell, *body.volume));
+    if (!middle_) middle_ = middle_of(body.volume->grid);
+    box_.add(*body.volume, body_frame(cell));
 
     // Results of an editor session may lack the files overlap.nrrd and ratio.nrrd.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
@@ -217,13 +217,11 @@ class Maker {
 
   // Returns the frame for a 3D picture of the cell's body, before its size is known. All poses of the joint that turns
   // the furthest are seen from one side.
-  PictureFrame body_frame(const CellResult& cell, const LabelVolume& volume) const {
-    const Grid& grid = volume.grid;
-    const glm::dvec3 middle = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0);
+  PictureFrame body_frame(const CellResult& cell) const {
     const JointFigures* joint = furthest_joint(cell);
-    PictureFrame frame{.centre = middle, .height_mm = kWithoutJoint_mm};
     if (!joint || (furthest_ && joint->bone == furthest_->bone)) joint = furthest_;
-    if (joint) frame = folding_view(*joint, middle);
+    PictureFrame frame{.centre = *middle_, .height_mm = kWithoutJoint_mm};
+    if (joint) frame = folding_view(*joint, *middle_);
     frame.size = kBodySize;
     return frame;
   }
@@ -255,7 +253,7 @@ class Maker {
       add_shown(*body.volume, body.tissues, near, ShownPart::Slice, figures_.close_up_legend);
     }
     if (column < 0 || !draw_body_) return;
-    frame = body_frame(cell, *body.volume);
+    frame = body_frame(cell);
     frame.centre += frame.right * body_shift_.x + frame.up * body_shift_.y;
     frame.height_mm = body_height_;
     figures_.bodies.png[cell.cell.technique][column] = draw_body_({body.volume, &body.tissues, frame, false});
@@ -267,6 +265,7 @@ class Maker {
   StudyFigures figures_;
   std::vector<const CellResult*> shown_;
   const JointFigures* furthest_ = nullptr;  // the joint that turns the furthest; null: no joint turns
+  std::optional<glm::dvec3> middle_;        // of the first body's grid, world space
   PictureMaker draw_body_;
   Box box_;
   double body_height_ = 1;

@@ -145,7 +145,7 @@ class MethodsWriter {
     text += ", at voxel spacings of " + escaped(spacings) + " (" + used("/total/voxels_before") + " voxels of tissue).";
     std::string given;
     for (const auto& [spacing, file] : study_.ready) given += (given.empty() ? "" : ", ") + spacing_text(spacing);
-    if (!given.empty()) text += " The volumes at " + given + " were given.";
+    if (!given.empty()) text += " It was given at " + given + ", and resampled to other spacings.";
     else if (study_.phantom.empty() && study_.spacings.front()) text += " It was resampled to these spacings.";
     if (study_.fit_joints) text += " The rig’s joints were fitted to the bones before each pose.";
     return paragraph(text + glide());
