@@ -16,12 +16,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kCodeLetters = 8;
+constexpr std::size_t kCodeDigits = 7;
 
+// The code begins with a letter, so that no spreadsheet takes it for a number.
 std::string code_of(const CellResult& cell) {
   const Json json = Json::parse(sound_json(cell.cell_json), nullptr, false);
   const std::string key = "picture " + (json.is_object() ? json.value("key", "") : "");
-  return sha256_of_bytes(key.data(), key.size()).substr(0, kCodeLetters);
+  return "p" + sha256_of_bytes(key.data(), key.size()).substr(0, kCodeDigits);
 }
 
 constexpr char kFormStyle[] = R"css(
