@@ -10,6 +10,8 @@
 
 namespace limber::editor {
 
+struct Editor;
+
 // Begins to draw a dialog in the middle of the window, and dims everything behind the dialog. Width and height are
 // pixels at scale 1. Returns the rectangle of the dialog's content.
 //   close  called by the dialog's Close button; empty: the button closes Editor::dialog
