@@ -25,7 +25,7 @@ png_image png_head(const glm::ivec2& size) {
 void write_png(const Image& image, const Path& path) {
   write_atomically(path, [&](const Path& temporary) {
     png_image png = png_head(image.size);
-    if (!png_image_write_to_file(&png, temporary.c_str(), 0, image.rgba.data(), 0, nullptr))
+    if (!png_image_write_to_file(&png, temporary.string().c_str(), 0, image.rgba.data(), 0, nullptr))
       throw Error("the picture cannot be written", path.string(),
                   std::string("make room or choose another folder (") + png.message + ")");
   });

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/module.h"
+#include "core/platform/module.h"
 
 namespace limber {
 
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 std::optional<Path> find_asset(const std::string& name) {
   std::error_code failed;
-  const Path program = fs::read_symlink("/proc/self/exe", failed);
+  const Path program = running_program_path();
   // Searches beside the shared object that holds this code, in the installation of the running program, in the source
   // tree, then where Limber was installed. The last folder serves another program that uses Limber as a library.
   std::vector<Path> folders = {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS),

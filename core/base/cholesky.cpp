@@ -8,10 +8,10 @@
 #include <utility>
 
 #include <cholmod.h>
-#include <dlfcn.h>
-#include <sys/mman.h>
 
 #include "core/base/error.h"
+#include "core/platform/memory_pages.h"
+#include "core/platform/module.h"
 
 // Declares two functions of the OpenMP runtime with which CHOLMOD is linked.
 extern "C" void omp_set_max_active_levels(int);
@@ -45,12 +45,10 @@ class OneThread {
 void require_blas_memory() {
   static const bool has_memory = [] {
     constexpr std::size_t kMost = std::size_t{160} << 20;  // OpenBLAS takes 128 MB of address space
-    void* room = ::mmap(nullptr, kMost, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room == MAP_FAILED)
+    if (!can_map(kMost))
       throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
-    ::munmap(room, kMost);
     using Factorize = void (*)(const char* half, const int* n, double* A, const int* lda, int* info);
-    if (const auto factorize = reinterpret_cast<Factorize>(::dlsym(RTLD_DEFAULT, "dpotrf_"))) {
+    if (const auto factorize = reinterpret_cast<Factorize>(symbol_of_program("dpotrf_"))) {
       constexpr int kSize = 1;
       double one = 1;
       int info = 0;

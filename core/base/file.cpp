@@ -5,39 +5,21 @@
 #include <cstring>
 #include <fstream>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
-#include "core/base/memory_pages.h"
 #include "core/base/replaced_file.h"
+#include "core/platform/memory_pages.h"
+#include "core/platform/open_file.h"
 
 namespace limber {
 
 namespace fs = std::filesystem;
 
 namespace {
-// Opens a nameless file in `folder` and returns its descriptor. A nameless file vanishes when the process dies, even by
-// SIGKILL. Returns -1 where the file system does not support nameless files.
-int open_nameless(const Path& folder, mode_t mode) {
-  return ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
-}
-
-struct Descriptor {
-  int number = -1;
-  ~Descriptor() {
-    if (number >= 0) ::close(number);
-  }
-};
-
-Error not_written(const Path& path) {
-  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+Error not_written(const Path& path, const std::error_code& error) {
   return {"the file cannot be written", path.string(),
-          full ? "the disk is full: free some space, or write elsewhere" : std::strerror(errno)};
+          is_disk_full(error) ? "the disk is full: free some space, or write elsewhere" : error.message()};
 }
-
 }  // namespace
 
 std::string read_file(const Path& path, std::uint64_t limit) {
@@ -61,8 +43,9 @@ std::string read_file(const Path& path, std::uint64_t limit) {
 
 void check_place(const Path& path) {
   std::error_code error;
-  if (path.native().find('\0') != std::string::npos)
-    throw Error("the name holds a zero byte, at which the system would cut it", path.c_str(), "choose another name");
+  if (path.string().find('\0') != std::string::npos)
+    throw Error("the name holds a zero byte, at which the system would cut it", path.string().c_str(),
+                "choose another name");
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
   if (!fs::is_directory(folder, error))
     throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
@@ -74,20 +57,22 @@ namespace {
 
 // Fills a new file. Calls `write`, which writes to the file through the path `temporary`. Then gives the file the
 // permissions of `target`, the file that it will replace, and flushes it to disk.
-void fill(int descriptor, const Path& temporary, const Path& target, const Path& path,
+void fill(OpenFile& file, const Path& temporary, const Path& target, const Path& path,
           const std::function<void(const Path&)>& write) {
   try {
     write(temporary);
   } catch (const Error& error) {
     throw with_name(error, temporary, path);
   }
-  take_permissions(descriptor, target);
-  if (::fsync(descriptor) != 0) throw not_written(path);
+  file.take_permissions(target);
+  if (const std::error_code error = file.flush()) throw not_written(path, error);
 }
 
-// Returns the permissions with which a new file is created. A file that will replace another one is private at first,
-// so that nobody can read it who may not read the other one.
-mode_t first_mode(const Path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
+void rename_to(const Path& target, const Path& temporary, const Path& path) {
+  std::error_code error;
+  fs::rename(temporary, target, error);
+  if (error) throw not_written(path, error);
+}
 
 }  // namespace
 
@@ -97,23 +82,26 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
   check_place(target);
   const Path folder = target.has_parent_path() ? target.parent_path() : Path(".");
   const Path name = temporary_name(target);
-  const Descriptor nameless{open_nameless(folder, first_mode(target))};
-  if (nameless.number >= 0) {
-    const std::string from = "/proc/self/fd/" + std::to_string(nameless.number);
-    fill(nameless.number, from, target, path, write);
-    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, target.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
-    if (errno != EEXIST) throw not_written(path);
-    // linkat() cannot replace an existing file. So the file is linked to a temporary name first and then renamed.
+  // A file that will replace another one is private at first, so that nobody can read it who may not read the other
+  // one.
+  std::error_code error;
+  const OpeningRules rules{.is_private = fs::exists(target, error)};
+  if (OpenFile nameless = OpenFile::nameless(folder, rules); nameless.is_open()) {
+    fill(nameless, nameless.path_while_open(), target, path, write);
+    error = nameless.give_name(target);
+    if (!error) return;
+    if (error != std::errc::file_exists) throw not_written(path, error);
+    // A nameless file cannot replace an existing one. So it gets a temporary name first and is then renamed.
     const Unfinished unfinished(name);
-    if (::linkat(AT_FDCWD, from.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) != 0) throw not_written(path);
-    if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);
-    return;
+    error = nameless.give_name(name);
+    if (error) throw not_written(path, error);
+    return rename_to(target, name, path);
   }
   const Unfinished unfinished(name);
-  const Descriptor named{::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, first_mode(target))};
-  if (named.number < 0) throw not_written(path);
-  fill(named.number, name, target, path, write);
-  if (::rename(name.c_str(), target.c_str()) != 0) throw not_written(path);
+  OpenFile named(name, Opening::New, error, rules);
+  if (error) throw not_written(path, error);
+  fill(named, name, target, path, write);
+  rename_to(target, name, path);
 }
 
 void write_file_atomically(const Path& path, const std::string& bytes) {

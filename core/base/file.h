@@ -4,13 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 
-namespace limber {
+#include "core/platform/path.h"
 
-using Path = std::filesystem::path;
+namespace limber {
 
 // Returns the bytes of a file. Throws Error when the file cannot be read or is larger than `limit` bytes.
 std::string read_file(const Path& path, std::uint64_t limit = std::uint64_t{1} << 32);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/file.h"
+#include "core/platform/open_file.h"
 
 namespace limber {
 
@@ -25,7 +26,7 @@ class Unfinished {
 
  private:
   Path path_, note_;
-  int descriptor_ = -1;
+  OpenFile locked_;  // the note
 };
 
 // Returns ".limber-PID-NAME" beside `path`, the temporary name of a file that will be renamed to `path`.

@@ -5,7 +5,7 @@
 #include <optional>
 #include <tuple>
 
-#include <sys/stat.h>
+#include "core/platform/file_system.h"
 
 namespace limber {
 
@@ -24,12 +24,12 @@ Path place_of(Path path) {
 
 // Returns an identity that is equal for all names of one file: device and inode if the file exists, else the resolved
 // path. Returns nothing for a device or a pipe, because writing to it destroys nothing.
-using Identity = std::tuple<dev_t, ino_t, std::string>;
+using Identity = std::tuple<std::uint64_t, std::uint64_t, std::string>;
 std::optional<Identity> identity_of(const Path& path) {
-  struct stat status;
-  if (::stat(path.c_str(), &status) != 0) return Identity{0, 0, place_of(path).string()};
-  if (!S_ISDIR(status.st_mode) && !S_ISREG(status.st_mode)) return std::nullopt;
-  return Identity{status.st_dev, status.st_ino, ""};
+  const auto status = status_of_file(path);
+  if (!status) return Identity{0, 0, place_of(path).string()};
+  if (!status->is_folder && !status->is_regular) return std::nullopt;
+  return Identity{status->device, status->number, ""};
 }
 
 using Known = std::map<Identity, NamedFile>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Determines what a new file takes over from the file that it replaces: its path (the target of symbolic links) and its
-// permissions. In error messages it puts the name that the user knows in place of the temporary name.
+// Determines the path of the file that a new file replaces (the target of symbolic links). In error messages it puts
+// the name that the user knows in place of the temporary name.
 #pragma once
 
 #include "core/base/error.h"
@@ -12,10 +12,6 @@ namespace limber {
 // target need not exist), else `path` itself. Throws Error when the links form a circle, or when `path` exists and is
 // not a regular file.
 Path target_of(const Path& path);
-
-// Gives a file that is open for writing the permissions, and where allowed the owner and group, of the file `replaced`
-// that it will replace. Does nothing when `replaced` does not exist.
-void take_permissions(int descriptor, const Path& replaced);
 
 // Returns the error with the file's temporary name replaced by `name`, which the user knows.
 Error with_name(const Error& error, const Path& temporary, const Path& name);

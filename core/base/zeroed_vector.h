@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 
 namespace limber {
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <optional>
 
-#include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/deflate.h"
@@ -13,6 +12,7 @@
 #include "core/base/json_text.h"
 #include "core/batch/computing_sources.h"
 #include "core/batch/machine.h"
+#include "core/platform/process.h"
 #include "core/project/worker.h"
 #include "core/report/report.h"
 
@@ -25,13 +25,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kHashLetters = 12;
 constexpr std::size_t kLongestName = 60;
-
-double children_cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_CHILDREN, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 void make_folder(const Path& folder) {
   std::error_code error;

@@ -7,7 +7,7 @@
 namespace limber {
 
 // Returns the SHA-256 of the source files that compute a cell (one spacing, pose and technique), from reading a volume
-// to the figures of its report (core/base to core/report). The build computes this hash (hash_sources.cmake).
+// to the figures of its report (core/platform to core/report). The build computes this hash (hash_sources.cmake).
 const char* computing_sources();
 
 }  // namespace limber

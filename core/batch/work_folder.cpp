@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/batch/work_folder.h"
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <thread>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "core/base/error.h"
+#include "core/platform/host.h"
+#include "core/platform/process.h"
 
 namespace limber {
 
@@ -20,11 +15,9 @@ namespace fs = std::filesystem;
 namespace {
 // Returns the name of this machine, with only those characters that are safe in a file name, and a "-" behind it.
 std::string machine_prefix() {
-  char name[256] = {};
-  ::gethostname(name, sizeof name - 1);
   std::string safe;
-  for (const char* c = name; *c; ++c)
-    if (std::isalnum(static_cast<unsigned char>(*c)) || *c == '.') safe += *c;
+  for (const char c : host_name())
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '.') safe += c;
   return safe + "-";
 }
 
@@ -36,7 +29,7 @@ Path working_path(const Path& place, const std::string& owner) {
 WorkFolder::WorkFolder(const Path& place, Progress& progress, IfBusy if_busy)
     : place_(place),
       lock_(place.parent_path() / ("." + place.filename().string() + ".lock")),
-      working_(working_path(place, machine_prefix() + std::to_string(::getpid()))) {
+      working_(working_path(place, machine_prefix() + std::to_string(process_id()))) {
   while (!made_ && !claim()) {
     if (if_busy == IfBusy::Leave) return;
     if (progress.cancelled()) throw Cancelled();
@@ -44,33 +37,31 @@ WorkFolder::WorkFolder(const Path& place, Progress& progress, IfBusy if_busy)
   }
 }
 
-// Locks the lock's folder, and makes the working folder. The lock belongs to the open file descriptor, so the system
+// Locks the lock's folder, and makes the working folder. The lock belongs to the open file, so the system
 // releases it when the program is killed. Returns false if another program has the lock.
 bool WorkFolder::claim() {
   if (fs::exists(place_)) return made_ = true;
-  if (::mkdir(lock_.c_str(), 0777) != 0 && errno != EEXIST)
-    throw Error("the folder cannot be written", lock_.parent_path().string(), std::strerror(errno));
-  descriptor_ = ::open(lock_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 && errno != ENOENT)
-    throw Error("the folder cannot be opened", lock_.string(), std::strerror(errno));
-  const bool locked = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  std::error_code error;
+  fs::create_directory(lock_, error);
+  if (error && error != std::errc::file_exists)
+    throw Error("the folder cannot be written", lock_.parent_path().string(), error.message());
+  OpenFile opened(lock_, Opening::Folder, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw Error("the folder cannot be opened", lock_.string(), error.message());
+  if (!opened.is_open() || opened.lock() != OpenFile::Lock::Taken) return false;
   // The program that had the lock may just have finished and removed the opened folder. Checks that it is still there.
-  struct stat mine {
-  }, there{};
-  if (!locked || ::fstat(descriptor_, &mine) != 0 || ::stat(lock_.c_str(), &there) != 0 ||
-      mine.st_ino != there.st_ino) {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = -1;
-    return false;
-  }
+  const auto mine = opened.status(), there = status_of_file(lock_);
+  if (!mine || !there || mine->number != there->number) return false;
+  locked_ = std::move(opened);
   if (fs::exists(place_)) {  // made between the first look and the lock
     release();
     return made_ = true;
   }
   remove_leftovers();
   write_file_atomically(lock_ / working_.filename().string().substr(1), "");
-  if (::mkdir(working_.c_str(), 0777) != 0)
-    throw Error("the folder cannot be written", working_.parent_path().string(), std::strerror(errno));
+  if (!fs::create_directory(working_, error))
+    throw Error("the folder cannot be written", working_.parent_path().string(),
+                error ? error.message() : working_.filename().string() + " is there already");
   return true;
 }
 
@@ -98,12 +89,11 @@ void WorkFolder::release() {
     fs::remove(lock_ / working_.filename().string().substr(1), ignored);
     fs::remove(lock_, ignored);
   }
-  ::close(descriptor_);
-  descriptor_ = -1;
+  locked_.close();
 }
 
 WorkFolder::~WorkFolder() {
-  if (descriptor_ < 0) return;
+  if (!locked_.is_open()) return;
   std::error_code ignored;
   fs::remove_all(working_, ignored);
   release();

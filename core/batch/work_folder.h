@@ -7,6 +7,7 @@
 
 #include "core/base/file.h"
 #include "core/base/progress.h"
+#include "core/platform/open_file.h"
 
 namespace limber {
 
@@ -25,7 +26,7 @@ class WorkFolder {
   WorkFolder& operator=(const WorkFolder&) = delete;
 
   bool made() const { return made_; }
-  bool busy() const { return !made_ && descriptor_ < 0; }
+  bool busy() const { return !made_ && !locked_.is_open(); }
   Path operator/(const std::string& name) const { return working_ / name; }
   // Renames the working folder to `place`, unless another program has just made it. Throws Error.
   void commit();
@@ -38,7 +39,7 @@ class WorkFolder {
   void release();
 
   Path place_, lock_, working_;
-  int descriptor_ = -1;
+  OpenFile locked_;  // the lock's folder
   bool made_ = false;
 };
 

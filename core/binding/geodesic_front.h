@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
 #include "core/base/zeroed_vector.h"
+#include "core/platform/memory_pages.h"
 #include "core/volume/tissue_voxels.h"
 
 namespace limber {

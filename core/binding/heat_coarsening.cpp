@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
 #include "core/binding/heat_system.h"
+#include "core/platform/memory_pages.h"
 
 namespace limber {
 

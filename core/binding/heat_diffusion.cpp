@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/large_blocks.h"
 #include "core/base/parallel.h"
 #include "core/binding/cover_islands.h"
 #include "core/binding/flesh_graph.h"
+#include "core/platform/large_blocks.h"
 
 namespace limber {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <utility>
 
-#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
+#include "core/platform/memory_pages.h"
 
 namespace limber {
 

@@ -52,7 +52,7 @@ void print_plan(const Batch& batch, const std::vector<BatchOutcome>& cells, cons
     print("%d\t%s\t%s\t%s\t%s\t%s\n", cell.number, cell.is_there() ? "done" : "missing",
           one_line(batch.bodies[cell.cell.body].name).c_str(), one_line(batch.poses[cell.cell.pose].name).c_str(),
           word_of(batch.techniques[cell.cell.technique]).c_str(),
-          (Path(out) / "cells" / cell.stored.folder.filename()).c_str());
+          (Path(out) / "cells" / cell.stored.folder.filename()).string().c_str());
   }
 }
 
@@ -78,7 +78,8 @@ void run(const Options& options) {
   const std::vector<BatchOutcome> outcomes = run_batch(batch, run, progress);
   if (run.numbers.empty()) {
     write_tables(batch, outcomes, options.out);
-    print("%s\n%s\n", (Path(options.out) / "cells.csv").c_str(), (Path(options.out) / "times.csv").c_str());
+    print("%s\n%s\n", (Path(options.out) / "cells.csv").string().c_str(),
+          (Path(options.out) / "times.csv").string().c_str());
   }
   const auto failed = std::count_if(outcomes.begin(), outcomes.end(),
                                     [](const BatchOutcome& outcome) { return !outcome.failure().empty(); });

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <unistd.h>
-
 #include "core/base/error.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"

@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <functional>
 
-#include <fcntl.h>
-#include <unistd.h>
+#include "core/platform/terminal.h"
 
 namespace limber::cmd {
 
@@ -97,7 +96,7 @@ void print_json(std::string_view json) {
 }
 
 void tell(std::string_view line) {
-  if (::isatty(STDERR_FILENO)) std::fputs(kEraseLine, stderr);
+  if (error_stream_is_terminal()) std::fputs(kEraseLine, stderr);
   std::fprintf(stderr, "%s\n", one_line(line).c_str());
 }
 
@@ -107,12 +106,5 @@ void draw_bar(std::string_view text) {
 }
 
 bool all_is_printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
-
-void keep_standard_streams() {
-  // open() returns the lowest free descriptor, so it opens the missing stream itself. The stream is read-only, so that
-  // writing to it fails and the failure is reported.
-  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
-    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
-}
 
 }  // namespace limber::cmd

@@ -31,8 +31,4 @@ void draw_bar(std::string_view text);
 // Flushes stdout. Returns false when some of the output could not be written, for example on a full disk.
 bool all_is_printed();
 
-// Opens a read-only stream for each of stdin, stdout and stderr that is missing when the program starts. Otherwise the
-// next file that is opened would get the missing stream's descriptor and receive the program's messages.
-void keep_standard_streams();
-
 }  // namespace limber::cmd

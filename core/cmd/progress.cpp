@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include "core/cmd/command.h"
+#include "core/platform/terminal.h"
 
 namespace limber::cmd {
 
@@ -17,7 +18,7 @@ volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t leaves_at_once = 0;
 void on_interrupt(int) {
   interrupted = 1;
-  if (leaves_at_once) ::_exit(3);
+  if (leaves_at_once) std::_Exit(3);
 }
 }  // namespace
 
@@ -31,9 +32,9 @@ void tell_failed_gates(const std::vector<std::string>& sentences) {
 }
 
 CommandProgress::CommandProgress(const std::string& mode)
-    : mode_(mode == "json"            ? Mode::Json
-            : ::isatty(STDERR_FILENO) ? Mode::Bar
-                                      : Mode::Silent) {
+    : mode_(mode == "json"               ? Mode::Json
+            : error_stream_is_terminal() ? Mode::Bar
+                                         : Mode::Silent) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 }

@@ -7,12 +7,13 @@
 #include <system_error>
 
 #include "core/base/error.h"
-#include "core/base/large_blocks.h"
 #include "core/base/leftovers.h"
 #include "core/base/named_files.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/slicer_xml.h"
 #include "core/cmd/surface_options.h"
+#include "core/platform/large_blocks.h"
+#include "core/platform/terminal.h"
 
 namespace limber::cmd {
 

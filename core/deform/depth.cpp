@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
+#include "core/platform/memory_pages.h"
 #include "core/volume/float_lanes.h"
 
 namespace limber {

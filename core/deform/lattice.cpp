@@ -6,11 +6,11 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/memory_pages.h"
 #include "core/base/parallel.h"
 #include "core/deform/brick_motions.h"
 #include "core/deform/settled_flesh.h"
 #include "core/deform/split_corners.h"
+#include "core/platform/memory_pages.h"
 
 namespace limber {
 

@@ -77,7 +77,7 @@ int limber_hdf5_make(const LimberHdf5Item* items, std::size_t count,
   for (std::size_t i = 0; i < count; ++i)
     if (!write_item(file, items[i])) return 1;
   if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) return 1;
-  std::vector<char> bytes(static_cast<std::size_t>(std::max<ssize_t>(H5Fget_file_image(file, nullptr, 0), 0)));
+  std::vector<char> bytes(static_cast<std::size_t>(std::max<std::ptrdiff_t>(H5Fget_file_image(file, nullptr, 0), 0)));
   if (bytes.empty() || H5Fget_file_image(file, bytes.data(), bytes.size()) < 0) return 1;
   take(context, bytes.data(), bytes.size());
   return 0;

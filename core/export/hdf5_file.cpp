@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/export/hdf5_file.h"
 
-#include <dlfcn.h>
-
 #include "core/base/error.h"
-#include "core/base/module.h"
 #include "core/export/hdf5_codec.h"
+#include "core/platform/module.h"
 
 namespace limber {
 
@@ -31,7 +29,7 @@ constexpr int kTypeOf<char> = kLimberHdf5Text;
 decltype(&limber_hdf5_make) codec(const Path& path) {
   static const auto loaded = [] {
     void* module = open_module("limber_hdf5");
-    return module ? reinterpret_cast<decltype(&limber_hdf5_make)>(::dlsym(module, "limber_hdf5_make")) : nullptr;
+    return module ? reinterpret_cast<decltype(&limber_hdf5_make)>(symbol_of(module, "limber_hdf5_make")) : nullptr;
   }();
   if (!loaded)
     throw Error("HDF5 cannot be written, limber_hdf5.so is missing or damaged", path.string(),

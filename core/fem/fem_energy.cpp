@@ -5,9 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include <sys/resource.h>
-
 #include "core/base/parallel.h"
+#include "core/platform/process.h"
 
 namespace limber {
 
@@ -22,15 +21,7 @@ constexpr double kSteady = 1e-9;
 constexpr double kKeep = 0.05;
 
 // Returns the CPU time in seconds of this process and of its children that have ended.
-double cpu_seconds() {
-  double sum = 0;
-  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
-    rusage used{};
-    getrusage(who, &used);
-    for (const timeval& time : {used.ru_utime, used.ru_stime}) sum += double(time.tv_sec) + 1e-6 * double(time.tv_usec);
-  }
-  return sum;
-}
+double cpu_seconds() { return own_cpu_seconds() + children_cpu_seconds(); }
 }  // namespace
 
 CpuTimer::CpuTimer(double& sum) : sum_(sum), start_(cpu_seconds()) {}

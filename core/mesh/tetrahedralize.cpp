@@ -8,7 +8,7 @@
 
 #include <tetgen.h>
 
-#include "core/base/child_process.h"
+#include "core/platform/child_process.h"
 
 namespace limber {
 
@@ -91,7 +91,8 @@ Answer run_tetgen(const Polyhedra& input, const char* switches, const Tetrahedra
         if (limits.at_start) limits.at_start();
         return tetgen_in_child(input, switches, send);
       },
-      limits.memory_bytes, child, progress);
+      limits.memory_bytes, child, [&] { return progress.cancelled(); });
+  if (answer.cancelled) throw Cancelled();
   if (!answer.sent) return {{}, {}, answer.failure};
   Head head;
   if (answer.sent->size() < sizeof head) return {{}, {}, "it ended without an answer"};

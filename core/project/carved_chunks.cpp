@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/project/read_at.h"
 
 namespace limber {
 
@@ -73,31 +68,24 @@ std::optional<TwoColumns> two_columns(std::string_view record) {
 
 }  // namespace
 
-CarvedChunks::CarvedChunks(const Path& path, Progress& progress)
-    : where_(path.string()),
-      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-  if (descriptor_ < 0) throw Error("the project cannot be opened", where_, std::strerror(errno));
-  try {
-    size_ = ::lseek(descriptor_, 0, SEEK_END);
-    bytes_left_ = kMostReading * size_;
-    std::string header(100, '\0');
-    if (size_ >= 100 && read_at(0, header.data(), header.size()) && header.starts_with("SQLite format 3")) {
-      const std::uint32_t told = big_endian(header.data() + 16, 2);
-      const std::int64_t bytes = told == 1 ? 65536 : told;
-      if (bytes >= 512 && std::has_single_bit(static_cast<std::uint64_t>(bytes))) page_bytes_ = bytes;
-    }
-    scan(progress);
-    keep_whole(progress);
-  } catch (...) {
-    ::close(descriptor_);
-    throw;
+CarvedChunks::CarvedChunks(const Path& path, Progress& progress) : where_(path.string()) {
+  std::error_code error;
+  file_ = OpenFile(path, Opening::Read, error);
+  if (error) throw Error("the project cannot be opened", where_, error.message());
+  size_ = file_.size();
+  bytes_left_ = kMostReading * size_;
+  std::string header(100, '\0');
+  if (size_ >= 100 && read_at(0, header.data(), header.size()) && header.starts_with("SQLite format 3")) {
+    const std::uint32_t told = big_endian(header.data() + 16, 2);
+    const std::int64_t bytes = told == 1 ? 65536 : told;
+    if (bytes >= 512 && std::has_single_bit(static_cast<std::uint64_t>(bytes))) page_bytes_ = bytes;
   }
+  scan(progress);
+  keep_whole(progress);
 }
 
-CarvedChunks::~CarvedChunks() { ::close(descriptor_); }
-
 bool CarvedChunks::read_at(std::int64_t offset, char* to, std::size_t size) const {
-  return limber::read_at(descriptor_, offset, to, size);
+  return file_.read_at(offset, to, size) == size;
 }
 
 void CarvedChunks::scan(Progress& progress) {

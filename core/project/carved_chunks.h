@@ -17,6 +17,7 @@
 
 #include "core/base/file.h"
 #include "core/base/progress.h"
+#include "core/platform/open_file.h"
 #include "core/project/chunk.h"
 
 namespace limber {
@@ -25,7 +26,6 @@ class CarvedChunks final : public ChunkSource {
  public:
   // Reads the file twice and reports progress as stage "recover". Throws Error when the file cannot be read.
   explicit CarvedChunks(const Path& path, Progress& progress = no_progress());
-  ~CarvedChunks() override;
   CarvedChunks(const CarvedChunks&) = delete;
   CarvedChunks& operator=(const CarvedChunks&) = delete;
 
@@ -55,7 +55,7 @@ class CarvedChunks final : public ChunkSource {
   bool may_read(std::uint32_t bytes);
 
   std::string where_;
-  int descriptor_ = -1;
+  OpenFile file_;
   std::int64_t size_ = 0, page_bytes_ = 8192;
   // Payload bytes that may still be read. They are limited because the rows of a hostile file may share pages.
   std::int64_t bytes_left_ = 0;

@@ -5,8 +5,8 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "core/platform/memory.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"

@@ -3,17 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
+#include "core/platform/desktop.h"
 #include "core/project/carved_chunks.h"
-#include "core/project/read_at.h"
 
 namespace limber {
 
@@ -128,35 +124,28 @@ void JournalWriter::write(const Document& document, const std::string& label, Do
 
 // ---- reading a journal
 
-JournalReader::JournalReader(const Path& path)
-    : where_(path.string()),
-      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) throw Error("the journal of edits cannot be opened", where_, std::strerror(errno));
-  try {
-    scan();
-  } catch (...) {
-    ::close(descriptor_);
-    throw;
-  }
+JournalReader::JournalReader(const Path& path) : where_(path.string()) {
+  std::error_code error;
+  file_ = OpenFile(path, Opening::Read, error);
+  if (error) throw Error("the journal of edits cannot be opened", where_, error.message());
+  scan();
 }
-
-JournalReader::~JournalReader() { ::close(descriptor_); }
 
 // Reads the journal's records up to the first one that is incomplete or damaged.
 void JournalReader::scan() {
   std::int64_t offset = 0;
-  const std::int64_t end = ::lseek(descriptor_, 0, SEEK_END);
+  const std::int64_t end = file_.size();
   for (bool first = true;; first = false) {
     char head[kHeadBytes];
     std::uint32_t type = 0, size = 0;
-    bool whole = read_at(descriptor_, offset, head, sizeof head);
+    bool whole = file_.read_at(offset, head, sizeof head) == sizeof head;
     std::memcpy(&type, head, sizeof type);
     std::memcpy(&size, head + sizeof type, sizeof size);
     whole = whole && size <= kMostPayload && offset + static_cast<std::int64_t>(kHeadBytes + size + kSumBytes) <= end;
     std::string bytes;
     if (whole) {
       bytes.resize(kHeadBytes + size + kSumBytes);
-      whole = read_at(descriptor_, offset, bytes.data(), bytes.size());
+      whole = file_.read_at(offset, bytes.data(), bytes.size()) == bytes.size();
     }
     if (whole) {
       const auto sum = sha256(bytes.data(), kHeadBytes + size);
@@ -201,19 +190,15 @@ std::optional<std::string> JournalReader::find(const ChunkHash& hash) {
   const auto place = chunks_.find(hash.bytes);
   if (place == chunks_.end()) return std::nullopt;
   std::string packed(place->second.size, '\0');
-  if (!read_at(descriptor_, place->second.offset, packed.data(), packed.size())) return std::nullopt;
+  if (file_.read_at(place->second.offset, packed.data(), packed.size()) != packed.size()) return std::nullopt;
   return packed;
 }
 
 // ---- the journals of earlier sessions
 
 Path edits_folder() {
-  const char* state = std::getenv("XDG_STATE_HOME");
-  const char* home = std::getenv("HOME");
-  const Path base = state && *state ? Path(state)
-                    : home && *home ? Path(home) / ".local/state"
-                                    : fs::temp_directory_path();
-  const Path folder = base / "limber" / "edits";
+  const Path state = user_folder(UserFolder::State);
+  const Path folder = (state.empty() ? fs::temp_directory_path() : state) / "limber" / "edits";
   std::error_code ignored;
   fs::create_directories(folder, ignored);
   return folder;

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/platform/open_file.h"
 #include "core/project/document_codec.h"
 #include "core/project/log_file.h"
 #include "core/project/project_io.h"
@@ -66,7 +67,6 @@ class JournalReader final : public ChunkSource {
   };
   // Throws Error when the journal cannot be read or is not a journal.
   explicit JournalReader(const Path& path);
-  ~JournalReader() override;
 
   const Path& project() const { return project_; }
   const std::optional<SaveMark>& base() const { return base_; }
@@ -80,7 +80,7 @@ class JournalReader final : public ChunkSource {
   };
   void scan();
   std::string where_;
-  int descriptor_ = -1;
+  OpenFile file_;
   Path project_;
   std::optional<SaveMark> base_;
   std::vector<Edit> edits_;

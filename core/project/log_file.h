@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/base/file.h"
+#include "core/platform/open_file.h"
 
 namespace limber {
 
@@ -24,23 +25,17 @@ class LogFile {
 using OpenLog = std::function<std::unique_ptr<LogFile>(const Path&)>;
 std::unique_ptr<LogFile> open_log(const Path& path);
 
-// Holds a lock on a file that another process may own, as long as this object lives. The lock is the system's (flock),
-// so it ends with the process, however the process ends.
+// Holds a lock on a file that another process may own, as long as this object lives. The lock is the system's, so it
+// ends with the process, however the process ends.
 class FileLock {
  public:
   FileLock() = default;
   // Tries to lock the file. When another process has the lock or there is no such file, taken() returns false.
   explicit FileLock(const Path& path);
-  ~FileLock();
-  FileLock(FileLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
-  FileLock& operator=(FileLock&& other) noexcept;
-  bool taken() const { return descriptor_ >= 0; }
+  bool taken() const { return file_.is_open(); }
 
  private:
-  int descriptor_ = -1;
+  OpenFile file_;
 };
-
-// Syncs the folder to the disk, so that files created, renamed or removed in it remain so after a power cut.
-void sync_folder(const Path& folder);
 
 }  // namespace limber

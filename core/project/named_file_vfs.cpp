@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <sqlite3.h>
-#include <sys/stat.h>
 
 #include "core/base/error.h"
+#include "core/platform/file_system.h"
 
 namespace limber {
 
@@ -51,8 +51,8 @@ void limit_methods(sqlite3_file* file, int system_bytes) {
 }
 
 bool is_regular_or_missing(const char* path) {
-  struct stat status {};
-  return ::lstat(path, &status) != 0 || S_ISREG(status.st_mode);
+  const auto status = status_of_link(path);
+  return !status || status->is_regular;
 }
 
 // Returns true if the journal ends like one that names a super-journal. The sum of the name's bytes is not verified,
@@ -159,8 +159,8 @@ int last_error(sqlite3_vfs* vfs, int size, char* out) {
 
 std::string absolute_path(sqlite3_vfs& system, const Path& path) {
   std::vector<char> full(static_cast<std::size_t>(system.mxPathname) + 1);
-  const int code = system.xFullPathname(&system, path.c_str(), static_cast<int>(full.size()), full.data());
-  if ((code & 0xff) != SQLITE_OK || full[0] != '/')
+  const int code = system.xFullPathname(&system, path.string().c_str(), static_cast<int>(full.size()), full.data());
+  if ((code & 0xff) != SQLITE_OK || !Path(full.data()).is_absolute())
     throw Error("the project cannot be opened", path.string(), "use a shorter path, and check its links");
   return full.data();
 }

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/project_io.h"
 
-#include <cerrno>
 #include <cstring>
 #include <random>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/base/leftovers.h"
 #include "core/base/replaced_file.h"
+#include "core/platform/open_file.h"
 #include "core/project/database.h"
 
 namespace limber {
@@ -149,13 +146,6 @@ void shrink(Database& database) {
 // disk.
 void write_durably(Database& database) { database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA"); }
 
-void sync(const Path& path, int flags) {
-  const int file = ::open(path.c_str(), flags | O_CLOEXEC);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
-}
-
 }  // namespace
 
 bool is_project(const Path& path) {
@@ -193,24 +183,22 @@ std::string read_thumbnail(const Path& path) {
 }
 
 namespace {
-// Returns the Error that describes errno after a failed write.
-Error not_written(const Path& path) {
-  if (errno == EACCES || errno == EROFS)
+Error not_written(const Path& path, const std::error_code& error) {
+  if (error == std::errc::permission_denied || error == std::errc::read_only_file_system)
     return {"the project cannot be opened", path.string(), "check that it and its folder may be read and written"};
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)
+  if (is_disk_full(error))
     return {"the project cannot be written: the disk is full", path.string(), "free some space, or save elsewhere"};
-  return {"the project cannot be written", path.string(), std::strerror(errno)};
+  return {"the project cannot be written", path.string(), error.message()};
 }
 
 // Syncs the temporary file to the disk and gives it the permissions of the project file `target` that it replaces.
 void finish(const Path& temporary, const Path& target, const Path& path) {
-  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw not_written(path);
-  take_permissions(file, target);
-  const bool synced = ::fsync(file) == 0;
-  const Error failure = not_written(path);
-  ::close(file);
-  if (!synced) throw failure;
+  std::error_code error;
+  OpenFile file(temporary, Opening::Read, error);
+  if (error) throw not_written(path, error);
+  file.take_permissions(target);
+  error = file.flush();
+  if (error) throw not_written(path, error);
 }
 }  // namespace
 
@@ -227,10 +215,9 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   fs::remove(temporary, error);
   // When the new file replaces a project, it is created with access for its owner alone. The project's own permissions
   // may keep others from reading it.
-  const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-                          fs::exists(target, error) ? 0600 : 0666);
-  if (file < 0) throw not_written(path);
-  ::close(file);
+  const OpeningRules rules{.is_private = fs::exists(target, error)};
+  OpenFile(temporary, Opening::New, error, rules);
+  if (error) throw not_written(path, error);
 
   SaveMark mark;
   try {
@@ -255,8 +242,9 @@ SaveMark create_project(const Project& project, const Path& path, DocumentWriter
   }
   Database::clear_journal(target);  // else SQLite would apply the old file's journal to the new file
   finish(temporary, target, path);
-  if (::rename(temporary.c_str(), target.c_str()) != 0) throw not_written(path);
-  sync(folder, O_RDONLY | O_DIRECTORY);
+  fs::rename(temporary, target, error);
+  if (error) throw not_written(path, error);
+  sync_folder(folder);
   return mark;
 }
 

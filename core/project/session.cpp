@@ -7,10 +7,6 @@
 #include <random>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "core/base/error.h"
 
 namespace limber {
@@ -38,11 +34,14 @@ Path absolute_of(const Path& path) {
   return error ? fs::absolute(path) : canonical;
 }
 
+std::string short_hash(const Path& path) {
+  const std::string text = path.string();
+  return sha256_of_bytes(text.data(), text.size()).substr(0, 16);
+}
+
 Error in_use(const Path& project) {
   return {"the project is open in another Limber", project.string(), "close it there, or work on a copy"};
 }
-
-bool may_write(const Path& folder) { return ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0; }
 
 }  // namespace
 
@@ -73,7 +72,7 @@ std::unique_ptr<Session> Session::open(const Path& path, Project& project, Progr
   project = read_project(file, progress);
   session->path_ = file;
   session->base_ = session->mark_ = project.mark;
-  session->identity_ = identity_of(file);
+  session->identity_ = status_of_file(file);
   session->saved_ = session->last_ = project.document;
   if (session->leftover_lock_) session->look_at_leftover();
   if (!session->leftover_) {
@@ -99,28 +98,21 @@ Session::~Session() {
 
 // Chooses the journal's path: beside the project, or in the edits folder where the project's folder is not writable.
 void Session::choose_journal_path(const Path& project) {
-  const std::string name = sha256_of_bytes(project.c_str(), project.string().size()).substr(0, 16) + ".edits";
-  const bool beside = may_write(project.parent_path());
+  const std::string name = short_hash(project) + ".edits";
+  const bool beside = is_writable(project.parent_path());
   journal_path_ = beside ? journal_path(project) : folder_ / name;
 }
 
 // Makes a link in the edits folder to the journal, so that all_recoverable() finds the journal.
 void Session::note_journal() const {
   if (journal_path_.parent_path() == folder_) return;
-  const Path link =
-      folder_ / (sha256_of_bytes(journal_path_.c_str(), journal_path_.string().size()).substr(0, 16) + ".edits");
+  const Path link = folder_ / (short_hash(journal_path_) + ".edits");
   std::error_code ignored;
   if (fs::is_symlink(link, ignored)) return;
   fs::create_symlink(journal_path_, link, ignored);
 }
 
 void Session::remove_journal(const Path& journal) const { limber::discard(journal, folder_); }
-
-std::optional<Session::FileIdentity> Session::identity_of(const Path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  return FileIdentity{status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-}
 
 Path Session::path() const {
   const std::lock_guard lock(state_);
@@ -206,7 +198,7 @@ void Session::write_journal(const Document& document, const std::string& label) 
 // is of no use then, since it omits the chunks that were in that file.
 void Session::watch_project() {
   if (!base_ || !identity_ || save_runs_) return;
-  const auto now = identity_of(path());
+  const auto now = status_of_file(path());
   if (now == identity_) return;
   try {
     if (now && read_mark(path()) == *mark_) {  // the file has the same save, only its time or inode differs
@@ -324,7 +316,7 @@ void Session::after_save(const Document& saved, const SaveMark& mark) {
   const Path file = path();
   mark_ = base_ = mark;
   saved_ = saved;
-  identity_ = identity_of(file);
+  identity_ = status_of_file(file);
   Document last;
   std::int64_t handed = 0;
   {
@@ -341,7 +333,7 @@ void Session::after_save(const Document& saved, const SaveMark& mark) {
   } catch (const std::exception& error) {
     message = error.what();
   }
-  identity_ = identity_of(file);
+  identity_ = status_of_file(file);
   if (all_saved || message.empty()) {
     const std::lock_guard lock(state_);
     written_ = std::max(written_, handed);

@@ -85,13 +85,6 @@ class Session {
 
  private:
   explicit Session(SessionSettings settings);
-  struct FileIdentity {
-    std::uint64_t device = 0, inode = 0;
-    std::int64_t size = 0, seconds = 0, nanoseconds = 0;
-    bool operator==(const FileIdentity&) const = default;
-  };
-  static std::optional<FileIdentity> identity_of(const Path& path);
-
   // Call these functions with disk_ locked.
   bool journal_in_use() const;
   void begin_journal(const Document* document, const std::string& label);
@@ -131,7 +124,7 @@ class Session {
   std::optional<Recoverable> leftover_;
   std::optional<SaveMark> base_;  // the save whose chunks the journal omits
   std::optional<SaveMark> mark_;  // the mark of this session's last save
-  std::optional<FileIdentity> identity_;
+  std::optional<FileStatus> identity_;
   std::int64_t fresh_bytes_ = 0;  // size of the current journal when it was started, bytes
   Document saved_;
   DocumentWriter save_writer_, journal_writer_;

@@ -3,31 +3,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sched.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
-#include "core/base/spawn.h"
+#include "core/platform/child_program.h"
+#include "core/platform/pipe.h"
+#include "core/platform/process.h"
+#include "core/platform/terminal.h"
 
 namespace limber {
 
@@ -47,86 +39,24 @@ constexpr double kLeastWork = .001;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// A pipe whose ends are not inherited by the programs that this process starts.
-struct Pipe {
-  int read_end = -1, write_end = -1;
-  Pipe() {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw Error("a worker cannot be started", "pipe", std::strerror(errno));
-    read_end = ends[0];
-    write_end = ends[1];
-    ::fcntl(read_end, F_SETFL, O_NONBLOCK);
-  }
-  ~Pipe() {
-    close_write();
-    if (read_end >= 0) ::close(read_end);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_write() {
-    if (write_end >= 0) ::close(std::exchange(write_end, -1));
-  }
-  // Calls take(bytes, size) with the bytes that can be read now. Returns false at the end of the stream.
-  template <class Take>
-  bool drain(const Take& take) const {
-    std::array<char, 1 << 14> block;
-    for (;;) {
-      const ssize_t got = ::read(read_end, block.data(), block.size());
-      if (got > 0) take(block.data(), static_cast<std::size_t>(got));
-      else if (got == 0) return false;
-      else if (errno != EINTR) return errno == EAGAIN;
-    }
-  }
-};
-
-void bury(pid_t process) {
-  while (::waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
-  }
+Pipe pipe_from_worker() {
+  std::error_code error;
+  Pipe pipe = make_pipe(error);
+  if (error) throw Error("a worker cannot be started", "pipe", error.message());
+  return pipe;
 }
 
-// The worker process. It has a process group of its own, so that its children end with it. The destructor kills the
-// worker without waiting. A worker at idle priority can take long to free its memory after the kill, so another thread
-// waits for its end.
-class Process {
- public:
-  Process(const Path& program, const std::vector<std::string>& arguments, const Pipe& out, const Pipe& err) {
-    std::vector<std::string> words{"limber"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    const Streams streams{.out = out.write_end, .err = err.write_end};
-    id_ = spawn(program, std::move(words), streams, Environment::Same, "a worker");
+// Calls take(bytes, size) with the bytes that can be read now. Closes the pipe at the end of the stream.
+template <class Take>
+void drain(Pipe& pipe, const Take& take) {
+  std::array<char, 1 << 14> block;
+  while (pipe.read_end.is_open()) {
+    const std::ptrdiff_t got = read_some(pipe.read_end, block.data(), block.size());
+    if (got < 0) return;
+    if (got > 0) take(block.data(), static_cast<std::size_t>(got));
+    else pipe.read_end.close();
   }
-  ~Process() {
-    if (ended_) return;
-    send(SIGKILL);
-    try {
-      std::thread(bury, id_).detach();
-    } catch (const std::system_error&) {
-      bury(id_);
-    }
-  }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  void send(int signal) const { ::kill(-id_, signal); }
-  // Returns true if the worker has ended. If so, kills the processes that it left in its group, before the system can
-  // reuse the worker's process id.
-  bool has_ended() {
-    siginfo_t info{};
-    if (ended_ || ::waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
-        info.si_pid != id_)
-      return ended_;
-    send(SIGKILL);
-    while (::waitpid(id_, &status_, 0) < 0 && errno == EINTR) {
-    }
-    return ended_ = true;
-  }
-  int status() const { return status_; }
-
- private:
-  pid_t id_ = -1;
-  int status_ = 0;
-  bool ended_ = false;
-};
+}
 
 // Reads the lines that the worker writes to its error stream.
 class Listener {
@@ -209,11 +139,11 @@ Error relay(const std::string& line, const Path& job) {
   return {line.substr(0, first), line.substr(first + 2, last - first - 2), line.substr(last + 2)};
 }
 
-Error death(int signal, const Path& job) {
-  if (signal == SIGKILL)
+Error death(const ProgramEnd& end, const Path& job) {
+  if (end.was_killed())
     return {"the worker was ended by the system, most likely for lack of memory", job.string(),
             "use a coarser spacing, or close other programs"};
-  return {"the worker crashed", job.string() + ", " + ::strsignal(signal),
+  return {"the worker crashed", job.string() + ", " + end.signal_text(),
           "try other settings, and please report what you asked for"};
 }
 
@@ -221,17 +151,19 @@ Error death(int signal, const Path& job) {
 
 WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSettings& settings) {
   if (progress.cancelled()) throw Cancelled();
-  std::vector<std::string> arguments{"job",  job_file.string(), "--progress",
-                                     "json", "--parent",        std::to_string(::getpid())};
+  std::vector<std::string> words{"limber", "job",      job_file.string(),           "--progress",
+                                 "json",   "--parent", std::to_string(process_id())};
   if (settings.memory_limit_mb > 0)
-    arguments.insert(arguments.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
+    words.insert(words.end(), {"--memory-limit", std::to_string(settings.memory_limit_mb)});
+  if (settings.yields) words.push_back("--yield");
 
-  if (settings.yields) arguments.push_back("--yield");
-
-  Pipe out, err;
-  Process process(settings.program, arguments, out, err);
-  out.close_write();
-  err.close_write();
+  Pipe out = pipe_from_worker(), err = pipe_from_worker();
+  std::error_code error;
+  const Streams streams{.out = &out.write_end, .err = &err.write_end};
+  ChildProgram process(settings.program, std::move(words), streams, Environment::Same, error);
+  if (error) throw Error("a worker cannot be started", settings.program.string(), error.message());
+  out.write_end.close();
+  err.write_end.close();
 
   WorkerOutput output;
   Listener listener(progress, settings.on_progress);
@@ -243,12 +175,10 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   enum class Stop { None, Cancel, Time, Silence } stop = Stop::None;
   const auto started = Clock::now();
   Clock::time_point asked, killed;
-  bool out_open = true, err_open = true;
   while (!process.has_ended()) {
-    pollfd ends[2] = {{out_open ? out.read_end : -1, POLLIN, 0}, {err_open ? err.read_end : -1, POLLIN, 0}};
-    ::poll(ends, 2, stop == Stop::None ? kPollMilliseconds : kEndingMilliseconds);
-    if (out_open && ends[0].revents) out_open = out.drain(take_out);
-    if (err_open && ends[1].revents) err_open = err.drain(take_err);
+    wait_to_read({&out.read_end, &err.read_end}, stop == Stop::None ? kPollMilliseconds : kEndingMilliseconds);
+    drain(out, take_out);
+    drain(err, take_err);
     if (stop == Stop::None) {
       if (progress.cancelled()) stop = Stop::Cancel;
       const double silence = listener.silence(settings.silence_shown);
@@ -256,16 +186,16 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
       if (settings.time_limit > 0 && seconds_since(started) > settings.time_limit) stop = Stop::Time;
       if (stop == Stop::None) continue;
       asked = Clock::now();
-      process.send(SIGTERM);
+      process.ask_to_end();
     } else if (killed == Clock::time_point() && seconds_since(asked) > settings.patience) {
       killed = Clock::now();
-      process.send(SIGKILL);
+      process.kill();
     } else if (killed != Clock::time_point() && seconds_since(killed) > kDying) {
       break;
     }
   }
-  out.drain(take_out);
-  err.drain(take_err);
+  drain(out, take_out);
+  drain(err, take_err);
   output.warnings = std::move(listener.warnings);
 
   if (stop == Stop::Cancel || progress.cancelled()) throw Cancelled();
@@ -276,11 +206,11 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
     throw Error("the worker stopped answering and was ended after " +
                     std::to_string(static_cast<long>(settings.silence_limit)) + " s",
                 job_file.string(), "run it again; if that happens again use a coarser spacing, and check the disk");
-  const int status = process.status();
-  if (WIFSIGNALED(status)) throw death(WTERMSIG(status), job_file);
-  if (WEXITSTATUS(status) == 3) throw Cancelled();
-  output.pose_reached = WEXITSTATUS(status) != 4;
-  if (WEXITSTATUS(status) != 0 && output.pose_reached) throw relay(listener.complaint, job_file);
+  const ProgramEnd& end = process.end();
+  if (end.by_signal()) throw death(end, job_file);
+  if (end.exit_code == 3) throw Cancelled();
+  output.pose_reached = end.exit_code != 4;
+  if (end.exit_code != 0 && output.pose_reached) throw relay(listener.complaint, job_file);
   return output;
 }
 
@@ -294,14 +224,9 @@ Heartbeat::Heartbeat() : beating_(std::make_unique<Beating>()) {
   beating_->thread = std::jthread([beating = beating_.get()](const std::stop_token& stop) {
     std::unique_lock lock(beating->mutex);
     while (!beating->changed.wait_for(lock, stop, kBeat, [&] { return stop.stop_requested(); })) {
-      timespec spent{};
-      ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
       char line[64];
-      const int size = std::snprintf(line, sizeof line, "{\"processor_seconds\": %lld.%06ld}\n",
-                                     static_cast<long long>(spent.tv_sec), spent.tv_nsec / 1000);
-      // Writes the line with one system call and not through a stream: a child of this process may hold the stream's
-      // lock.
-      if (::write(STDERR_FILENO, line, static_cast<std::size_t>(size)) < 0 && errno != EINTR) return;
+      std::snprintf(line, sizeof line, "{\"processor_seconds\": %.6f}\n", own_cpu_seconds());
+      if (!write_error_stream(line)) return;
     }
   });
 }
@@ -312,20 +237,11 @@ Heartbeat::~Heartbeat() {
 }
 
 void become_worker(std::int64_t memory_limit_mb, bool yields, int parent) {
-  if (parent > 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) std::_Exit(3);  // the parent ended before prctl was called
-  }
-  if (yields) {
-    const sched_param none{};
-    if (::sched_setscheduler(0, SCHED_IDLE, &none) != 0) ::setpriority(PRIO_PROCESS, 0, 19);
-  }
-  if (memory_limit_mb > 0) {
-    const rlim_t bytes = static_cast<rlim_t>(memory_limit_mb) << 20;
-    const rlimit limit{bytes, bytes};
-    if (::setrlimit(RLIMIT_AS, &limit) != 0)
-      throw Error("the memory limit cannot be set", std::to_string(memory_limit_mb) + " MB", std::strerror(errno));
-  }
+  if (parent > 0 && !end_with_parent(parent)) std::_Exit(3);
+  if (yields) yield_to_other_programs();
+  if (memory_limit_mb <= 0) return;
+  if (const std::error_code error = limit_memory(memory_limit_mb << 20))
+    throw Error("the memory limit cannot be set", std::to_string(memory_limit_mb) + " MB", error.message());
 }
 
 }  // namespace limber

@@ -18,6 +18,7 @@
 
 #include "core/base/file.h"
 #include "core/base/progress.h"
+#include "core/platform/module.h"
 
 namespace limber {
 
@@ -37,7 +38,7 @@ struct WorkerSettings {
   double silence_limit = 600;        // seconds without a sign of work until the worker is ended; 0: never
   double patience = 0.05;            // seconds between the request to end and killing the worker
   bool yields = false;               // true: the worker runs at idle priority
-  Path program = "/proc/self/exe";
+  Path program = running_program();
   std::function<void(const WorkerProgress&)> on_progress;  // called in run_worker's thread for each progress line
 };
 

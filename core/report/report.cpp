@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <ostream>
 
-#include <sys/resource.h>
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/platform/process.h"
 #include "core/report/quality_gates.h"
 #include "core/rig/joint_limits.h"
 #include "core/rig/joint_names.h"
@@ -362,11 +362,7 @@ std::vector<std::string> failed_gates(const Report& report) {
 
 InputFile describe_input(const Path& path) { return {path.string(), sha256_of_file(path)}; }
 
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;  // Linux gives ru_maxrss in units of 1024 bytes
-}
+double peak_memory_mb() { return static_cast<double>(peak_memory()) / 1e6; }
 
 std::string to_json(const Report& report) {
   Json json{{"schema", "limber-report/1"}, {"version", LIMBER_VERSION}};

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 
 namespace limber {
 

@@ -10,6 +10,7 @@
 
 #include "core/batch/computing_sources.h"
 #include "core/batch/machine.h"
+#include "core/platform/local_time.h"
 #include "core/study/charts.h"
 #include "core/study/methods_text.h"
 #include "core/study/page_style.h"
@@ -767,9 +768,7 @@ class Page {
 }  // namespace
 
 std::string date_text() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  ::localtime_r(&now, &local);
+  const std::tm local = local_time(std::time(nullptr));
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local);
   return text;

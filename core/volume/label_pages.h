@@ -4,7 +4,7 @@
 // whole body keeps small pages: with these, air that is only read takes no memory.
 #pragma once
 
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 #include "core/volume/label_volume.h"
 
 namespace limber {

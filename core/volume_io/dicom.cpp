@@ -6,11 +6,9 @@
 #include <cstring>
 #include <map>
 
-#include <dlfcn.h>
-
 #include "core/base/error.h"
-#include "core/base/module.h"
 #include "core/base/text_parse.h"
+#include "core/platform/module.h"
 #include "core/volume_io/dicom_codec.h"
 
 namespace limber {
@@ -55,8 +53,8 @@ const Codec& loaded_codec() {
     void* module = open_module("limber_dicom");
     Codec functions{nullptr, nullptr};
     if (!module) return functions;
-    functions.elements = reinterpret_cast<decltype(&limber_dicom_elements)>(::dlsym(module, "limber_dicom_elements"));
-    functions.pixels = reinterpret_cast<decltype(&limber_dicom_pixels)>(::dlsym(module, "limber_dicom_pixels"));
+    functions.elements = reinterpret_cast<decltype(&limber_dicom_elements)>(symbol_of(module, "limber_dicom_elements"));
+    functions.pixels = reinterpret_cast<decltype(&limber_dicom_pixels)>(symbol_of(module, "limber_dicom_pixels"));
     return functions;
   }();
   return loaded;
@@ -95,6 +93,12 @@ std::size_t memory_for(const PlainFile& file, std::size_t pixel_bytes) {
   return kCodecMemory + 4 * static_cast<std::size_t>(file.size()) + 16 * pixel_bytes;
 }
 
+LimberDicomFile file_for_codec(const PlainFile& file) {
+  return {&file, file.size(), [](const void* context, std::int64_t offset, char* to, std::size_t size) {
+            return static_cast<const PlainFile*>(context)->read_at(offset, to, size);
+          }};
+}
+
 // Holds the data elements of a DICOM header, each of which can be read as text or as a 16-bit number.
 class Elements {
   static constexpr std::size_t kLongest = 1024;  // size of the largest element that is kept, bytes
@@ -105,7 +109,8 @@ class Elements {
                          std::size_t size) {
       if (size <= kLongest) static_cast<Elements*>(context)->values_[{group, element}].assign(bytes, size);
     };
-    if (codec(path).elements(file.descriptor(), keep, this) != 0)
+    const LimberDicomFile read = file_for_codec(file);
+    if (codec(path).elements(&read, keep, this) != 0)
       throw Error("the DICOM header is damaged", path.string(), "export the series again");
   }
 
@@ -270,7 +275,8 @@ class DicomSource final : public VoxelSource {
     const PlainFile file = files_->open_header(slice.index);
     files_->expect_memory(memory_for(file, bytes));
     buffer_.resize(bytes);
-    if (codec(slice.path).pixels(file.descriptor(), buffer_.data(), bytes) != 0)
+    const LimberDicomFile read = file_for_codec(file);
+    if (codec(slice.path).pixels(&read, buffer_.data(), bytes) != 0)
       throw Error("the pixels of the DICOM image are missing or damaged", slice.path.string(),
                   "export the series again");
     if (scale_) to_float(slice);

@@ -9,27 +9,25 @@
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
 #include <gdcmTrace.h>
-#include <unistd.h>
 
 namespace {
-// A stream over an open file, beginning at the file's first byte. The file descriptor's own read position does not
-// change.
+// A stream over an open file, beginning at the file's first byte.
 class FileBuffer final : public std::streambuf {
  public:
-  explicit FileBuffer(int descriptor) : descriptor_(descriptor), size_(::lseek(descriptor, 0, SEEK_END)) {}
+  explicit FileBuffer(const LimberDicomFile& file) : file_(file) {}
 
  protected:
   int_type underflow() override {
-    const ssize_t got = ::pread(descriptor_, buffer_.data(), buffer_.size(), end_);
-    if (got <= 0) return traits_type::eof();
-    end_ += got;
+    const std::size_t got = file_.read_at(file_.context, end_, buffer_.data(), buffer_.size());
+    if (got == 0) return traits_type::eof();
+    end_ += static_cast<off_type>(got);
     setg(buffer_.data(), buffer_.data(), buffer_.data() + got);
     return traits_type::to_int_type(buffer_[0]);
   }
   pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
     const off_type now = end_ - (egptr() - gptr());
-    const off_type place = offset + (from == std::ios_base::cur ? now : from == std::ios_base::end ? size_ : 0);
-    if (place < 0 || place > size_) return pos_type(off_type(-1));
+    const off_type place = offset + (from == std::ios_base::cur ? now : from == std::ios_base::end ? file_.size : 0);
+    if (place < 0 || place > file_.size) return pos_type(off_type(-1));
     if (place != now) {
       setg(nullptr, nullptr, nullptr);
       end_ = place;
@@ -41,8 +39,7 @@ class FileBuffer final : public std::streambuf {
   }
 
  private:
-  int descriptor_;
-  off_type size_;
+  const LimberDicomFile& file_;
   off_type end_ = 0;  // file offset of the end of the buffered bytes
   std::array<char, 1 << 16> buffer_;
 };
@@ -54,9 +51,9 @@ void be_silent() {
 }
 }  // namespace
 
-int limber_dicom_elements(int descriptor, LimberDicomElement visit, void* context) try {
+int limber_dicom_elements(const LimberDicomFile* opened, LimberDicomElement visit, void* context) try {
   be_silent();
-  FileBuffer buffer(descriptor);
+  FileBuffer buffer(*opened);
   std::istream file(&buffer);
   gdcm::Reader reader;
   reader.SetStream(file);
@@ -71,9 +68,9 @@ int limber_dicom_elements(int descriptor, LimberDicomElement visit, void* contex
   return 1;
 }
 
-int limber_dicom_pixels(int descriptor, char* pixels, std::size_t size) try {
+int limber_dicom_pixels(const LimberDicomFile* opened, char* pixels, std::size_t size) try {
   be_silent();
-  FileBuffer buffer(descriptor);
+  FileBuffer buffer(*opened);
   std::istream file(&buffer);
   gdcm::ImageReader reader;
   reader.SetStream(file);

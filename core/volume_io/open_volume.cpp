@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/module.h"
 #include "core/base/text_parse.h"
+#include "core/platform/module.h"
 #include "core/volume_io/dicom.h"
 #include "core/volume_io/nrrd.h"
 #include "core/volume_io/vector_header.h"

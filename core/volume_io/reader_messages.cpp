@@ -105,11 +105,11 @@ void check(const VolumeHeader& header, const std::string& where, const ByteReade
 
 std::string bytes_of(const Order& order) {
   ByteWriter out;
-  out.text(order.location.path.native());
+  out.text(order.location.path.string());
   out.flag(order.location.is_dicom);
   out.put(static_cast<std::uint8_t>(order.holding));
   out.count(order.location.headers.size());
-  for (const Path& header : order.location.headers) out.text(header.native());
+  for (const Path& header : order.location.headers) out.text(header.string());
   return out.take();
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/bytes.h"
-#include "core/base/sandbox.h"
+#include "core/platform/sandbox.h"
 #include "core/volume_io/volume_header.h"
 #include "core/volume_io/volume_location.h"
 #include "core/volume_io/voxel_source.h"

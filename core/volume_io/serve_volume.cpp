@@ -2,19 +2,15 @@
 #include "core/volume_io/serve_volume.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <new>
-
-#include <sys/prctl.h>
-#include <sys/socket.h>
-#include <sys/uio.h>
-#include <unistd.h>
+#include <utility>
 
 #include "core/base/error.h"
+#include "core/platform/pipe.h"
+#include "core/platform/process.h"
 #include "core/volume_io/dicom.h"
 #include "core/volume_io/reader_messages.h"
 
@@ -23,66 +19,28 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 18;  // voxel bytes of one message, so few that they stay in a cache
-constexpr int kOrders = STDIN_FILENO, kAnswers = STDOUT_FILENO;
 
 // Ends this process. It is called when the channel to the program is closed, since nobody then reads an answer.
-[[noreturn]] void leave() { ::_exit(1); }
+[[noreturn]] void leave() { std::_Exit(1); }
 
-void write_all(iovec* parts, int count) {
-  while (count > 0) {
-    ssize_t done = ::writev(kAnswers, parts, count);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) leave();
-    for (; count > 0 && static_cast<std::size_t>(done) >= parts->iov_len; ++parts, --count)
-      done -= static_cast<ssize_t>(parts->iov_len);
-    if (count == 0) return;
-    parts->iov_base = static_cast<char*>(parts->iov_base) + done;
-    parts->iov_len -= static_cast<std::size_t>(done);
-  }
+void say(Message kind, std::string_view bytes) {
+  const MessageHead head{kind, 0, bytes.size()};
+  if (!write_to_parent({reinterpret_cast<const char*>(&head), sizeof head}, bytes)) leave();
 }
-
-void say(Message kind, const void* bytes, std::size_t size) {
-  MessageHead head{kind, 0, size};
-  iovec parts[2] = {{&head, sizeof head}, {const_cast<void*>(bytes), size}};
-  write_all(parts, size > 0 ? 2 : 1);
-}
-void say(Message kind, std::string_view text) { say(kind, text.data(), text.size()); }
 
 struct Heard {
   Message kind;
   std::string bytes;
-  int file = -1;  // descriptor of the file that came with the message; -1: none
+  OpenFile file;  // the file that came with the message, if any
 };
-
-void read_all(void* to, std::size_t size) {
-  auto* out = static_cast<char*>(to);
-  while (size > 0) {
-    const ssize_t got = ::read(kOrders, out, size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) leave();
-    out += got;
-    size -= static_cast<std::size_t>(got);
-  }
-}
 
 Heard hear() {
   MessageHead head{};
-  iovec part{&head, sizeof head};
-  alignas(cmsghdr) char room[CMSG_SPACE(sizeof(int))]{};
-  msghdr message{};
-  message.msg_iov = &part;
-  message.msg_iovlen = 1;
-  message.msg_control = room;
-  message.msg_controllen = sizeof room;
-  const ssize_t got = ::recvmsg(kOrders, &message, MSG_CMSG_CLOEXEC);
-  if (got <= 0) leave();
   Heard heard;
-  if (const cmsghdr* control = CMSG_FIRSTHDR(&message); control && control->cmsg_type == SCM_RIGHTS)
-    std::memcpy(&heard.file, CMSG_DATA(control), sizeof heard.file);
-  read_all(reinterpret_cast<char*>(&head) + got, sizeof head - static_cast<std::size_t>(got));
+  if (!read_from_parent(&head, sizeof head, &heard.file)) leave();
   heard.kind = head.kind;
   heard.bytes.resize(head.size);
-  read_all(heard.bytes.data(), head.size);
+  if (!read_from_parent(heard.bytes.data(), head.size, nullptr)) leave();
   return heard;
 }
 
@@ -110,11 +68,11 @@ class AskedFiles final : public VolumeFiles {
     if (heard.kind == Message::Refused) throw std::runtime_error(heard.bytes);
     return heard;
   }
-  static PlainFile file_of(const Heard& heard) {
+  static PlainFile file_of(Heard heard) {
     std::int64_t size = 0;
-    if (heard.file < 0 || heard.bytes.size() != sizeof size) leave();
+    if (!heard.file.is_open() || heard.bytes.size() != sizeof size) leave();
     std::memcpy(&size, heard.bytes.data(), sizeof size);
-    return {heard.file, size};
+    return {std::move(heard.file), size};
   }
 
   static constexpr std::size_t kBookkeeping = 64
@@ -130,24 +88,23 @@ void deliver(OpenedVolume opened) {
   for (std::int64_t done = 0; done < bytes;) {
     const auto some = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, bytes - done));
     opened.voxels->read(chunk.data(), some);
-    say(Message::Voxels, chunk.data(), some);
+    say(Message::Voxels, {chunk.data(), some});
     done += static_cast<std::int64_t>(some);
   }
   say(Message::End, bytes_of(opened.voxels->finish()));
 }
 
 // Makes the system kill this process when the program ends, and closes all inherited files except the standard streams.
-void leave_all_behind(pid_t program) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != program) leave();
-  ::closefrom(STDERR_FILENO + 1);
+void leave_all_behind(std::int64_t program) {
+  if (!end_with_parent(program)) leave();
+  close_inherited_files();
 }
 
 }  // namespace
 
 int serve_volume(int argc, char** argv, const OpenFromFiles& open) {
   if (argc < 3) return 2;
-  leave_all_behind(static_cast<pid_t>(std::atol(argv[1])));
+  leave_all_behind(std::atol(argv[1]));
   SandboxSettings settings;
   settings.memory_bytes = settings.most_memory = std::strtoull(argv[2], nullptr, 10);
   if (argc > 3) {
@@ -164,7 +121,7 @@ int serve_volume(int argc, char** argv, const OpenFromFiles& open) {
   } catch (const std::exception& error) {
     say(Message::Failed, error.what());
   }
-  ::_exit(0);
+  std::_Exit(0);
 }
 
 }  // namespace limber

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/memory.h"
+#include "core/platform/memory.h"
 #include "core/volume_io/voxel_source.h"
 
 namespace limber {

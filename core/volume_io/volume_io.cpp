@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "core/base/error.h"
-#include "core/base/memory.h"
-#include "core/base/memory_pages.h"
 #include "core/base/text_parse.h"
+#include "core/platform/memory.h"
+#include "core/platform/memory_pages.h"
 #include "core/volume/label_pages.h"
 #include "core/volume/neighbour_changes.h"
 #include "core/volume_io/dicom.h"

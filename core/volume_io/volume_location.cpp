@@ -2,12 +2,6 @@
 #include "core/volume_io/volume_location.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/base/text_parse.h"
@@ -18,31 +12,12 @@ namespace limber {
 namespace fs = std::filesystem;
 
 PlainFile::PlainFile(const Path& path) {
-  // O_NONBLOCK is needed because opening a pipe would otherwise wait for a writer.
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
-  struct stat status {};
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    ::close(descriptor_);
-    throw Error("this is not a plain file", path.string(), "name a file on disk");
-  }
-  size_ = status.st_size;
-}
-
-PlainFile::~PlainFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-std::size_t PlainFile::read_at(std::int64_t offset, void* to, std::size_t bytes) const {
-  std::size_t done = 0;
-  while (done < bytes) {
-    const ssize_t got =
-        ::pread(descriptor_, static_cast<char*>(to) + done, bytes - done, offset + static_cast<std::int64_t>(done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  return done;
+  std::error_code error;
+  file_ = OpenFile(path, Opening::Read, error);
+  if (error) throw Error("the file cannot be opened", path.string(), error.message());
+  const auto status = file_.status();
+  if (!status || !status->is_regular) throw Error("this is not a plain file", path.string(), "name a file on disk");
+  size_ = status->size;
 }
 
 std::string first_bytes(const PlainFile& file, std::int64_t most) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/platform/open_file.h"
 
 namespace limber {
 
@@ -18,21 +19,17 @@ namespace limber {
 class PlainFile {
  public:
   explicit PlainFile(const Path& path);  // throws Error
-  PlainFile(int descriptor, std::int64_t size)
-      : descriptor_(descriptor),
-        size_(size) {}  // takes ownership of the descriptor
-  ~PlainFile();
-  PlainFile(PlainFile&& other) noexcept : descriptor_(other.descriptor_), size_(other.size_) { other.descriptor_ = -1; }
-  PlainFile(const PlainFile&) = delete;
-  PlainFile& operator=(const PlainFile&) = delete;
+  PlainFile(OpenFile file, std::int64_t size) : file_(std::move(file)), size_(size) {}
 
-  int descriptor() const { return descriptor_; }
+  const OpenFile& file() const { return file_; }
   std::int64_t size() const { return size_; }  // bytes
   // Reads `bytes` bytes from `offset` on and returns how many bytes were read. These are fewer only at the file's end.
-  std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const;
+  std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const {
+    return file_.read_at(offset, to, bytes);
+  }
 
  private:
-  int descriptor_ = -1;
+  OpenFile file_;
   std::int64_t size_ = 0;
 };
 

@@ -2,23 +2,17 @@
 #include "core/volume_io/volume_reader.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
-#include <ctime>
 #include <optional>
+#include <thread>
 #include <utility>
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include "core/base/error.h"
-#include "core/base/module.h"
-#include "core/base/spawn.h"
+#include "core/platform/child_program.h"
+#include "core/platform/module.h"
+#include "core/platform/pipe.h"
+#include "core/platform/process.h"
 #include "core/volume_io/reader_messages.h"
 
 namespace limber {
@@ -33,23 +27,6 @@ constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a head
 constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
 
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  ~Descriptor() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-Error no_reader(const Path& program) {
-  return {"the reader of volumes cannot be started", program.string(), std::strerror(errno)};
-}
-
 // Converts the text of an Error, "what: where: what to do", back to an Error.
 Error error_from(const std::string& text, const std::string& where) {
   const std::size_t first = text.find(": "), last = text.rfind(": ");
@@ -57,83 +34,54 @@ Error error_from(const std::string& text, const std::string& where) {
   return {text.substr(0, first), text.substr(first + 2, last - first - 2), text.substr(last + 2)};
 }
 
-// The two ends of a channel between this program and the reader process: `ours` is this program's end and never blocks,
-// `its` is the reader's end.
-struct Ends {
-  Descriptor ours, its;
-};
-
-// Creates the channel for messages to the reader. The channel is a socket, because descriptors of open files are sent
-// with the messages.
-Ends make_orders(const Path& program) {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw no_reader(program);
-  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  return {Descriptor(ends[0]), Descriptor(ends[1])};
-}
-
-Ends make_answers(const Path& program) {
-  int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) throw no_reader(program);
-  ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  ::fcntl(ends[0], F_SETPIPE_SZ, kPipeBytes);
-  return {Descriptor(ends[0]), Descriptor(ends[1])};
+// Throws Error unless a part of the reader's process was made.
+void require_reader(const std::error_code& error, const Path& program) {
+  if (error) throw Error("the reader of volumes cannot be started", program.string(), error.message());
 }
 
 // Owns the reader's process and the program's ends of its channels. The destructor kills the process.
 class ReaderProcess {
  public:
-  ReaderProcess(const VolumeLocation& location, const ReaderSettings& settings)
-      : ReaderProcess(make_orders(settings.program), make_answers(settings.program), location, settings) {}
-  ~ReaderProcess() { end(); }
+  ReaderProcess(const VolumeLocation& location, const ReaderSettings& settings) {
+    std::error_code error;
+    FileChannel orders = make_file_channel(error);
+    require_reader(error, settings.program);
+    Pipe answers = make_pipe(error, kPipeBytes);
+    require_reader(error, settings.program);
+    std::vector<std::string> words{kReaderName, std::to_string(process_id()), std::to_string(settings.memory_bytes)};
+    if (location.is_dicom) words.push_back("dicom");
+    const Streams streams{.in = &orders.its, .out = &answers.write_end};
+    process_.emplace(settings.program, std::move(words), streams, Environment::Empty, error);
+    require_reader(error, settings.program);
+    orders_ = std::move(orders.ours);
+    answers_ = std::move(answers.read_end);
+  }
+  ~ReaderProcess() {
+    if (process_) process_->kill_and_wait();
+  }
   ReaderProcess(const ReaderProcess&) = delete;
   ReaderProcess& operator=(const ReaderProcess&) = delete;
 
-  int orders() const { return orders_.get(); }
-  int answers() const { return answers_.get(); }
+  const Handle& orders() const { return orders_; }
+  const Handle& answers() const { return answers_; }
 
   // Returns the processor time that the reader's process has used, seconds; 0 when the process has ended.
-  double processor_seconds() const {
-    clockid_t clock;
-    timespec time{};
-    if (::clock_getcpuclockid(id_, &clock) != 0 || ::clock_gettime(clock, &time) != 0) return 0;
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  }
+  double processor_seconds() const { return process_->processor_seconds(); }
 
-  // Returns the exit status of the reader's process. A reader that has closed its pipe should end soon, so this
-  // function waits up to 0.1 s. Returns nothing when the process still runs.
-  std::optional<int> ended_status() {
+  // Returns how the reader's process ended. A reader that has closed its pipe should end soon, so this function waits
+  // up to 0.1 s. Returns nothing when the process still runs.
+  std::optional<ProgramEnd> end() {
     constexpr int kMoments = 100;  // upper limit on the number of waits, each of one millisecond
-    for (int i = 0; id_ > 0 && i < kMoments; ++i) {
-      int status = 0;
-      if (::waitpid(id_, &status, WNOHANG) == id_) {
-        id_ = -1;
-        return status;
-      }
-      ::usleep(1000);
+    for (int i = 0; i < kMoments; ++i) {
+      if (process_->has_ended()) return process_->end();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return std::nullopt;
   }
 
  private:
-  ReaderProcess(Ends orders, Ends answers, const VolumeLocation& location, const ReaderSettings& settings)
-      : orders_(std::move(orders.ours)),
-        answers_(std::move(answers.ours)) {
-    std::vector<std::string> words{kReaderName, std::to_string(::getpid()), std::to_string(settings.memory_bytes)};
-    if (location.is_dicom) words.push_back("dicom");
-    const Streams streams{.in = orders.its.get(), .out = answers.its.get()};
-    id_ = spawn(settings.program, std::move(words), streams, Environment::Empty, "the reader of volumes");
-  }
-  void end() {
-    if (id_ <= 0) return;
-    ::kill(-id_, SIGKILL);  // a negative ID means the whole process group
-    while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
-    }
-    id_ = -1;
-  }
-
-  Descriptor orders_, answers_;
-  pid_t id_ = -1;
+  Handle orders_, answers_;
+  std::optional<ChildProgram> process_;
 };
 
 // Transfers bytes between the program and its reader. While it waits for the reader, it checks whether the user has
@@ -149,7 +97,7 @@ class Conversation {
   void read(void* to, std::size_t size) {
     auto* out = static_cast<char*>(to);
     while (size > 0) {
-      const ssize_t got = ::read(process_.answers(), out, size);
+      const std::ptrdiff_t got = read_some(process_.answers(), out, size);
       if (got > 0) {
         out += got;
         size -= static_cast<std::size_t>(got);
@@ -157,21 +105,22 @@ class Conversation {
       } else if (got == 0) {
         throw death();
       } else {
-        wait(process_.answers(), POLLIN);
+        on_wait(wait_to_read({&process_.answers()}, kAskMilliseconds));
       }
     }
   }
 
-  // Sends a message to the reader. `file` is the descriptor of an open file to send with it; -1: none.
-  void write(Message kind, std::string_view bytes, int file = -1) {
+  // Sends a message to the reader, and with it `file` unless it is nullptr.
+  void write(Message kind, std::string_view bytes, const OpenFile* file = nullptr) {
     const MessageHead head{kind, 0, bytes.size()};
     std::string all(reinterpret_cast<const char*>(&head), sizeof head);
     all += bytes;
     for (std::size_t done = 0; done < all.size();) {
-      const ssize_t sent = send_some(all.data() + done, all.size() - done, done == 0 ? file : -1);
+      const std::ptrdiff_t sent =
+          send_some(process_.orders(), std::string_view(all).substr(done), done == 0 ? file : nullptr);
       if (sent > 0) done += static_cast<std::size_t>(sent);
-      else if (errno == EPIPE || errno == ECONNRESET) throw death();
-      else wait(process_.orders(), POLLOUT);
+      else if (sent == 0) throw death();
+      else on_wait(wait_to_write(process_.orders(), kAskMilliseconds));
     }
   }
 
@@ -204,28 +153,10 @@ class Conversation {
   }
 
  private:
-  ssize_t send_some(const char* bytes, std::size_t size, int file) const {
-    iovec part{const_cast<char*>(bytes), size};
-    alignas(cmsghdr) char room[CMSG_SPACE(sizeof(int))]{};
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    if (file >= 0) {
-      message.msg_control = room;
-      message.msg_controllen = sizeof room;
-      cmsghdr* control = CMSG_FIRSTHDR(&message);
-      control->cmsg_level = SOL_SOCKET;
-      control->cmsg_type = SCM_RIGHTS;
-      control->cmsg_len = CMSG_LEN(sizeof(int));
-      std::memcpy(CMSG_DATA(control), &file, sizeof file);
-    }
-    return ::sendmsg(process_.orders(), &message, MSG_NOSIGNAL);
-  }
-
-  void wait(int descriptor, short event) {
+  // Call this function after each wait for the reader, with false when nothing arrived during the wait.
+  void on_wait(bool arrived) {
     if (progress_.cancelled()) throw Cancelled();
-    pollfd ready{descriptor, event, 0};
-    if (::poll(&ready, 1, kAskMilliseconds) == 0) watch();
+    if (!arrived) watch();
   }
 
   // Throws Error when the reader has sent nothing during `busy_seconds` of its processor time or `silent_seconds` of
@@ -250,20 +181,17 @@ class Conversation {
 
   // Returns the Error for a reader that closed its pipe before it had sent everything.
   Error death() {
-    const std::optional<int> ended = process_.ended_status();
-    if (!ended) return nonsense();
-    const int status = *ended, signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (signal == SIGKILL)
+    const std::optional<ProgramEnd> end = process_.end();
+    if (!end) return nonsense();
+    if (end->was_killed())
       return {"the file's reader was ended by the system, most likely for lack of memory", parsed_,
               "close other programs and try again"};
-    if (signal == 0 && WEXITSTATUS(status) == kNotLoaded)
+    if (!end->by_signal() && end->exit_code == kNotLoaded)
       return {"the reader of volumes cannot be started", settings_.program.string(),
               "a library that it needs is missing; install Limber again"};
-    if (signal == SIGXCPU) return {"the file made its reader take too much processor time", parsed_, kHarmful};
-    if (signal != 0)
-      return {"the file made its reader crash (" + std::string(::strsignal(signal)) + ")", parsed_, kHarmful};
-    return {"the file made its reader give up (exit code " + std::to_string(WEXITSTATUS(status)) + ")", parsed_,
-            kHarmful};
+    if (end->took_too_much_time()) return {"the file made its reader take too much processor time", parsed_, kHarmful};
+    if (end->by_signal()) return {"the file made its reader crash (" + end->signal_text() + ")", parsed_, kHarmful};
+    return {"the file made its reader give up (exit code " + std::to_string(end->exit_code) + ")", parsed_, kHarmful};
   }
 
   const ReaderSettings& settings_;
@@ -367,7 +295,7 @@ class ReaderVoxels final : public VoxelSource {
   void send(const PlainFile& file) {
     ByteWriter size;
     size.put(file.size());
-    talk_.write(Message::Opened, size.take(), file.descriptor());
+    talk_.write(Message::Opened, size.take(), &file.file());
   }
 
   const ReaderSettings settings_;

@@ -21,7 +21,7 @@
 #include <cstddef>
 
 #include "core/base/progress.h"
-#include "core/base/sandbox.h"
+#include "core/platform/sandbox.h"
 #include "core/volume_io/voxel_source.h"
 
 namespace limber {

@@ -3,11 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstring>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/base/text_parse.h"
@@ -22,12 +17,9 @@ constexpr std::size_t kChunkVoxels = 1 << 14;
 }  // namespace
 
 OutputFile::OutputFile(const Path& path) : path_(path) {
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail();
-}
-
-OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  std::error_code error;
+  file_ = OpenFile(path, Opening::Overwrite, error);
+  require_success(error);
 }
 
 void OutputFile::begin_deflate(Deflater::Wrap wrap) {
@@ -44,28 +36,19 @@ void OutputFile::end_deflate() {
 }
 
 void OutputFile::overwrite(std::int64_t place, const std::string& text) {
-  if (::pwrite(descriptor_, text.data(), text.size(), place) != static_cast<ssize_t>(text.size())) fail();
+  require_success(file_.write_at(place, text));
 }
 
-void OutputFile::close() {
-  const int descriptor = descriptor_;
-  descriptor_ = -1;
-  if (::close(descriptor) != 0) fail();
-}
+void OutputFile::close() { require_success(file_.close()); }
 
 void OutputFile::put(const void* bytes, std::size_t size) {
-  const char* from = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t done = ::write(descriptor_, from, size);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) fail();
-    from += done;
-    size -= static_cast<std::size_t>(done);
-    place_ += done;
-  }
+  require_success(file_.write({static_cast<const char*>(bytes), size}));
+  place_ += static_cast<std::int64_t>(size);
 }
 
-void OutputFile::fail() const { throw Error("the file cannot be written", path_.string(), std::strerror(errno)); }
+void OutputFile::require_success(const std::error_code& error) const {
+  if (error) throw Error("the file cannot be written", path_.string(), error.message());
+}
 
 void write_voxels(OutputFile& out, const Voxels& voxels) {
   const std::size_t size = static_cast<std::size_t>(size_of(voxels.type) * voxels.channels);

@@ -11,6 +11,7 @@
 
 #include "core/base/deflate.h"
 #include "core/base/file.h"
+#include "core/platform/open_file.h"
 #include "core/tissue/tissue_table.h"
 #include "core/volume_io/volume_header.h"
 
@@ -20,9 +21,6 @@ namespace limber {
 class OutputFile {
  public:
   explicit OutputFile(const Path& path);  // throws Error; so do all members that write
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
 
   void begin_deflate(Deflater::Wrap wrap);
   void write(const void* bytes, std::size_t size);
@@ -33,10 +31,10 @@ class OutputFile {
 
  private:
   void put(const void* bytes, std::size_t size);
-  [[noreturn]] void fail() const;
+  void require_success(const std::error_code& error) const;
 
   Path path_;
-  int descriptor_ = -1;
+  OpenFile file_;
   std::int64_t place_ = 0;
   std::optional<Deflater> deflater_;  // set between begin_deflate() and end_deflate()
 };

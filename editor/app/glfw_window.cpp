@@ -7,12 +7,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <epoxy/gl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/module.h"
+#include "core/platform/desktop.h"
 
 namespace limber::editor {
 
@@ -215,18 +212,7 @@ void Window::set_callbacks() {
                              [](GLFWwindow* w, int focused) { of(w).events.push(FocusChanged{focused == GLFW_TRUE}); });
 }
 
-// Opens the file by a shell that exits at once. The editor then neither waits for the opened program nor ends it.
-bool Window::open_file(const Path& path) {
-  const auto opener = find_program("xdg-open");
-  if (!opener) return false;
-  std::string program = "sh", option = "-c", script = "\"$0\" \"$1\" </dev/null >/dev/null 2>&1 &",
-              runs = opener->string(), name = std::filesystem::absolute(path).string();
-  char* arguments[] = {program.data(), option.data(), script.data(), runs.data(), name.data(), nullptr};
-  pid_t shell = 0;
-  int status = 1;
-  return ::posix_spawn(&shell, "/bin/sh", nullptr, nullptr, arguments, environ) == 0 &&
-         ::waitpid(shell, &status, 0) == shell && status == 0;
-}
+bool Window::open_file(const Path& path) { return open_in_default_program(path); }
 
 void Window::toggle_full_screen() {
   if (glfwGetWindowMonitor(window_)) {

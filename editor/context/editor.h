@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/named_files.h"
+#include "core/platform/module.h"
 #include "core/project/history.h"
 #include "core/project/job.h"
 #include "core/resample/deformation_method.h"
@@ -122,7 +123,7 @@ struct Editor : Ui {
   History history;
   Jobs jobs;
   std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // called when a job of this id ends
-  Path worker_program = "/proc/self/exe";                                   // the program that runs `limber job`
+  Path worker_program = running_program();                                  // the program that runs `limber job`
   bool workers_yield = true;              // true: worker processes run at low priority
   std::map<int, Task> tasks;              // the jobs that are background tasks, by id
   std::map<int, StepOfWork> step_of_job;  // workflow step in which a job was started, by the job's id

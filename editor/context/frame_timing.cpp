@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
+
+#include "core/platform/process.h"
 
 namespace limber::editor {
 
@@ -14,11 +15,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-double milliseconds_of_thread() {
-  timespec used{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) * 1e3 + static_cast<double>(used.tv_nsec) * 1e-6;
-}
+double milliseconds_of_thread() { return 1e3 * thread_cpu_seconds(); }
 
 std::string in_words(const FrameLog::Parts& parts) {
   std::string words;

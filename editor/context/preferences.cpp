@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/preferences.h"
 
-#include <cstdlib>
-
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/platform/desktop.h"
 #include "editor/ui/asset_path.h"
 
 namespace limber::editor {
@@ -19,10 +18,8 @@ constexpr std::uint64_t kLargestFile = 4 << 20;
 }  // namespace
 
 Path preferences_path() {
-  const char* config = std::getenv("XDG_CONFIG_HOME");
-  const char* home = std::getenv("HOME");
-  const Path base = config && *config ? Path(config) : Path(home ? home : ".") / ".config";
-  return base / "limber" / "preferences.json";
+  const Path folder = user_folder(UserFolder::Config);
+  return (folder.empty() ? Path(".config") : folder) / "limber" / "preferences.json";
 }
 
 Preferences read_preferences(const Path& path, std::string& problem) {

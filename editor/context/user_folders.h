@@ -19,6 +19,5 @@ Folders user_folders();
 
 // Returns the path as text. Inside the user's home it is shortened to the form "~/anatomy/arm.mha".
 std::string short_path(const Path& path);
-Path home_folder();  // "/" when there is none
 
 }  // namespace limber::editor

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/file_browser/bookmarks.h"
 
-#include <cstdlib>
-
+#include "core/platform/desktop.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
@@ -13,17 +12,11 @@ namespace {
 
 constexpr std::size_t kRecentFolders = 6;
 
-// Adds the disks and memory sticks that are mounted under /media, /run/media and /mnt, the folders where Linux desktops
-// mount them.
+// Adds the disks and memory sticks.
 void add_volumes(std::vector<Place>& places) {
-  const char* user = std::getenv("USER");
-  for (const Path& base : {user ? Path("/media") / user : Path("/media"),
-                           user ? Path("/run/media") / user : Path("/run/media"), Path("/mnt")}) {
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(base, error)) {
-      if (places.size() > 12) return;
-      if (entry.is_directory(error)) places.push_back({icon::kVolume, entry.path().filename().string(), entry.path()});
-    }
+  for (const Path& folder : mounted_folders()) {
+    if (places.size() > 12) return;
+    places.push_back({icon::kVolume, folder.filename().string(), folder});
   }
 }
 

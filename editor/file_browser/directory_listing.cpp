@@ -7,8 +7,8 @@
 #include <ctime>
 #include <utility>
 
-#include <sys/stat.h>
-
+#include "core/platform/file_system.h"
+#include "core/platform/local_time.h"
 #include "core/volume_io/dicom.h"
 
 namespace limber::editor {
@@ -38,11 +38,10 @@ bool may_be_dicom(const std::string& name) {
 
 DirectoryEntry entry_of(const fs::directory_entry& found) {
   DirectoryEntry entry{found.path().filename().string()};
-  struct stat status {};
-  if (::stat(found.path().c_str(), &status) == 0) {
-    entry.folder = S_ISDIR(status.st_mode);
-    entry.size = entry.folder ? 0 : static_cast<std::uint64_t>(status.st_size);
-    entry.time = status.st_mtim.tv_sec;
+  if (const auto status = status_of_file(found.path())) {
+    entry.folder = status->is_folder;
+    entry.size = entry.folder ? 0 : static_cast<std::uint64_t>(status->size);
+    entry.time = status->seconds;
   }
   return entry;
 }
@@ -186,13 +185,7 @@ std::string size_text(std::uint64_t bytes) {
 
 std::string time_text(std::int64_t time, std::int64_t now) {
   constexpr std::int64_t kDay = 24 * 3600;
-  const auto local = [](std::int64_t seconds) {
-    const std::time_t t = seconds;
-    std::tm parts{};
-    localtime_r(&t, &parts);
-    return parts;
-  };
-  const std::tm then = local(time), today = local(now), yesterday = local(now - kDay);
+  const std::tm then = local_time(time), today = local_time(now), yesterday = local_time(now - kDay);
   const auto same_day = [](const std::tm& a, const std::tm& b) {
     return a.tm_year == b.tm_year && a.tm_yday == b.tm_yday;
   };

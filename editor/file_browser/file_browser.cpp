@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include "core/base/named_files.h"
+#include "core/platform/desktop.h"
 #include "core/volume_io/volume_files.h"
 #include "editor/context/user_folders.h"
 #include "editor/file_browser/file_browser_dialog.h"

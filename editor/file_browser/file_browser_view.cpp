@@ -4,6 +4,7 @@
 
 #include <imgui_internal.h>
 
+#include "core/platform/desktop.h"
 #include "core/volume_io/volume_format.h"
 #include "editor/context/user_folders.h"
 #include "editor/dialogs/dialog.h"

@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/file_browser/temp_folder.h"
 
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/platform/file_system.h"
 
 namespace limber::editor {
 
 ScratchFolder::ScratchFolder(const std::string& inside) {
   std::error_code failure;
   const Path base = inside.empty() ? std::filesystem::temp_directory_path(failure) : Path(inside);
-  std::string name = (base / "limber-XXXXXX").string();
-  if (!::mkdtemp(name.data()))
+  path_ = make_unique_folder(base / "limber-", failure);
+  if (failure)
     throw Error("the scratch folder cannot be created", base.string(),
-                std::string(std::strerror(errno)) + ": select another one in the preferences");
-  path_ = name;
+                failure.message() + ": select another one in the preferences");
   unfinished_ = std::make_unique<Unfinished>(path_);
 }
 

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include <epoxy/gl.h>
-#include <sys/utsname.h>
 
+#include "core/platform/host.h"
 #include "editor/context/operator_button.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/screen/preferences_dialog.h"
@@ -149,13 +149,13 @@ std::unique_ptr<Dialog> open_keys_page() { return std::make_unique<KeysPage>(); 
 std::unique_ptr<Dialog> open_about_page() { return std::make_unique<AboutPage>(); }
 
 std::string system_facts(const Editor& editor) {
-  utsname system{};
-  ::uname(&system);
+  const SystemName system = system_name();
   const glm::ivec2 size = editor.host.size();
   char facts[1024];
   std::snprintf(facts, sizeof facts, "Limber %s\n%s %s %s, %u threads\nOpenGL %s\n%s\nWindow %d x %d, scale %.2f\n",
-                LIMBER_VERSION, system.sysname, system.release, system.machine, std::thread::hardware_concurrency(),
-                gl_text(GL_VERSION), gl_text(GL_RENDERER), size.x, size.y, static_cast<double>(editor.look.scale));
+                LIMBER_VERSION, system.name.c_str(), system.release.c_str(), system.architecture.c_str(),
+                std::thread::hardware_concurrency(), gl_text(GL_VERSION), gl_text(GL_RENDERER), size.x, size.y,
+                static_cast<double>(editor.look.scale));
   return facts;
 }
 

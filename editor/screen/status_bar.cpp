@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "core/platform/local_time.h"
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
 #include "editor/pose/live_preview.h"
@@ -150,9 +151,7 @@ SavedState saved_state(const Editor& editor) {
     return {"", theme.text2, "No project", "The open volume or rig has no project file yet."};
   std::string words = "Saved";
   if (life.saved_at > 0) {
-    const std::time_t at = life.saved_at;
-    std::tm local{};
-    localtime_r(&at, &local);
+    const std::tm local = local_time(life.saved_at);
     char time[16];
     std::strftime(time, sizeof time, " %H:%M", &local);
     words += time;

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/module.h"
+#include "core/platform/module.h"
 #include "core/volume_io/dicom.h"
 #include "core/volume_io/dicom_codec.h"
 
@@ -26,10 +26,8 @@ constexpr std::size_t kMostImages = 4;
 struct Image {
   std::string bytes;
   std::size_t at = 0;
-  explicit Image(int descriptor) {
-    char buffer[4096];
-    for (ssize_t got; (got = ::pread(descriptor, buffer, sizeof buffer, static_cast<off_t>(bytes.size()))) > 0;)
-      bytes.append(buffer, static_cast<std::size_t>(got));
+  explicit Image(const LimberDicomFile& file) : bytes(static_cast<std::size_t>(file.size), '\0') {
+    bytes.resize(file.read_at(file.context, 0, bytes.data(), bytes.size()));
   }
   std::string_view take(std::size_t size) {
     const std::string_view part = std::string_view(bytes).substr(at, size);
@@ -44,8 +42,8 @@ struct Image {
 }  // namespace
 
 // In the place of the module's.
-extern "C" int limber_dicom_elements(int descriptor, LimberDicomElement visit, void* context) {
-  Image image(descriptor);
+extern "C" int limber_dicom_elements(const LimberDicomFile* file, LimberDicomElement visit, void* context) {
+  Image image(*file);
   for (std::size_t left = image.byte(); left > 0; --left) {
     const std::size_t group = image.byte() << 8 | image.byte(), element = image.byte() << 8 | image.byte();
     const std::string_view value = image.take(image.byte());
@@ -54,14 +52,15 @@ extern "C" int limber_dicom_elements(int descriptor, LimberDicomElement visit, v
   return 0;
 }
 
-extern "C" int limber_dicom_pixels(int descriptor, char* pixels, std::size_t size) {
-  const Image image(descriptor);
+extern "C" int limber_dicom_pixels(const LimberDicomFile* file, char* pixels, std::size_t size) {
+  const Image image(*file);
   for (std::size_t i = 0; i < size; ++i) pixels[i] = image.bytes[i % image.bytes.size()];
   return 0;
 }
 
 namespace limber {
 void* open_module(const std::string&) { return ::dlopen(nullptr, RTLD_NOW); }
+void* symbol_of(void* module, const char* name) { return ::dlsym(module, name); }
 std::optional<Path> find_own_program(const std::string&) { return std::nullopt; }
 std::optional<Path> find_program(const std::string&) { return std::nullopt; }
 }  // namespace limber

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file.h"
-#include "core/base/module.h"
 #include "core/cmd/print.h"
 #include "core/phantom/phantom.h"
+#include "core/platform/module.h"
 #include "core/rig_io/rig_io.h"
 #include "core/volume_io/volume_io.h"
 #include "tests/support/program.h"

@@ -14,7 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
-#include "core/base/module.h"
+#include "core/platform/module.h"
 #include "core/volume_io/reader_messages.h"
 #include "core/volume_io/vector_volume_io.h"
 #include "core/volume_io/volume_io.h"

@@ -9,8 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "core/base/progress.h"
-
 namespace limber {
 
 using Send = std::function<void(const void* bytes, std::size_t size)>;
@@ -25,15 +23,18 @@ struct ChildLimits {
 struct ChildAnswer {
   std::optional<std::string> sent;  // the bytes that the child sent; none when it failed
   std::string failure;              // why the work failed, as in "it crashed (signal 11)"; empty when it did not fail
+  bool cancelled = false;           // the work was ended because the user had cancelled it
 };
+
+// Returns true when the user has cancelled the work; asked about every 20 ms.
+using AskCancelled = std::function<bool()>;
 
 // Runs `work` in a child process and returns the bytes that the child sent. Returns no bytes but the reason when `work`
 // returned false, threw, crashed, ended the process, sent more than `most` bytes or exceeded a limit. The child writes
 // its standard output and error to /dev/null, its changes to memory are not seen here, and it is killed when the thread
-// that waits for it ends.
-//   throws Cancelled within about 20 ms of progress.cancel(); the child is killed first
+// that waits for it ends, or when `cancelled` returns true.
 ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
-                         const Progress& progress = no_progress());
+                         const AskCancelled& cancelled = {});
 
 // Runs `work` in a child process within the default limits, for callers that do not need the reason of a failure.
 std::optional<std::string> run_in_child(const std::function<bool(const Send&)>& work, std::size_t most);

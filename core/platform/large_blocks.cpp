@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/large_blocks.h"
+#include "core/platform/large_blocks.h"
 
 #include <cstdint>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include <malloc.h>
 #endif
 
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 
 // In a build with a sanitizer, operator new is not replaced, so that the sanitizer's own allocator stays in use.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

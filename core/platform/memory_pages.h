@@ -17,6 +17,9 @@ void want_large_pages(void* begin, std::int64_t bytes);
 void* new_zeros(std::size_t bytes);
 void delete_zeros(void* begin, std::size_t bytes);
 
+// Returns true if the system has room for `bytes` more of address space.
+bool can_map(std::size_t bytes);
+
 // Returns true if every byte of the memory is zero.
 bool is_all_zero(const void* begin, std::size_t bytes);
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/base/file.h"
+#include "core/platform/path.h"
 
 namespace limber {
 
@@ -26,5 +26,17 @@ std::optional<Path> find_own_program(const std::string& name);
 
 // Returns the path of the program `name` in the first folder of PATH that has it. Skips relative folders of PATH.
 std::optional<Path> find_program(const std::string& name);
+
+// Returns the path of the running program; empty where the system does not tell it.
+Path running_program_path();
+
+// Returns a path that starts the running program again, even when another version has replaced its file meanwhile.
+Path running_program();
+
+// Returns the address of a C function of an open module, or nullptr.
+void* symbol_of(void* module, const char* name);
+
+// Returns the address of a C function of this program and the libraries that it is linked with, or nullptr.
+void* symbol_of_program(const char* name);
 
 }  // namespace limber

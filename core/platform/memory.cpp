@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/memory.h"
+#include "core/platform/memory.h"
 
 #include <algorithm>
 #include <fstream>

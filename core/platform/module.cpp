@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/module.h"
+#include "core/platform/module.h"
 
 #include <cstdlib>
 #include <sstream>
@@ -17,9 +17,8 @@ namespace {
 // this code, the folder of the running program, ../lib/limber relative to it, and where Limber was installed. The last
 // one serves another program that uses Limber as a library.
 std::vector<Path> own_folders() {
-  std::error_code error;
-  const Path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  if (error) return {};
+  const Path folder = running_program_path().parent_path();
+  if (folder.empty()) return {};
   std::vector<Path> folders = {folder, folder / "../lib/limber", Path(LIMBER_INSTALLED_IN) / "lib/limber"};
   if (const Path own = own_shared_object(); !own.empty()) folders.insert(folders.begin(), own.parent_path());
   return folders;
@@ -59,5 +58,16 @@ std::optional<Path> find_program(const std::string& name) {
   }
   return std::nullopt;
 }
+
+Path running_program_path() {
+  std::error_code ignored;
+  return fs::read_symlink(running_program(), ignored);
+}
+
+Path running_program() { return "/proc/self/exe"; }
+
+void* symbol_of(void* module, const char* name) { return ::dlsym(module, name); }
+
+void* symbol_of_program(const char* name) { return ::dlsym(RTLD_DEFAULT, name); }
 
 }  // namespace limber

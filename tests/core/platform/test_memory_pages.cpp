@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 
 #include <vector>
 

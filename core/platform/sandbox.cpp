@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/sandbox.h"
+#include "core/platform/sandbox.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <vector>
 
 #include <fcntl.h>
@@ -19,6 +18,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "core/platform/process.h"
+
 namespace limber {
 
 namespace {
@@ -30,15 +31,6 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #else
 constexpr std::uint32_t kArchitecture = 0;  // 0: no system call filter on this processor architecture
 #endif
-
-std::size_t mapped_bytes() {
-  unsigned long pages = 0;
-  if (FILE* file = std::fopen("/proc/self/statm", "re")) {
-    if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
-    std::fclose(file);
-  }
-  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-}
 
 // Upper limit on memory, bytes: half of a process's address space, so that sums with this limit cannot overflow.
 constexpr std::size_t kMostMemory = std::size_t{1} << 46;
@@ -169,7 +161,7 @@ bool enter_seccomp() {
 }  // namespace
 
 Sandbox enter_sandbox(const SandboxSettings& settings) {
-  Sandbox sandbox{{.own_process = true}, mapped_bytes()};
+  Sandbox sandbox{{.own_process = true}, mapped_memory()};
   ::prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
   limit_resources(settings, sandbox.mapped_bytes);
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return sandbox;

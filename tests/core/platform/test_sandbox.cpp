@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/sandbox.h"
+#include "core/platform/sandbox.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -12,7 +12,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/base/child_process.h"
+#include "core/platform/child_process.h"
 #include "tests/support/sanitizer.h"
 
 using namespace limber;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/memory_pages.h"
+#include "core/platform/memory_pages.h"
 
 #include <cstdlib>
 #include <cstring>
@@ -34,17 +34,26 @@ void want_large_pages(void* begin, std::int64_t bytes) {
 namespace {
 // Size in bytes (1 GB) from which on a block is mapped without a reservation of memory for all of it.
 constexpr std::size_t kUnreserved = std::size_t{1} << 30;
+
+void* map_unreserved(std::size_t bytes) {
+  void* begin = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return begin == MAP_FAILED ? nullptr : begin;
+}
 }  // namespace
 
 void* new_zeros(std::size_t bytes) {
-  if (bytes < kUnreserved) return std::calloc(bytes > 0 ? bytes : 1, 1);
-  void* begin = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return begin == MAP_FAILED ? nullptr : begin;
+  return bytes < kUnreserved ? std::calloc(bytes > 0 ? bytes : 1, 1) : map_unreserved(bytes);
 }
 
 void delete_zeros(void* begin, std::size_t bytes) {
   if (bytes < kUnreserved) std::free(begin);
   else munmap(begin, bytes);
+}
+
+bool can_map(std::size_t bytes) {
+  void* room = map_unreserved(bytes);
+  if (room) munmap(room, bytes);
+  return room != nullptr;
 }
 
 bool is_all_zero(const void* begin, std::size_t bytes) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/base/child_process.h"
+#include "core/platform/child_process.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <fstream>
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "core/platform/process.h"
 
 namespace limber {
 
@@ -23,18 +23,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kAskMilliseconds = 20;  // interval between two checks for whether the user cancelled
 
-// Returns the size of this process's address space, in bytes.
-std::size_t mapped_bytes() {
-  std::size_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-}
-
 rlim_t whole_seconds(double seconds) { return static_cast<rlim_t>(std::clamp(std::ceil(seconds), 1.0, 1e9)); }
 
 void become_harmless(const ChildLimits& limits, std::size_t memory, pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);
+  if (!end_with_parent(parent)) ::_exit(1);
   for (int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGXCPU}) ::signal(signal, SIG_DFL);
   const rlim_t most = whole_seconds(limits.processor_seconds);
   const rlimit seconds{most, most + 1}, no_core{0, 0}, space{memory, memory};
@@ -60,10 +52,11 @@ enum class Ending { closed, too_much, too_late, cancelled };
 
 // Reads from the pipe into `bytes`. Ends when the pipe closes, more than `most` bytes have arrived, the time `latest`
 // is reached or the user cancels. `bytes` may exceed `most` by one block.
-Ending read_all(int from, std::size_t most, Clock::time_point latest, const Progress& progress, std::string& bytes) {
+Ending read_all(int from, std::size_t most, Clock::time_point latest, const AskCancelled& cancelled,
+                std::string& bytes) {
   char block[1 << 16];
   while (bytes.size() <= most) {
-    if (progress.cancelled()) return Ending::cancelled;
+    if (cancelled && cancelled()) return Ending::cancelled;
     if (Clock::now() >= latest) return Ending::too_late;
     pollfd ready{from, POLLIN, 0};
     const int events = ::poll(&ready, 1, kAskMilliseconds);
@@ -78,13 +71,13 @@ Ending read_all(int from, std::size_t most, Clock::time_point latest, const Prog
 
 // Waits for the child process and returns its exit status. If the child has closed its end of the pipe but does not end
 // by the time `latest`, or the user cancels, the child is killed.
-int status_of(pid_t child, Clock::time_point latest, const Progress& progress, Ending& ending) {
+int status_of(pid_t child, Clock::time_point latest, const AskCancelled& cancelled, Ending& ending) {
   int status = 0;
   while (ending == Ending::closed) {
     const pid_t ended = ::waitpid(child, &status, WNOHANG);
     if (ended == child) return status;
     if (Clock::now() >= latest) ending = Ending::too_late;
-    else if (progress.cancelled()) ending = Ending::cancelled;
+    else if (cancelled && cancelled()) ending = Ending::cancelled;
     else ::usleep(1000);
   }
   ::kill(child, SIGKILL);
@@ -112,9 +105,9 @@ std::string failure_of(Ending ending, int status) {
 }  // namespace
 
 ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
-                         const Progress& progress) {
+                         const AskCancelled& cancelled) {
   constexpr const char* kNoProcess = "no process could be started for it";
-  const std::size_t memory = limits.memory_bytes > 0 ? mapped_bytes() + limits.memory_bytes : 0;
+  const std::size_t memory = limits.memory_bytes > 0 ? mapped_memory() + limits.memory_bytes : 0;
   const Clock::time_point latest = after(limits.seconds);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return {std::nullopt, kNoProcess};
@@ -135,10 +128,10 @@ ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size
     return {std::nullopt, kNoProcess};
   }
   std::string sent;
-  Ending ending = read_all(ends[0], most, latest, progress, sent);
+  Ending ending = read_all(ends[0], most, latest, cancelled, sent);
   ::close(ends[0]);
-  const int status = status_of(child, latest, progress, ending);
-  if (ending == Ending::cancelled) throw Cancelled();
+  const int status = status_of(child, latest, cancelled, ending);
+  if (ending == Ending::cancelled) return {.failure = "it was cancelled", .cancelled = true};
   if (std::string failure = failure_of(ending, status); !failure.empty()) return {std::nullopt, std::move(failure)};
   return {std::move(sent), {}};
 }

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What std::filesystem does not tell of files, and what it cannot do with folders.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <system_error>
+
+#include "core/platform/path.h"
+
+namespace limber {
+
+class Handle;
+
+struct FileStatus {
+  std::uint64_t device = 0, number = 0;       // together they identify a file, whatever its name
+  std::int64_t size = 0;                      // bytes
+  std::int64_t seconds = 0, nanoseconds = 0;  // time of the last change, since 1970
+  bool is_regular = false, is_folder = false;
+  bool is_own = false;  // the file belongs to the user who runs this process
+
+  bool operator==(const FileStatus&) const = default;
+  bool is_same_file(const FileStatus& other) const { return device == other.device && number == other.number; }
+};
+
+// Returns the status of a file, after symbolic links are followed; nothing when there is no such file.
+std::optional<FileStatus> status_of_file(const Path& path);
+// Returns the status of a file; of a symbolic link, the status of the link.
+std::optional<FileStatus> status_of_link(const Path& path);
+// Returns the status of an open file (OpenFile::status).
+std::optional<FileStatus> status_of_open_file(const Handle& file);
+
+// Returns true if this process may write to the file, or make files in the folder.
+bool is_writable(const Path& path);
+
+// Returns true for a write that failed because the disk, the user's share of it or the file is full.
+bool is_disk_full(const std::error_code& error);
+
+// Creates a folder with a new name that begins with `prefix`, for the user alone, and returns its path.
+Path make_unique_folder(const Path& prefix, std::error_code& error);
+
+// Flushes the folder to the disk, so that files created, renamed or removed in it remain so after a power cut.
+void sync_folder(const Path& folder);
+
+}  // namespace limber

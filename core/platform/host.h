@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The machine and the system that run this process.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace limber {
+
+struct SystemName {
+  std::string name, release, architecture;  // as in "Linux", "6.1.0-18-amd64", "x86_64"
+};
+SystemName system_name();
+
+std::string host_name();         // the machine's name in its network
+std::string processor_name();    // the processor's model, or "unknown processor"
+std::int64_t physical_memory();  // bytes
+
+}  // namespace limber

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// This process: its number, its limits and priority, and what it has used.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <system_error>
+
+namespace limber {
+
+std::int64_t process_id();
+
+// Makes the system kill this process when the thread of the process `parent` that started it ends. Returns false when
+// `parent` has ended already.
+bool end_with_parent(std::int64_t parent);
+// Closes all files but the standard streams.
+void close_inherited_files();
+
+// Lets all other programs run first.
+void yield_to_other_programs();
+// Lowers the priority of the calling thread: it gets a tenth of the time of a normal thread on the same core. A refusal
+// by the system is ignored.
+void lower_priority_of_thread();
+// Limits the address space of this process.
+std::error_code limit_memory(std::int64_t bytes);
+
+double own_cpu_seconds();       // CPU time of this process, all its threads
+double thread_cpu_seconds();    // CPU time of the calling thread
+double children_cpu_seconds();  // CPU time of the child processes that have ended
+std::int64_t peak_memory();     // the most memory that this process has held, bytes
+std::size_t mapped_memory();    // size of the address space, bytes
+
+}  // namespace limber
