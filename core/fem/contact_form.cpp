@@ -29,6 +29,9 @@ constexpr double kAbout = 0.2;
 // Two edges count as parallel if their squared cross product is below this share of the product of their squared
 // lengths at rest.
 constexpr double kParallel = 1e-3;
+// Lower limit of the fade factor of an edge of the skin and one of an object. An object's place is prescribed, so it
+// would bring such edges as near as it comes, until no step is possible.
+constexpr double kLeastFade = 0.1;
 constexpr std::int64_t kGrain = 2048;
 
 // The barrier b(d / h), and its first and second derivative by the distance d.
@@ -40,11 +43,12 @@ Barrier barrier(double d, double h) {
   return {-off * off * ln, -off * (2 * ln + off / t) / h, (-2 * ln - 4 * off / t + off * off / (t * t)) / (h * h)};
 }
 
-// Returns the mean area of surface per node: the total area of the triangles divided by the number of their nodes.
-double mean_area(const Eigen::MatrixX3i& F, const NodePositions& V) {
+// Returns the mean area of skin per node: the total area of its triangles divided by the number of their nodes.
+double mean_area(const Eigen::MatrixX3i& F, const NodePositions& V, int skin_nodes) {
   double sum = 0;
   std::vector<char> used(V.rows(), 0);
   for (const auto& f : F.rowwise()) {
+    if (f[0] >= skin_nodes) continue;
     sum += 0.5 * Eigen::Vector3d(V.row(f[1]) - V.row(f[0])).cross(Eigen::Vector3d(V.row(f[2]) - V.row(f[0]))).norm();
     for (const int node : f) used[node] = 1;
   }
@@ -59,10 +63,36 @@ ContactForm::ContactForm(const Eigen::MatrixX3i& F, const NodePositions& rest, c
     : surface_(F, rest, rigid),
       rest_(rest),
       settings_(settings),
-      scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest)) {}
+      scale_(settings.barrier_kpa * settings.thickness_mm * mean_area(F, rest, settings.skin_nodes)) {}
 
 double ContactForm::thickness(const ContactPair& pair) const {
-  return std::min(settings_.thickness_mm, kOfRest * nearest_points(pair, rest_).distance);
+  return std::min(has_object(pair) ? settings_.object_mm : settings_.thickness_mm,
+                  kOfRest * nearest_points(pair, rest_).distance);
+}
+
+bool ContactForm::has_object(const ContactPair& pair) const {
+  return std::any_of(pair.node.begin(), pair.node.end(), [&](int node) { return node >= settings_.skin_nodes; });
+}
+
+void ContactForm::add_push(const NodePositions& step, NodePositions& gradient) const {
+  for (const Touch& touch : touching_) {
+    if (!has_object(touch.pair)) continue;
+    double nearer = 0;
+    for (int a = 0; a < 4; ++a)
+      if (const int node = touch.pair.node[a]; node >= settings_.skin_nodes)
+        nearer += step.row(node).dot(touch.way.col(a).transpose());
+    for (int a = 0; a < 4; ++a)
+      if (const int node = touch.pair.node[a]; node < settings_.skin_nodes)
+        gradient.row(node) += touch.curvature * nearer * touch.way.col(a).transpose();
+  }
+}
+
+NodePositions ContactForm::object_forces() const {
+  NodePositions force = NodePositions::Zero(rest_.rows(), 3);
+  for (const Touch& touch : touching_)
+    for (int a = 0; has_object(touch.pair) && a < 4; ++a)
+      force.row(touch.pair.node[a]) -= (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
+  return force;
 }
 
 ContactForm::Fade ContactForm::fade(const ContactPair& pair, const NodePositions& x) const {
@@ -75,8 +105,8 @@ ContactForm::Fade ContactForm::fade(const ContactPair& pair, const NodePositions
   const double c = u.cross(v).squaredNorm(),
                full = kParallel * edge(rest_, 0).squaredNorm() * edge(rest_, 2).squaredNorm();
   if (c >= full) return fade;
-  const double t = c / full, slope = (2 - 2 * t) / full;
-  fade.value = (2 - t) * t;
+  const double least = has_object(pair) ? kLeastFade : 0, t = c / full, slope = (1 - least) * (2 - 2 * t) / full;
+  fade.value = least + (1 - least) * (2 - t) * t;
   fade.slope.col(1) = slope * 2 * (v.squaredNorm() * u - u.dot(v) * v);
   fade.slope.col(3) = slope * 2 * (u.squaredNorm() * v - u.dot(v) * u);
   fade.slope.col(0) = -fade.slope.col(1);
@@ -211,9 +241,11 @@ double ContactForm::value(const NodePositions& x) const {
 
 void ContactForm::update_active_pairs(const NodePositions& x) {
   touching_.clear();
+  tightest_ = 1;
   for (const auto& [pair, h, approach] : watched_) {
     const NearestPoints nearest = nearest_points(pair, x);
     if (nearest.distance >= h) continue;
+    tightest_ = std::min(tightest_, nearest.distance / h);
     const Barrier b = barrier(nearest.distance, h);
     const Fade faded = fade(pair, x);
     const double scale = scale_ * share_of(pair.kind);

@@ -15,6 +15,7 @@
 // nothing touches.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,10 @@ namespace limber {
 struct ContactSettings {
   double barrier_kpa = 40;  // stiffness c of the barrier
   double thickness_mm = 2;  // distance H below which parts of the skin are pushed apart
+  double object_mm = 2;     // distance below which skin is pushed away from objects
+  // Number of nodes of the skin, which come before the nodes of objects. A pair of skin and an object has the thickness
+  // object_mm.
+  int skin_nodes = std::numeric_limits<int>::max();
 };
 
 class ContactForm {
@@ -66,6 +71,11 @@ class ContactForm {
   void update_active_pairs(const NodePositions& x);
   void add_gradient(NodePositions& gradient) const;
   void add_curvature(std::span<double> values) const;
+  // Adds the change of the gradient on the skin's nodes that a motion of the objects causes, to first order.
+  //   step  #nodes: the motion of each node; that of the skin's nodes does not count
+  void add_push(const NodePositions& step, NodePositions& gradient) const;
+  // Returns the force on each node, mN, from the pairs that touch and that consist of skin and an object.
+  NodePositions object_forces() const;
 
   // Adds to the matrix's sparsity pattern the pairs that touch at x or nearly touch. If another pair begins to touch,
   // the matrix lacks the blocks that couple the pair's two parts: each part then reacts as if the other did not move.
@@ -77,6 +87,8 @@ class ContactForm {
   bool assign_nodes(const Cholesky& matrix, std::span<const int> unknown);
 
   std::int64_t touching() const { return std::ssize(touching_); }
+  // Returns the smallest distance of the pairs that touch, in thicknesses h; 1 if none touch.
+  double tightest() const { return tightest_; }
 
  private:
   struct Touch {
@@ -100,6 +112,7 @@ class ContactForm {
   // Adds to known_ the pairs that may touch during the motion from -> to and that earlier calls have not found.
   void extend_broad_phase(const NodePositions& from, const NodePositions& to);
   double thickness(const ContactPair& pair) const;
+  bool has_object(const ContactPair& pair) const;
   Fade fade(const ContactPair& pair, const NodePositions& x) const;
 
   ContactSurface surface_;
@@ -115,6 +128,7 @@ class ContactForm {
   std::vector<Watched> watched_;             // pairs of known_ that may touch during build_broad_phase()'s motion
   std::vector<char> blocked_;                // 1 for each pair of watched_ that mark_blocking_pairs() marked
   std::vector<Touch> touching_;
+  double tightest_ = 1;
 };
 
 }  // namespace limber

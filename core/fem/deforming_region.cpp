@@ -14,6 +14,7 @@ namespace {
 constexpr int kCell = 4;  // edge of a cell (cube of voxels that deform or move rigidly together), voxels
 // A voxel counts as moving rigidly if the bones that share one motion have at least this share of its weight.
 constexpr double kWhole = 0.98;
+constexpr double kLongestWay = 1000;  // largest distance at which an object must be clear of the body, mm
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));
@@ -132,6 +133,51 @@ class Cells {
     }
   }
 
+  // Finds the cells in the way of an object, with the body posed by `motions`: those within near_mm of the object's
+  // surface anywhere on the way on which it leaves the body soonest. Marks them in `pressed`.
+  ObjectClearance in_way(const std::vector<RigidTransform>& motions, const ObjectSweep& sweep, double near_mm,
+                         std::vector<std::uint8_t>& pressed) const {
+    const AffineTransform world = world_from_voxel(grid_);
+    std::unordered_map<std::uint64_t, Bin> bins;
+    for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
+      if (motion_[at] == kAir) return;
+      const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5),
+                       posed = motions[motion_[at]] * rest;
+      const glm::ivec3 place(glm::floor(posed / near_mm));
+      bins.try_emplace(key(place), Bin{place, motion_[at], {}}).first->second.cells.push_back({at, rest, posed});
+    });
+    // Calls visit(cell) for the cells near the object at a distance from its place. Returns false if there are none.
+    const auto visit_near = [&](const std::vector<glm::dvec3>& way, double away, const auto& visit) {
+      bool any = false;
+      for (std::size_t p = 0; p < sweep.point.size(); ++p) {
+        const glm::dvec3 point = sweep.point[p] + away * way[p];
+        const glm::ivec3 place(glm::floor(point / near_mm));
+        for (int i = 0; i < 27; ++i) {
+          const auto found = bins.find(key(place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
+          if (found == bins.end()) continue;
+          for (const Placed& cell : found->second.cells)
+            if (glm::distance(cell.posed, point) < near_mm) {
+              any = true;
+              if (!visit(cell.at)) return true;
+            }
+        }
+      }
+      return any;
+    };
+    ObjectClearance soonest{0, INFINITY};
+    for (std::size_t w = 0; w < sweep.ways.size(); ++w) {
+      double away = 0;
+      while (away < std::min(soonest.mm, kLongestWay) &&
+             visit_near(sweep.ways[w], away, [](std::int64_t) { return false; }))
+        away += near_mm / 2;
+      if (away < std::min(soonest.mm, kLongestWay)) soonest = {w, away};
+    }
+    if (soonest.mm < INFINITY)
+      for (double away = -sweep.deepest_mm; away < soonest.mm; away += near_mm / 2)
+        visit_near(sweep.ways[soonest.way], away, [&](std::int64_t at) { return pressed[at] = 1, true; });
+    return soonest;
+  }
+
   // Returns value(cell) for the 8 cells of each brick (cube of 8^3 voxels).
   template <class Value>
   std::vector<std::array<float, 8>> by_brick(const Value& value) const {
@@ -241,6 +287,18 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
                          }
                        });
   }
+  for (const ObjectSweep& sweep : settings.sweeps)
+    for (std::size_t k = 0; k < settings.pressed_at.size(); ++k) {
+      std::vector<std::uint8_t> pressed(to_bending.size(), 0);
+      const ObjectClearance clearance = cells.in_way(path(settings.pressed_at[k]), sweep, settings.near_mm, pressed);
+      if (k == 0) result.clearances.push_back(clearance);
+      if (!has_any(pressed)) continue;
+      const std::vector<float> distance = cells.squared_distance_to(pressed, progress);
+      for (std::size_t at = 0; at < distance.size(); ++at) {
+        to_near[at] = std::min(to_near[at], distance[at]);
+        if (distance[at] <= squared(settings.give_mm)) free_from[at] = 0;
+      }
+    }
   result.free = cells.mask([&](std::int64_t at) { return free_from[at] < INFINITY; });
   result.free_from = cells.by_brick([&](std::int64_t at) { return free_from[at]; });
   result.meshed = cells.mask([&](std::int64_t at) {

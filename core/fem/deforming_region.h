@@ -20,6 +20,20 @@
 
 namespace limber {
 
+// An object that comes to the body: points of its surface in its place, mm, and the ways that it may come. A way is the
+// motion of each point per mm that the object moves away.
+struct ObjectSweep {
+  std::vector<glm::dvec3> point;
+  std::vector<std::vector<glm::dvec3>> ways;
+  double deepest_mm = 0;  // distance by which the object may go beyond its place
+};
+// The way on which an object leaves the body soonest, and the distance after which it is clear of it, mm; infinite: the
+// body is in its way on every one.
+struct ObjectClearance {
+  std::size_t way = 0;
+  double mm = 0;
+};
+
 struct MovingSettings {
   double margin_mm = 30;  // largest distance from bending tissue at which tissue may deform
   double rim_mm = 20;     // width of the rigid rim around the tissue that may deform
@@ -27,6 +41,9 @@ struct MovingSettings {
   double near_mm = 16;    // parts of the body that the pose brings closer than this may touch
   double give_mm = 24;    // largest distance from parts that may touch at which tissue may deform
   std::vector<double> places{0.25, 0.5, 0.75, 1};  // positions on the path at which contact is tested, [0, 1]
+  // Objects that come to the body, and the positions on the path from which they press. Tissue in their way may deform.
+  std::vector<ObjectSweep> sweeps;
+  std::vector<double> pressed_at;
 };
 
 struct DeformingRegion {
@@ -35,7 +52,8 @@ struct DeformingRegion {
   // The position on the path, [0, 1], up to which each cell moves as a rigid body; infinite: along the whole path. One
   // list per brick (cube of 8^3 voxels) with the values of its 8 cells, x fastest.
   std::vector<std::array<float, 8>> free_from;
-  TissueMask meshed;  // the tissue that may deform, and the rim around it
+  TissueMask meshed;                        // the tissue that may deform, and the rim around it
+  std::vector<ObjectClearance> clearances;  // one for each sweep, at the first position of `pressed_at`
 
   bool empty() const;  // true if no tissue may deform
   // Returns the value of free_from for the cell that contains the tissue voxel.

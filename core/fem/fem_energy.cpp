@@ -132,6 +132,7 @@ double FemEnergy::value(const NodePositions& x) {
     const CpuTimer timer(seconds_.search);
     find_ratios(x);
     sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x);
+    if (load_.rows()) sum -= load_.cwiseProduct(x).sum();
   }
   if (contact_.empty()) return sum;
   const CpuTimer timer(seconds_.contact);
@@ -146,6 +147,12 @@ void FemEnergy::gradient(const NodePositions& x, NodePositions& gradient) {
   contact_.update_active_pairs(x);
   contact_.add_gradient(gradient);
   pins_.add_gradient(x, gradient);
+  if (load_.rows()) gradient -= load_;
+}
+
+NodePositions FemEnergy::object_forces(const NodePositions& x) {
+  contact_.update_active_pairs(x);
+  return contact_.object_forces();
 }
 
 void FemEnergy::assemble(const NodePositions& x, HessianKind curvature, NodePositions& gradient) {
@@ -159,11 +166,12 @@ void FemEnergy::assemble(const NodePositions& x, HessianKind curvature, NodePosi
   contact_.add_gradient(gradient);
   contact_.add_curvature(values);
   pins_.add_gradient(x, gradient);
+  if (load_.rows()) gradient -= load_;
   pins_.add_curvature(*matrix_, unknown_, values);
 }
 
 bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
-                            const NodePositions* towards) {
+                            const NodePositions* towards, double damping) {
   {
     const CpuTimer timer(seconds_.contact);
     contact_.update_active_pairs(x);
@@ -171,13 +179,17 @@ bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodeP
   prepare(x);
   NodePositions gradient;
   assemble(x, curvature, gradient);
+  step.setZero(node_count_, 3);
+  for (std::size_t k = 0; k < carried_.size(); ++k) step.row(carried_[k]) = carried_target_.row(k) - x.row(carried_[k]);
+  contact_.add_push(step, gradient);
   right_side_.resize(3 * node_of_.size());
   for (int k = 0; k < int(node_of_.size()); ++k) {
     const Cholesky::Place own = matrix_->place(k, k);
     double* diagonal = matrix_->values().data() + own.at;
-    const double steady = kSteady * std::min({diagonal[0], diagonal[own.stride + 1], diagonal[2 * own.stride + 2]});
+    const double least = std::min({diagonal[0], diagonal[own.stride + 1], diagonal[2 * own.stride + 2]}),
+                 steady = kSteady * least;
     for (int c = 0; c < 3; ++c) {
-      diagonal[c * own.stride + c] += steady;
+      diagonal[c * own.stride + c] += steady + damping * least;
       right_side_[3 * k + c] = (towards ? steady * (*towards)(node_of_[k], c) : 0) - gradient(node_of_[k], c);
     }
   }
@@ -187,8 +199,6 @@ bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodeP
   if (!matrix_->factorize()) return false;
   matrix_->solve(right_side_);
 
-  step.setZero(node_count_, 3);
-  for (std::size_t k = 0; k < carried_.size(); ++k) step.row(carried_[k]) = carried_target_.row(k) - x.row(carried_[k]);
   slope = 0;
   for (std::size_t k = 0; k < node_of_.size(); ++k) {
     for (int c = 0; c < 3; ++c) step(node_of_[k], c) = right_side_[3 * k + c];

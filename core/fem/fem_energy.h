@@ -56,6 +56,8 @@ class FemEnergy {
   // Adds tets that have no energy but that no step may invert.
   void add_inversion_guard(const Eigen::MatrixX4i& guarded);
   void set_contact(ContactForm contact);
+  // Sets the force that acts on each node wherever it is, such as its weight, mN.
+  void set_load(NodePositions load) { load_ = std::move(load); }
 
   int node_count() const { return node_count_; }
 
@@ -69,8 +71,10 @@ class FemEnergy {
   //   slope    out: decrease of the energy along the step, to first order (above 0)
   //   towards  #nodes: the step of nodes that can move without force, such as those of a flap that hangs by two nodes.
   //            Null: 0
+  //   damping  addition to the diagonal entries of each node in the Hessian, as a share of the smallest of the three:
+  //            it shortens steps along which hardly any force acts
   bool newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
-                   const NodePositions* towards = nullptr);
+                   const NodePositions* towards = nullptr, double damping = 0);
   enum class Obstacle { None, Flesh, Guarded, Contact };
   struct Bound {
     double length = 1;  // largest share of the step that is allowed
@@ -85,6 +89,11 @@ class FemEnergy {
   //   fixed  #nodes: 1 for nodes whose step stays unchanged; empty: none
   NodePositions limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed);
 
+  // Returns the force on each node, mN, from contact between skin and objects. The broad phase must be valid at x.
+  NodePositions object_forces(const NodePositions& x);
+
+  // Returns the smallest distance of parts that touch at the last newton_step(), in thicknesses of the barrier.
+  double tightest() const { return contact_.tightest(); }
   double min_ratio(const NodePositions& x) const;                   // smallest det F of flesh
   const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // flesh and the tets of add_inversion_guard()
 
@@ -108,6 +117,7 @@ class FemEnergy {
   PatchForm patches_;
   PinForm pins_;
   ContactForm contact_;
+  NodePositions load_;  // force on each node, mN; empty: none
   std::vector<int> carried_;
   NodePositions carried_target_;
 

@@ -12,7 +12,14 @@ constexpr double kFurthest = 8;       // upper limit on the length of an extende
 constexpr int kHalvings = 24;         // number of halvings of a step after which the search gives up
 constexpr double kShort = 0.5;        // share of a step: if bounds allow less than this, a smoothed step is tried first
 constexpr double kJam = 0.05;         // share of the full Newton step: a shorter step counts as a jam
-constexpr int kJams = 3;              // number of jams in a row after which the solve gives up
+// Distance of parts that touch, in thicknesses of the barrier, below which no step ends the solve: nearer than this, a
+// Newton step only doubles the distance, so it is short although the force is far too large.
+constexpr double kSqueezed = 1e-3;
+// Damping of the Hessian after a jam (FemEnergy::newton_step); it grows with each further jam. Where parts of the skin
+// meet along parallel edges, the Hessian lacks some of the energy's curvature, and an undamped step leads far along
+// such an edge.
+constexpr double kDamped = 1e-2;
+constexpr int kJams = 3;  // number of jams in a row after which the solve gives up
 // Upper limit on the remainder of a full Newton step that the last line search leaves out: the longest motion of a node
 // in this remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
@@ -68,12 +75,13 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
   int jams = 0;
+  double damping = 0;
   double value = energy.value(x);
   NodePositions step;
   while (result.iterations < settings.iterations) {
     if (progress.cancelled()) throw Cancelled();
     double slope = 0;
-    if (!energy.newton_step(x, HessianKind::Projected, step, slope)) break;
+    if (!energy.newton_step(x, HessianKind::Projected, step, slope, nullptr, damping)) break;
     ++result.iterations;
     result.residual = longest(step);
 
@@ -91,13 +99,18 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     if (on_iteration) on_iteration(result.iterations, result.residual);
     jams = length < kJam ? jams + 1 : 0;
     if (jams == kJams) break;
+    const bool is_damped = damping > 0;  // then a short step does not show that the solve has converged
+    const bool may_damp = energy.tightest() < 1;
+    damping = length < kJam && may_damp ? std::max(kDamped, 10 * damping) : damping > kDamped ? damping / 10 : 0;
     if (length == 0) {
       // No lower energy was found along the step. If the step is too short to matter, the solve has converged;
-      // otherwise it has failed.
-      result.converged = result.residual < settings.tolerance_mm;
-      break;
+      // otherwise a damped step may find one.
+      result.converged = !is_damped && result.residual < settings.tolerance_mm;
+      if (result.converged || !may_damp) break;
+      continue;
     }
-    if (settled(step, result.residual, settings) && (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
+    if (!is_damped && settled(step, result.residual, settings) && energy.tightest() > kSqueezed &&
+        (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
       result.converged = true;
       break;
     }

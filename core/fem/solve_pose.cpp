@@ -12,21 +12,17 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/fem/newton.h"
+#include "core/fem/solved_parts.h"
 
 namespace limber {
 
 namespace {
-// Stiffness of the springs at bones' nodes per volume around the node, for an adult's size (1), kPa/mm2. With it a bone
-// gives way by 0.01 mm where flesh pulls with 50 kPa.
-constexpr double kPinStiffness = 1000;
-// Spring stiffness in kPa/mm2 at nodes of tets between two bones. With stiffer springs bones' ends often cannot pass.
-constexpr double kJointPinStiffness = 0.1;
-constexpr TetMaterial kBoneTet{100, 0.3};  // material of tets that one bone holds but that share nodes with flesh
-constexpr int kSettling = 3;               // factor on step_iterations for the last solve, at the pose
-constexpr double kStragglers = 1e-3;       // NewtonSettings::stragglers of the last solve, a share of the nodes
-constexpr double kTight = 0.25;   // factor on step_tolerance_mm for the solve that precedes a second try of a part
-constexpr double kWorth = 0.125;  // least number of nodes to free at a time, as a share of the free nodes
-constexpr double kRough = 0.5;    // if bounds allow less than this share of a first guess, the guess is smoothed
+constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the pose
+constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
+constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve that precedes a second try of a part
+constexpr double kWorth = 0.125;      // least number of nodes to free at a time, as a share of the free nodes
+constexpr double kLeastPart = 0.1;    // least motion of objects on a part, as a share of the shortest part of a step
+constexpr double kRough = 0.5;        // if bounds allow less than this share of a first guess, the guess is smoothed
 // Strength, kPa, of the barrier that keeps tets from getting nearly flat. It halves the iterations of a deep bend.
 constexpr double kWeakBarrier = 100;
 
@@ -54,9 +50,13 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
-bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
-  const int bone = held_by[tet[0]];
-  return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
+// Number of an object in the list of rigid nodes, above all numbers of bones.
+constexpr int kFirstObject = 1 << 20;
+
+NodePositions with_objects(const NodePositions& body, const NodePositions& objects) {
+  NodePositions all(body.rows() + objects.rows(), 3);
+  all << body, objects;
+  return all;
 }
 
 // Returns the nodes that wait until a position on the path before they become free. Small groups of nodes become free
@@ -80,63 +80,6 @@ std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   return waiting;
 }
 
-// The mesh's tets that deform and its rigid tets; the nodes that bones hold by springs, and the nodes that move exactly
-// with a bone (carried). A tet that one bone holds at every node is rigid, unless it shares a node with flesh: that
-// node may give way.
-struct Parts {
-  Eigen::MatrixX4i elastic, rigid;
-  std::vector<TetMaterial> material;  // per elastic tet
-  std::vector<char> is_flesh;         // 1 for each elastic tet whose nodes are not all held by one bone
-  std::vector<int> pinned, carried;   // nodes that bones hold: those of elastic tets, those of rigid tets only
-  std::vector<double> pin_stiffness;
-  std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
-
-  Parts() = default;
-  Parts(const FemModel& model, const std::vector<int>& held_by, double size) {
-    const auto& T = model.mesh.T;
-    std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
-    for (Eigen::Index t = 0; t < T.rows(); ++t)
-      if (!held_by_one(held_by, T.row(t)))
-        for (const int v : T.row(t)) in_flesh[v] = 1;
-
-    in_joint.assign(model.mesh.V.rows(), 0);
-    for (Eigen::Index t = 0; t < T.rows(); ++t) {
-      int first = -1;
-      bool joint = false;
-      for (const int v : T.row(t))
-        if (const int bone = held_by[v]; bone >= 0) joint = joint || (first >= 0 && bone != first), first = bone;
-      if (joint)
-        for (const int v : T.row(t)) in_joint[v] = 1;
-    }
-
-    std::vector<Eigen::Index> elastic_tet, rigid_tet;
-    std::vector<double> volume(model.mesh.V.rows(), 0);
-    const NodePositions rest = model.mesh.V;
-    for (Eigen::Index t = 0; t < T.rows(); ++t) {
-      const bool one = held_by_one(held_by, T.row(t));
-      if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
-        rigid_tet.push_back(t);
-        continue;
-      }
-      elastic_tet.push_back(t);
-      is_flesh.push_back(!one);
-      material.push_back(one ? kBoneTet : model.material[t]);
-      for (const int v : T.row(t)) {
-        in_elastic[v] = 1;
-        volume[v] += determinant(rest, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) / 24;
-      }
-    }
-    elastic = T(elastic_tet, Eigen::all);
-    rigid = T(rigid_tet, Eigen::all);
-    for (int v = 0; v < int(model.mesh.V.rows()); ++v) {
-      if (held_by[v] < 0) continue;
-      (in_elastic[v] ? pinned : carried).push_back(v);
-      const double spring = (in_joint[v] ? kJointPinStiffness : kPinStiffness) / (size * size);
-      if (in_elastic[v]) pin_stiffness.push_back(spring * volume[v]);
-    }
-  }
-};
-
 class PoseSolve {
  public:
   PoseSolve(const FemModel& model, const BonePath& path, const SolveSettings& settings, Progress& progress,
@@ -147,8 +90,9 @@ class PoseSolve {
         progress_(progress),
         on_step_(on_step),
         waiting_(worth_waiting(model)),
-        rest_(model.mesh.V),
-        x_(start ? NodePositions(*start) : rest_) {}
+        nodes_(model.mesh.V.rows()),
+        rest_(with_objects(model.mesh.V, model.objects.rest)),
+        x_(with_objects(start ? *start : model.mesh.V, objects_at(0))) {}
 
   SolvedPose run(double largest_angle_degrees) {
     const double whole = settings_.step_degrees / std::max(largest_angle_degrees, 1e-9);
@@ -159,7 +103,8 @@ class PoseSolve {
     advance(regular);
     if (result_.steps > 0 && result_.reached == 1) settle();
     result_.converged = result_.reached == 1 && result_.blocked_by.empty();
-    result_.V = x_;
+    result_.V = x_.topRows(nodes_);
+    if (!model_.objects.empty()) measure_objects();
     result_.min_det_f = energy_->min_ratio(x_);
     count_spent();
     return std::move(result_);
@@ -174,6 +119,12 @@ class PoseSolve {
       if (!step(result_.reached + length > 1 - 1e-9 ? 1 : result_.reached + length)) break;
     }
   }
+  // Returns the positions of the objects' nodes at a position on the path.
+  NodePositions objects_at(double place) const {
+    return model_.objects.empty() ? NodePositions(0, 3) : model_.objects.at(place);
+  }
+  void measure_objects();
+  ContactForm contact() const;
   void free_for(double place);
   void count_spent();
   std::vector<int> rigid_nodes() const;
@@ -185,7 +136,8 @@ class PoseSolve {
   bool good(const std::vector<RigidTransform>& pose, const NodePositions& x);
   void record();
   void settle();
-  void hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less = nullptr);
+  void hold_at(double at, const NodePositions* less = nullptr);
+  NodePositions weight_at(double at) const;
   template <class Way>
   NodePositions blend(const NodePositions& x, const Way& way) const;
   double follow(double from, double to, NodePositions& x);
@@ -205,9 +157,10 @@ class PoseSolve {
   const std::vector<FemModel::Waiting> waiting_;
   double freed_ = 0;          // path position; nodes that wait until an earlier position are free
   std::vector<int> held_by_;  // #V: the bone that holds each node at present, -1: free
-  Parts parts_;
+  SolvedParts parts_;
+  const Eigen::Index nodes_;  // number of the mesh's nodes; the objects' nodes follow them in rest_, held_ and x_
   const NodePositions rest_;
-  std::vector<char> held_;  // #V: 1 for nodes that a bone carries, or holds by stiff springs
+  std::vector<char> held_;  // 1 for nodes of objects, and for those that a bone carries or holds by stiff springs
   NodePositions x_;
   double shortest_ = 0;  // length of the shortest step, as a share of the path
   std::optional<FemEnergy> energy_;
@@ -226,14 +179,23 @@ void PoseSolve::free_for(double place) {
   if (energy_) count_spent();
   energy_.reset();
   held_by_ = std::move(held_by);
-  parts_ = Parts(model_, held_by_, settings_.size);
-  held_.resize(held_by_.size());
-  for (std::size_t v = 0; v < held_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
+  parts_ = SolvedParts(model_, held_by_, settings_.size);
+  for (auto v = nodes_; v < rest_.rows(); ++v) parts_.carried.push_back(int(v));
+  held_.assign(rest_.rows(), 1);
+  for (std::size_t v = 0; v < held_by_.size(); ++v) held_[v] = held_by_[v] >= 0 && !parts_.in_joint[v];
   energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
   energy_->add_inversion_guard(parts_.rigid);
-  if (settings_.contact)
-    energy_->set_contact(
-        ContactForm(boundary_of(model_.mesh.T), rest_, rigid_nodes(), {.thickness_mm = settings_.contact_mm}));
+  if (settings_.contact) energy_->set_contact(contact());
+}
+
+ContactForm PoseSolve::contact() const {
+  const Eigen::MatrixX3i skin = boundary_of(model_.mesh.T);
+  Eigen::MatrixX3i F(skin.rows() + model_.objects.F.rows(), 3);
+  F << skin, model_.objects.F.array() + int(nodes_);
+  return {F,
+          rest_,
+          rigid_nodes(),
+          {.thickness_mm = settings_.contact_mm, .object_mm = settings_.object_mm, .skin_nodes = int(nodes_)}};
 }
 
 void PoseSolve::count_spent() {
@@ -245,16 +207,21 @@ void PoseSolve::count_spent() {
 // Returns true if no node has to move. The solve's result is then equal to its start, bit for bit.
 bool PoseSolve::at_rest() const {
   const auto pose = path_(1);
-  for (int v = 0; v < int(rest_.rows()); ++v)
+  if (x_.bottomRows(rest_.rows() - nodes_) != objects_at(1) || settings_.gravity != Eigen::RowVector3d::Zero())
+    return false;
+  for (int v = 0; v < int(nodes_); ++v)
     if (const int bone = held_by_[v]; bone >= 0 && moved(pose[bone], rest_.row(v)) != x_.row(v)) return false;
-  return x_ == rest_;
+  return x_.topRows(nodes_) == rest_.topRows(nodes_);
 }
 
-// Sets the target positions of the nodes that bones hold to where `pose` moves them.
+// Sets the target positions of the nodes that bones and objects hold to where these are at a position on the path.
 //   less  #V offsets to subtract from these positions; null: none
-void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePositions* less) {
+void PoseSolve::hold_at(double at, const NodePositions* less) {
+  const auto pose = path_(at);
+  const NodePositions objects = objects_at(at);
   const auto place_of = [&](int v) {
-    const Eigen::RowVector3d place = moved(pose[held_by_[v]], rest_.row(v));
+    const Eigen::RowVector3d place =
+        v < nodes_ ? moved(pose[held_by_[v]], rest_.row(v)) : Eigen::RowVector3d(objects.row(v - nodes_));
     return less ? Eigen::RowVector3d(place - less->row(v)) : place;
   };
   PinForm pins{parts_.pinned, NodePositions(parts_.pinned.size(), 3), NodePositions(parts_.pinned.size(), 3)};
@@ -265,14 +232,23 @@ void PoseSolve::hold_at(const std::vector<RigidTransform>& pose, const NodePosit
   NodePositions carried(parts_.carried.size(), 3);
   for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = place_of(parts_.carried[k]);
   energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
+  if (!model_.mass.empty()) energy_->set_load(weight_at(at));
+}
+
+// Returns the weight of each node, mN. Gravity grows along the path if the solve starts at rest.
+NodePositions PoseSolve::weight_at(double at) const {
+  NodePositions weight = NodePositions::Zero(rest_.rows(), 3);
+  const double share = settings_.has_weight_at_start ? 1 : at;
+  for (std::size_t v = 0; v < model_.mass.size(); ++v) weight.row(v) = 1e3 * share * model_.mass[v] * settings_.gravity;
+  return weight;
 }
 
 // Returns one vector per node, computed by way(bone, position): for a held node with the bone that holds it, for others
-// the sum over the bones of the node's influences, with their weights.
+// the sum over the bones of the node's influences, with their weights; zero for the nodes of objects.
 template <class Way>
 NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   NodePositions sum = NodePositions::Zero(x.rows(), 3);
-  parallel_for(x.rows(), 4096, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(nodes_, 4096, [&](std::int64_t begin, std::int64_t end) {
     for (auto v = begin; v < end; ++v) {
       const glm::dvec3 p(x(v, 0), x(v, 1), x(v, 2));
       const auto add = [&](int bone, double weight) {
@@ -287,11 +263,12 @@ NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   return sum;
 }
 
-// Returns, for each node, the bone with which it moves rigidly; -1: none.
+// Returns, for each node, the number of the bone or the object with which it moves rigidly; -1: none.
 std::vector<int> PoseSolve::rigid_nodes() const {
   std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
     if (!held_[v]) rigid[v] = -1;
+  for (const int object : model_.objects.object) rigid.push_back(kFirstObject + object);
   return rigid;
 }
 
@@ -306,22 +283,26 @@ double PoseSolve::follow(double from, double to, NodePositions& x) {
     for (std::size_t b = 0; b < motion.size(); ++b) motion[b] = motion[b] * inverse(start[b]);
     return motion;
   };
-  const auto blend_of = [&](const std::vector<RigidTransform>& motion) {
-    return blend(x, [&](int bone, const glm::dvec3& p) { return motion[bone] * p - p; });
+  const NodePositions objects = objects_at(from);
+  const auto blend_of = [&](const std::vector<RigidTransform>& motion, double at) {
+    NodePositions blended = blend(x, [&](int bone, const glm::dvec3& p) { return motion[bone] * p - p; });
+    blended.bottomRows(objects.rows()) = objects_at(at) - objects;
+    return blended;
   };
   std::vector<RigidTransform> motion = moved_to(to);
   std::vector<Screw> screw;
   for (const RigidTransform& each : motion) screw.push_back(screw_of(each));
-  const NodePositions pace = blend(x, [&](int bone, const glm::dvec3& p) { return screw[bone].velocity(p); });
-  NodePositions blended = blend_of(motion), way;
+  NodePositions pace = blend(x, [&](int bone, const glm::dvec3& p) { return screw[bone].velocity(p); });
+  NodePositions blended = blend_of(motion, to), way;
+  pace.bottomRows(objects.rows()) = blended.bottomRows(objects.rows());
   const NodePositions turns = blended - pace;
   double slope = 0;
-  hold_at(path_(to), &turns);
+  hold_at(to, &turns);
   energy_->build_broad_phase(x);
   if (!energy_->newton_step(x, HessianKind::Projected, way, slope, &pace)) return from;
   for (double share = 1;; share /= 2) {
     const double at = share == 1 ? to : from + share * (to - from);
-    if (share < 1) blended = blend_of(moved_to(at));
+    if (share < 1) blended = blend_of(moved_to(at), at);
     NodePositions step = blended + share * (way - pace);
     double bound = energy_->largest_step(x, step, 1).length;
     if (bound < kRough) {
@@ -329,10 +310,13 @@ double PoseSolve::follow(double from, double to, NodePositions& x) {
       bound = energy_->largest_step(x, step, 1).length;
     }
     if (bound < kRough && at - from > shortest_) continue;
+    // Objects must stand where they are held: unlike bones, they have no springs that would draw them there.
+    const double there = objects.rows() ? from + bound * (at - from) : at;
+    if (there - from < kLeastPart * shortest_) return from;
     x += bound * step;
-    hold_at(path_(at));
-    tell(at, ++result_.iterations, std::sqrt(step.rowwise().squaredNorm().maxCoeff()), x);
-    return at;
+    hold_at(there);
+    tell(there, ++result_.iterations, std::sqrt(step.rowwise().squaredNorm().maxCoeff()), x);
+    return there;
   }
 }
 
@@ -351,6 +335,7 @@ std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& 
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
   for (const int v : nodes) {
     centre += 0.25 * x.row(v);
+    if (v >= nodes_) continue;
     for (const auto& [bone, weight] : model_.influences[v]) share[bone] += weight;
   }
   const auto name = [&](std::size_t bone) {
@@ -369,15 +354,17 @@ std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& 
 
 std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const NodePositions& x) const {
   if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no lower energy";
-  const char* what =
+  std::string what =
       bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
+  for (const int v : bound.node)
+    if (v >= nodes_) what = "skin presses against " + model_.objects.name[model_.objects.object[v - nodes_]] + " ";
   return what + at(bound.node, x);
 }
 
 void PoseSolve::tell(double at, int iteration, double residual, const NodePositions& x) {
   progress_.update("solving", result_.reached);
   if (!on_step_) return;
-  const Eigen::MatrixX3d V = x;
+  const Eigen::MatrixX3d V = x.topRows(nodes_);
   on_step_({at, iteration, residual, V});
 }
 
@@ -397,12 +384,11 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
 void PoseSolve::settle() {
   result_.blocked_by.clear();
   if (result_.residual < settings_.tolerance_mm) return;
-  const auto pose = path_(1);
-  hold_at(pose);
+  hold_at(1);
   NodePositions x = x_;
   energy_->build_broad_phase(x);
   const NewtonResult solved = relax(1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
-  if (!good(pose, x)) return;
+  if (!good(path_(1), x)) return;
   x_ = std::move(x);
   record();
   if (solved.converged) return;
@@ -422,6 +408,15 @@ bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePosition
   }
   result_.bone_drift_mm = drift.mm;
   return true;
+}
+
+// Measures the forces between skin and objects.
+void PoseSolve::measure_objects() {
+  energy_->build_broad_phase(x_);
+  const NodePositions forces = energy_->object_forces(x_);
+  result_.objects = x_.bottomRows(rest_.rows() - nodes_);
+  result_.force_on_skin = forces.topRows(nodes_);
+  result_.force_on_objects = forces.bottomRows(rest_.rows() - nodes_);
 }
 
 void PoseSolve::record() {
@@ -464,7 +459,7 @@ bool PoseSolve::step(double to) {
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
       // Solves the current shape more precisely, since tissue that lags behind its bones is a poor start for a part.
-      hold_at(path_(from));
+      hold_at(from);
       energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {

@@ -19,6 +19,7 @@
 #include "core/deform/skinning.h"
 #include "core/fem/fem_energy.h"
 #include "core/fem/material.h"
+#include "core/fem/rigid_object.h"
 #include "core/mesh/tet_mesh.h"
 
 namespace limber {
@@ -37,6 +38,8 @@ struct FemModel {
   // #V lists of bone weights that sum to 1. They give the first guess of a step; the result does not depend on them.
   std::vector<std::vector<BoneWeight>> influences;
   std::vector<std::string> bone_names;  // for messages; a bone without a name is "bone 3"
+  std::vector<double> mass;             // #V: mass of each node in kg, for gravity; empty: none
+  RigidObjects objects;                 // rigid objects that press on the skin, if contact is on
 };
 
 // Returns the rigid transform posed_from_rest of every rig bone at t, from 0 (where the solve starts) to 1 (the pose).
@@ -46,6 +49,9 @@ struct SolveSettings {
   bool contact = false;
   double step_degrees = 22.5;  // largest rotation of any joint in one step
   double contact_mm = 1.4;  // parts of the skin nearer than this are pushed apart, if they were further apart at rest
+  double object_mm = 0.5;   // skin nearer than this to an object is pushed away
+  Eigen::RowVector3d gravity = Eigen::RowVector3d::Zero();  // m/s2
+  bool has_weight_at_start = false;    // false: gravity grows along the path, from none at the start
   double step_tolerance_mm = 4;        // a step ends when Newton moves no node further than this (half a tet's edge)
   double tolerance_mm = 0.3;           // the last solve, at the pose, ends when Newton moves no node further than this
   int step_iterations = 40;            // a step that needs more iterations is split into shorter parts
@@ -72,7 +78,11 @@ struct SolvedPose {
   double min_det_f = 1;          // smallest det F of the tets of flesh in V
   double min_det_f_of_path = 1;  // smallest det F of tets of flesh at the ends of all steps
   double bone_drift_mm = 0;      // largest distance in V of a bone's node from where its bone moves it
-  std::int64_t inverted = 0;     // tets of flesh and bone with det F <= 0, summed over the ends of all steps
+  // Forces of contact between skin and objects, mN: on each node of the mesh, and on each node of the objects. Empty if
+  // there are no objects.
+  NodePositions force_on_skin, force_on_objects;
+  NodePositions objects;      // where the objects' nodes are
+  std::int64_t inverted = 0;  // tets of flesh and bone with det F <= 0, summed over the ends of all steps
   FemSeconds seconds;
 };
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/fem/solved_parts.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+
+// Stiffness of the springs at bones' nodes per volume around the node, for an adult's size (1), kPa/mm2. With it a bone
+// gives way by 0.01 mm where flesh pulls with 50 kPa.
+constexpr double kPinStiffness = 1000;
+// Spring stiffness in kPa/mm2 at nodes of tets between two bones. With stiffer springs bones' ends often cannot pass.
+constexpr double kJointPinStiffness = 0.1;
+constexpr TetMaterial kBoneTet{100, 0.3};  // material of tets that one bone holds but that share nodes with flesh
+
+bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
+  const int bone = held_by[tet[0]];
+  return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
+}
+
+}  // namespace
+
+SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by, double size) {
+  const auto& T = model.mesh.T;
+  std::vector<char> in_flesh(model.mesh.V.rows(), 0), in_elastic(model.mesh.V.rows(), 0);
+  for (Eigen::Index t = 0; t < T.rows(); ++t)
+    if (!held_by_one(held_by, T.row(t)))
+      for (const int v : T.row(t)) in_flesh[v] = 1;
+  // An object that meets a node which nothing moves would press on it with a force without limit. So bone at the
+  // surface is held by springs, too.
+  if (!model.objects.empty()) {
+    const Eigen::MatrixX3i surface = boundary_of(T);
+    for (const int v : surface.reshaped()) in_flesh[v] = 1;
+  }
+
+  in_joint.assign(model.mesh.V.rows(), 0);
+  for (Eigen::Index t = 0; t < T.rows(); ++t) {
+    int first = -1;
+    bool joint = false;
+    for (const int v : T.row(t))
+      if (const int bone = held_by[v]; bone >= 0) joint = joint || (first >= 0 && bone != first), first = bone;
+    if (joint)
+      for (const int v : T.row(t)) in_joint[v] = 1;
+  }
+
+  std::vector<Eigen::Index> elastic_tet, rigid_tet;
+  std::vector<double> volume(model.mesh.V.rows(), 0);
+  const NodePositions rest = model.mesh.V;
+  for (Eigen::Index t = 0; t < T.rows(); ++t) {
+    const bool one = held_by_one(held_by, T.row(t));
+    if (one && std::none_of(T.row(t).begin(), T.row(t).end(), [&](int v) { return in_flesh[v]; })) {
+      rigid_tet.push_back(t);
+      continue;
+    }
+    elastic_tet.push_back(t);
+    is_flesh.push_back(!one);
+    material.push_back(one ? kBoneTet : model.material[t]);
+    for (const int v : T.row(t)) {
+      in_elastic[v] = 1;
+      volume[v] += determinant(rest, T(t, 0), T(t, 1), T(t, 2), T(t, 3)) / 24;
+    }
+  }
+  elastic = T(elastic_tet, Eigen::all);
+  rigid = T(rigid_tet, Eigen::all);
+  for (int v = 0; v < int(model.mesh.V.rows()); ++v) {
+    if (held_by[v] < 0) continue;
+    (in_elastic[v] ? pinned : carried).push_back(v);
+    const double spring = (in_joint[v] ? kJointPinStiffness : kPinStiffness) / (size * size);
+    if (in_elastic[v]) pin_stiffness.push_back(spring * volume[v]);
+  }
+}
+
+}  // namespace limber
