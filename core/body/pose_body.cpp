@@ -73,7 +73,9 @@ Method method_of(const PosingSettings& settings, const PosingEvents& events) {
   if (!method) throw Error("there is no such method", settings.method, "write " + method_summaries(Methods::All));
   if (method->blend) return *method->blend;
   Fem fem;
-  fem.contact = settings.contact;
+  fem.contact = settings.contact || !settings.objects.empty();
+  fem.objects = settings.objects;
+  fem.gravity = settings.gravity;
   if (settings.quality == "draft") fem.quality = FemQuality::Draft;
   if (settings.quality == "fine") fem.quality = FemQuality::Fine;
   if (settings.mesher == "tetgen") fem.mesher = Mesher::tetgen;

@@ -21,10 +21,12 @@ namespace limber {
 struct PosingSettings {
   std::string method = deformation_methods().front().word;  // a word of deformation_methods()
   bool contact = false;                                     // fem: skin touches skin instead of passing through
-  std::string quality, mesher;  // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
-  std::string glide = "joint";  // a word of glide_poses.h
-  bool fit_joints = false;      // fits the axes of joints to the bones around them first; only for one pose
-  ResampleSettings resample;    // its seams are those of the bound body
+  std::string quality, mesher;     // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
+  std::vector<FemObject> objects;  // fem: rigid objects that press on the body
+  glm::dvec3 gravity{0};           // fem: m/s2
+  std::string glide = "joint";     // a word of glide_poses.h
+  bool fit_joints = false;         // fits the axes of joints to the bones around them first; only for one pose
+  ResampleSettings resample;       // its seams are those of the bound body
 };
 
 // Called during the work; each may be empty.

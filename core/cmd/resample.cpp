@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS
 //   [--method lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints] [--contact] [--quality draft|normal|fine]
-//   [--mesher lattice|tetgen] [--mesh-out NAME [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json]
+//   [--mesher lattice|tetgen] [--obstacle SHAPE]... [--gravity X,Y,Z] [--pressure OUT.csv] [--mesh-out NAME
+//   [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json]
 //   [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--landmarks IN.csv=OUT.csv]
 //   [--field OUT.nrrd] [--jacobian OUT.nrrd] [--overlap OUT.nrrd] [--frames FIRST:LAST[:STEP]] [--strict]
 //   [--threads N] [--progress json]: poses a label volume, or a sequence of frames.
@@ -18,6 +19,7 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
+#include "core/cmd/fem_options.h"
 #include "core/cmd/frame_names.h"
 #include "core/cmd/glide_options.h"
 #include "core/cmd/mesh_share.h"
@@ -46,12 +48,13 @@ struct Options {
   PoseOptions pose;
   RunOptions run;
   std::string weights, method = deformation_methods().front().word, output, report, grey, field,
-                       field_direction = kToPosed, jacobian, overlap, quality, mesher, mesh_out, mesh_unit = "mm",
-                       landmarks, steps, seams, glide;
+                       field_direction = kToPosed, jacobian, overlap, mesh_out, mesh_unit = "mm", landmarks, steps,
+                       seams, glide;
   std::string frames;  // frames of the motion, FIRST:LAST[:STEP]
   std::optional<double> spacing;
   double mass_limit = ResampleSettings{}.mass_limit_percent;
-  bool nearest = false, mass_exact = false, fit_joints = false, contact = false, strict = false;
+  bool nearest = false, mass_exact = false, fit_joints = false, strict = false;
+  std::shared_ptr<FemOptions> fem = std::make_shared<FemOptions>();
 };
 
 // The value IN=OUT of --with or --landmarks: a file that is posed together with the volume, and its output file.
@@ -76,8 +79,9 @@ Companion landmark_paths(const std::string& request) {
 Options of_frame(const Options& options, int frame) {
   Options one = options;
   one.pose.frame = frame;
-  for (std::string* output :
-       {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap, &one.mesh_out, &one.landmarks})
+  one.fem = std::make_shared<FemOptions>(*options.fem);
+  for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap,
+                              &one.mesh_out, &one.landmarks, &one.fem->pressure})
     *output = cmd::of_frame(*output, frame);
   return one;
 }
@@ -132,7 +136,7 @@ void check_outputs(const Options& options) {
   if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
-  std::vector<std::string> others = {options.report};
+  std::vector<std::string> others = {options.report, options.fem->pressure};
   if (!options.mesh_out.empty())
     for (const Path& file : files_exported_as(mesh_exporter(options.mesh_out), mesh_path(options.mesh_out)))
       others.push_back(file.string());
@@ -160,7 +164,7 @@ void check_sequence(const Options& options) {
                 "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
   if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
   for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian,
-                                    options.overlap, options.mesh_out, options.landmarks})
+                                    options.overlap, options.mesh_out, options.landmarks, options.fem->pressure})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
       throw Error("every frame would be written to the same file", output,
                   "put {frame} into its name, as in posed_{frame}.nrrd");
@@ -173,15 +177,13 @@ void check_method(const Options& options) {
                 "leave one of the two out");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
-  for (const auto& [is_given, name] : {std::pair{options.contact, "--contact"},
-                                       {!options.quality.empty(), "--quality"},
-                                       {!options.mesher.empty(), "--mesher"},
-                                       {!options.mesh_out.empty(), "--mesh-out"},
+  std::string given = given_fem_option(*options.fem);
+  for (const auto& [is_given, name] : {std::pair{!options.mesh_out.empty(), "--mesh-out"},
                                        {options.mesh_unit != "mm", "--mesh-unit"},
                                        {!options.steps.empty(), "--steps"}})
-    if (is_given)
-      throw Error(std::string(name) + " needs finite elements", "--method " + options.method,
-                  "use --method fem, or leave it out");
+    if (is_given) given = name;
+  if (!given.empty())
+    throw Error(given + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
 }
 
 // Reports the progress of a solve to the user, with an estimate of the remaining time. With --steps, also writes each
@@ -245,6 +247,8 @@ void describe(Report& report, const Options& options) {
   if (!options.pose.body.name.empty())
     settings["pose_name"] = std::string(require_body_pose(options.pose.body.name, "--pose-name").name);
   if (!options.pose.body.joints.empty()) settings["joints"] = options.pose.body.joints;
+  if (!options.fem->obstacles.empty()) settings["obstacles"] = options.fem->obstacles;
+  if (!options.fem->gravity.empty()) settings["gravity"] = options.fem->gravity;
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
   if (options.pose.up != "y") settings["up"] = options.pose.up;
@@ -276,6 +280,8 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
     write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true});
   });
   if (!options.mesh_out.empty()) write_mesh(options, body.tissues, posed.volume, *posed.shape);
+  outputs.write(options.fem->pressure,
+                [&] { write_pressure(posed.shape->pressed, posed.shape->objects, options.fem->pressure); });
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
@@ -295,9 +301,11 @@ std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, co
 
 PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
   return {.method = options.method,
-          .contact = options.contact,
-          .quality = options.quality,
-          .mesher = options.mesher,
+          .contact = options.fem->contact,
+          .quality = options.fem->quality,
+          .mesher = options.fem->mesher,
+          .objects = objects_of(*options.fem),
+          .gravity = gravity_of(*options.fem),
           .glide = glide_word(options.glide, options.pose),
           .fit_joints = options.fit_joints,
           .resample = {.nearest = options.nearest,
@@ -424,17 +432,7 @@ void add_resample(CLI::App& app) {
   command->add_option("--method", options->method, method_summaries(Methods::All))
       ->capture_default_str()
       ->check(CLI::IsMember(method_words(Methods::All)));
-  command->add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
-  command
-      ->add_option(
-          "--quality", options->quality,
-          "fem: 8 tets across the thinnest limb that bends (draft), 12 (normal), or 24 around joints (fine); in an "
-          "adult's elbow 12, 8 and 4 mm")
-      ->check(CLI::IsMember({"draft", "normal", "fine"}));
-  command
-      ->add_option("--mesher", options->mesher,
-                   "fem: who fills the body's surface with tets: lattice (default) or tetgen")
-      ->check(CLI::IsMember({"lattice", "tetgen"}));
+  add_fem_options(*command, options->fem);
   writes(command->add_option("--mesh-out", options->mesh_out,
                              "fem: the posed tets of the solve as NAME.node and NAME.ele, with the tissue that fills "
                              "most of each, and NAME.material in the form of particle codes; or as another ending "

@@ -117,6 +117,19 @@ Json mesh_of(const Report& report, const MeshReport& mesh) {
   return row;
 }
 
+Json object_of(const ObjectReport& object) {
+  Json row{{"name", object.name},
+           {"away_mm", object.away_mm},
+           {"pressing_n", object.pressing_n},
+           {"force_n", {object.force_n.x, object.force_n.y, object.force_n.z}},
+           {"contact_area_mm2", object.area_mm2},
+           {"largest_pressure_kpa", object.largest_kpa},
+           {"crossings", object.crossings}};
+  if (object.asked_n) row["asked_n"] = *object.asked_n;
+  if (std::isfinite(object.gap_mm)) row["gap_mm"] = object.gap_mm;
+  return row;
+}
+
 Json solve_of(const SolveReport& solve) {
   Json row{{"converged", solve.converged}, {"reached", solve.reached}};
   if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
@@ -393,6 +406,8 @@ std::string to_json(const Report& report) {
     json["mass_exact"] = mass_exact_of(report, *report.deform->mass_exact);
   if (report.deform && report.deform->mesh) json["mesh"] = mesh_of(report, *report.deform->mesh);
   if (report.deform && report.deform->solve) json["solve"] = solve_of(*report.deform->solve);
+  if (report.deform)
+    for (const ObjectReport& object : report.deform->objects) json["objects"].push_back(object_of(object));
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   for (const QualityGate& gate : report.gates) json["gates"].push_back(gate_of(gate));
   // Replaces bytes that are not UTF-8, for example in a name, since dump() would throw otherwise.
@@ -458,6 +473,11 @@ void print_report(std::ostream& out, const Report& report) {
                 solve.converged ? "solved:" : "NOT SOLVED, ended at", 100 * solve.reached, solve.steps,
                 solve.iterations, solve.residual_mm);
   }
+  if (report.deform)
+    for (const ObjectReport& object : report.deform->objects)
+      out << line("%.60s presses with %.3g N on %.3g cm2, at most %.3g kPa, %.1f mm from its place, %lld crossings",
+                  object.name.c_str(), object.pressing_n, object.area_mm2 / 100, object.largest_kpa, object.away_mm,
+                  static_cast<long long>(object.crossings));
   const Json seconds = seconds_of(report.seconds);
   if (!seconds.empty()) {
     out << "seconds";

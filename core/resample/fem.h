@@ -15,6 +15,7 @@
 
 #include "core/fem/stretch.h"
 #include "core/mesh/mesh_tissue.h"
+#include "core/resample/fem_objects.h"
 #include "core/volume/label_volume.h"
 
 namespace limber {
@@ -30,6 +31,8 @@ struct Fem {
   FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
   std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
   Mesher mesher = Mesher::lattice;
+  std::vector<FemObject> objects;                   // rigid objects that press on the posed body; they need contact
+  glm::dvec3 gravity{0};                            // acceleration of gravity, m/s2, in the world
   std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
   std::function<void(const SolveStep&)> on_step;    // called after every iteration
 };

@@ -43,6 +43,8 @@ constexpr double kClosing = 1;
 // Upper limit on the distance of a bone's node from its exact position, mm. With coarse tets, which follow a bone's
 // shape only roughly, the limit is larger.
 constexpr double kDrift = 2;
+// Rotation in degrees as whose the start of gravity counts, for the number of steps in which it grows.
+constexpr double kSagging = 45;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 // Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
@@ -107,6 +109,13 @@ std::vector<double> places_of(std::size_t poses) {
   for (std::size_t leg = 1; leg < poses; ++leg)
     for (int k = 1; k <= 2; ++k) places.push_back((double(leg) + 0.5 * k) / double(poses));
   return places;
+}
+
+// Returns the points of the path, [0, 1], at which the poses are reached.
+std::vector<double> ends_of(std::size_t poses) {
+  std::vector<double> ends;
+  for (std::size_t k = 1; k <= poses; ++k) ends.push_back(double(k) / double(poses));
+  return ends;
 }
 
 // Returns the nodes that still wait to become free on one leg of the path (the way from one pose to the next). Their
@@ -175,7 +184,8 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
       armature_(armature),
       is_bone_(is_bone),
       poses_(std::move(poses)),
-      fem_(std::move(fem)) {
+      fem_(std::move(fem)),
+      objects_(fem_.objects) {
   const auto meshing = std::chrono::steady_clock::now();
   last_.pose = rest_pose(armature);
   size_ = limb_size(tissue, volume.grid, bent_joints(armature, poses_, 1));
@@ -190,7 +200,9 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
                             .contact = fem_.contact,
                             .near_mm = 2 * spacing,
                             .give_mm = size_ * kGive + spacing,
-                            .places = places_of(poses_.size())},
+                            .places = places_of(poses_.size()),
+                            .sweeps = objects_.sweeps(spacing),
+                            .pressed_at = ends_of(poses_.size())},
                            progress);
   };
   find_moving(asked);
@@ -222,6 +234,12 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
                    {.joint_mm = kJoint * spacing_, .motions = motions_on(way), .closing_mm = kClosing * spacing_});
   waiting_ = last_.model.fem.waiting;
+  if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
+  if (!objects_.empty()) {
+    weight_n_ = weight_of(volume, tissue, tissues);
+    objects_.choose(moving.clearances);
+    objects_.add_to(last_.model.fem);
+  }
   last_.V = last_.model.fem.mesh.V;
   last_.seconds_mesh = seconds_since(meshing);
   if (fem_.on_mesh) fem_.on_mesh(last_.model);
@@ -235,19 +253,30 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
   const SolveSettings settings{.contact = fem_.contact,
                                .contact_mm = std::min(size_ * kContact, finest_ / 4),
+                               .object_mm = std::min(size_ * SolveSettings().object_mm, finest_ / 4),
+                               .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
+                               .has_weight_at_start = solved_ > 1,
                                .step_tolerance_mm = finest_ / 2,
                                .tolerance_mm = size_ * SolveSettings().tolerance_mm,
                                .bone_drift_mm = std::max(size_ * kDrift, spacing_ / 2),
                                .size = size_};
-  const SolvedPose solved =
-      solve_pose(last_.model.fem, path, largest_angle_degrees(from, to), settings, progress, fem_.on_step, &last_.V);
+  double angle = largest_angle_degrees(from, to);
+  if (fem_.gravity != glm::dvec3(0) && solved_ == 1) angle = std::max(angle, kSagging);
+  SolvedPose solved = solve_pose(last_.model.fem, path, angle, settings, progress, fem_.on_step, &last_.V);
   // The solve needs no step although the pose bends joints if no bone that moves holds a node of the mesh.
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
                 "choose a finer quality, or blend instead");
+  if (!objects_.empty() && solved_ == 1 && solved.reached == 1)
+    solved = objects_.press(last_.model.fem, path(1), std::move(solved), settings, spacing_, weight_n_, progress,
+                            fem_.on_step);
   const bool ends = solved_ == poses_.size();
   auto shape = std::make_shared<FemShape>(ends ? std::move(last_) : FemShape(last_));
   shape->V = solved.V;
+  if (!objects_.empty()) {
+    shape->objects = objects_.report(shape->model.fem, solved);
+    shape->pressed = objects_.pressed_nodes(shape->model.fem, solved);
+  }
   shape->reached = solved.reached;
   shape->pose = pose_between(from, to, solved.reached);
   shape->cpu = solved.seconds;

@@ -22,6 +22,8 @@ struct FemShape {
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;
   FemSeconds cpu;  // CPU time of each stage of the solve
+  std::vector<ObjectReport> objects;
+  std::vector<PressedNode> pressed;  // the nodes of the skin that objects press
 };
 
 // Returns the solved shape of the tissue that the pose bends; null: the pose bends nothing.
@@ -54,7 +56,9 @@ class FemSequence {
   double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets around joints, mm
   std::vector<FemModel::Waiting> waiting_;  // nodes that a bone moves at first; `until` is a position on the whole path
   std::size_t solved_ = 0;                  // number of poses solved so far
-  FemShape last_;                           // the shape solved last; at rest before the first solve
+  FemObjects objects_;
+  double weight_n_ = 0;  // weight of the body, N
+  FemShape last_;        // the shape solved last; at rest before the first solve
 };
 
 }  // namespace limber

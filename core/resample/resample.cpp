@@ -59,6 +59,7 @@ std::int64_t count_dropped(const PosedLattice& lattice, const PosedTets* tets, c
 void tell(const FemShape& shape, DeformReport& report) {
   report.mesh = shape.mesh;
   report.solve = shape.solve;
+  report.objects = shape.objects;
   report.seconds_mesh = shape.seconds_mesh;
   report.seconds_solve = shape.seconds_solve;
 }

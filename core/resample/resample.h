@@ -82,6 +82,7 @@ struct DeformReport {
   std::optional<MassExactReport> mass_exact;
   std::optional<MeshReport> mesh;                     // only with finite elements, and only where something bends
   std::optional<SolveReport> solve;                   // only with finite elements, and only where something bends
+  std::vector<ObjectReport> objects;                  // only with finite elements and objects
   std::optional<double> seconds_mesh, seconds_solve;  // only with finite elements, and only where something bends
   double seconds_deform = 0, seconds_rasterize = 0;
 };
