@@ -55,10 +55,11 @@ const std::vector<std::string>& places_of(const Json& job) {
 }
 
 // Returns the command-line option that a key of the job stands for. A key may also be spelled as in reports:
-// "pose_name" for --pose-name, "joints" for --joint.
+// "pose_name" for --pose-name, "joints" for --joint, "obstacles" for --obstacle.
 std::string option_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', '-');
-  return key == "joints" ? "--joint" : "--" + key;
+  if (key == "joints" || key == "obstacles") key.pop_back();  // lists have names in the plural
+  return "--" + key;
 }
 
 // Returns the command line, as words, that the job stands for.

@@ -139,10 +139,13 @@ class Cells {
                          std::vector<std::uint8_t>& pressed) const {
     const AffineTransform world = world_from_voxel(grid_);
     std::unordered_map<std::uint64_t, Bin> bins;
+    glm::dvec3 low(INFINITY), high(-INFINITY);  // of the posed cells
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
       if (motion_[at] == kAir) return;
       const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5),
                        posed = motions[motion_[at]] * rest;
+      low = glm::min(low, posed);
+      high = glm::max(high, posed);
       const glm::ivec3 place(glm::floor(posed / near_mm));
       bins.try_emplace(key(place), Bin{place, motion_[at], {}}).first->second.cells.push_back({at, rest, posed});
     });
@@ -151,6 +154,8 @@ class Cells {
       bool any = false;
       for (std::size_t p = 0; p < sweep.point.size(); ++p) {
         const glm::dvec3 point = sweep.point[p] + away * way[p];
+        if (glm::any(glm::lessThan(point, low - near_mm)) || glm::any(glm::greaterThan(point, high + near_mm)))
+          continue;
         const glm::ivec3 place(glm::floor(point / near_mm));
         for (int i = 0; i < 27; ++i) {
           const auto found = bins.find(key(place + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
@@ -164,7 +169,7 @@ class Cells {
       }
       return any;
     };
-    ObjectClearance soonest{0, INFINITY};
+    ObjectClearance soonest{0, INFINITY, false};
     for (std::size_t w = 0; w < sweep.ways.size(); ++w) {
       double away = 0;
       while (away < std::min(soonest.mm, kLongestWay) &&
@@ -293,6 +298,7 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
       const ObjectClearance clearance = cells.in_way(path(settings.pressed_at[k]), sweep, settings.near_mm, pressed);
       if (k == 0) result.clearances.push_back(clearance);
       if (!has_any(pressed)) continue;
+      result.clearances.back().presses = true;
       const std::vector<float> distance = cells.squared_distance_to(pressed, progress);
       for (std::size_t at = 0; at < distance.size(); ++at) {
         to_near[at] = std::min(to_near[at], distance[at]);

@@ -32,6 +32,7 @@ struct ObjectSweep {
 struct ObjectClearance {
   std::size_t way = 0;
   double mm = 0;
+  bool presses = false;  // whether the object comes near any tissue, at any of the positions
 };
 
 struct MovingSettings {

@@ -29,6 +29,7 @@ constexpr double kForceTolerance = 0.01;  // largest relative deviation from the
 constexpr int kForceTries = 20;           // largest number of solves to find it
 constexpr double kFirstMove = 1;          // motion of an object from the first try to the second, mm
 constexpr double kDeepest = 50;           // largest distance by which an object may go beyond its place, mm
+constexpr double kMostPoints = 4e6;       // upper limit on the points of an object's sweep
 constexpr double kNearGap = 2;            // largest gap between skin and object that the report tells, mm
 
 Eigen::RowVector3d row_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
@@ -60,13 +61,18 @@ std::vector<glm::dvec3> away_from_axis(const TriangleMesh& mesh) {
   return ways;
 }
 
+// Returns the number of pieces of at most reach_mm into which the points of a sweep divide each edge of a triangle.
+int pieces_of(const TriangleMesh& mesh, const glm::ivec3& f, double reach_mm) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(mesh.V[f[k]], mesh.V[f[(k + 1) % 3]]));
+  return std::max(1, static_cast<int>(std::ceil(longest / reach_mm)));
+}
+
 // Adds points on a triangle, with the motion of each per mm that the object moves away, to a sweep.
 //   ways  for each way, the motions of the triangle's corners
 void add_points(const TriangleMesh& mesh, const glm::ivec3& f, const std::vector<std::vector<glm::dvec3>>& ways,
                 double reach_mm, ObjectSweep& sweep) {
-  double longest = 0;
-  for (int k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(mesh.V[f[k]], mesh.V[f[(k + 1) % 3]]));
-  const int pieces = std::max(1, static_cast<int>(std::ceil(longest / reach_mm)));
+  const int pieces = pieces_of(mesh, f, reach_mm);
   for (int i = 0; i <= pieces; ++i)
     for (int j = 0; i + j <= pieces; ++j) {
       const glm::dvec3 share = glm::dvec3(i, j, pieces - i - j) / double(pieces);
@@ -136,6 +142,12 @@ std::vector<ObjectSweep> FemObjects::sweeps(double reach_mm) const {
     ObjectSweep& sweep = sweeps.emplace_back();
     sweep.ways.resize(ways.size());
     if (object.force_n + object.share_of_weight > 0) sweep.deepest_mm = kDeepest;
+    double points = 0;
+    for (const glm::ivec3& f : object.surface.F)
+      points += 0.5 * std::pow(pieces_of(object.surface, f, reach_mm) + 1, 2);
+    if (points > kMostPoints)
+      throw Error("the object is too large, or has too many triangles", object.name,
+                  "keep of it what is near the body, in mm");
     for (const glm::ivec3& f : object.surface.F) add_points(object.surface, f, ways, reach_mm, sweep);
   }
   return sweeps;
@@ -147,6 +159,8 @@ void FemObjects::choose(const std::vector<ObjectClearance>& clearances) {
     if (!std::isfinite(clearances[k].mm))
       throw Error("the object cannot come to its place: the body is in its way from every side", objects_[k].name,
                   "place it at the skin, or say from where it comes, as in @from=0,-1,0");
+    if (!clearances[k].presses)
+      throw Error("the object is not near any skin at its place", objects_[k].name, "place it at the skin, in mm");
     way_.push_back(std::move(ways_to(objects_[k])[clearances[k].way]));
     way_.back().clear_mm = clearances[k].mm;
   }

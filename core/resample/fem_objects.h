@@ -55,8 +55,10 @@ class FemObjects {
   bool empty() const { return objects_.empty(); }
   // The objects' surfaces, and for each the ways that it may come, to find the tissue that they press (moving_tissue).
   //   reach_mm  upper limit on the distance between the points of a sweep
+  // Throws Error for an object with millions of such points.
   std::vector<ObjectSweep> sweeps(double reach_mm) const;
-  // Chooses each object's way by what moving_tissue() has found. Throws Error if no way leads an object to its place.
+  // Chooses each object's way by what moving_tissue() has found. Throws Error if no way leads an object to its place,
+  // or if no tissue is near it.
   void choose(const std::vector<ObjectClearance>& clearances);
   // Puts the objects into a model, far away from the body.
   void add_to(FemModel& model) const;

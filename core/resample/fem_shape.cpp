@@ -206,11 +206,13 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
                            progress);
   };
   find_moving(asked);
+  objects_.choose(moving.clearances);
   if (moving.empty()) return;
   const double cells = double(count_voxels(moving.meshed)) * volume.grid.voxel_volume() / std::pow(asked, 3);
   const double most = kMostCells * (fem_.quality == FemQuality::Draft ? std::pow(kUsual / kDraft, 3) : 1);
   if (!fem_.spacing_mm && cells > most) {
     find_moving(asked * std::cbrt(cells / most));
+    objects_.choose(moving.clearances);
     char note[160];
     std::snprintf(note, sizeof note,
                   "the pose bends limbs of very different thickness: tets of %.3g mm instead of %.3g mm", spacing_,
@@ -237,7 +239,6 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {
     weight_n_ = weight_of(volume, tissue, tissues);
-    objects_.choose(moving.clearances);
     objects_.add_to(last_.model.fem);
   }
   last_.V = last_.model.fem.mesh.V;

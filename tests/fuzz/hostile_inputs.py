@@ -101,7 +101,8 @@ class Samples:
         for name in ["v.mha", "v.mhd", "v.nii", "v.nii.gz", "v.hdr", "v.nhdr", "v.txt", "v.seg.nrrd"]:
             self.limber("convert", "volume.nrrd", name)
         self.limber("weights", "volume.nrrd", "--rig", "rig.json", "-o", "weights.nrrd")
-        self.limber("surfaces", "volume.nrrd", "-o", "body.obj")
+        for name in ["body.obj", "body.stl", "body.ply"]:
+            self.limber("surfaces", "volume.nrrd", "-o", name)
         self.limber("resample", "volume.nrrd", "--rig", "rig.json", "--flex", "Forearm=20", "--method", "lbs", "-o", "posed.nrrd", "--field", "field.nrrd")
         self.limber("project", "body.limber", "create", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "--motion", "motion.bvh")
         self.write("image.dcm", dicom())
@@ -140,6 +141,9 @@ class Samples:
         for name in ["rig.json", "rig.vtk", "rig.arm", "motion.bvh", "body.glb", "body.gltf"]:
             self.add(name, ["info", "{}"], ["fk", "{}"], ["fk", "{}", "--json"], ["convert", "{}", "{out}/r.json"])
         self.add("body.obj", ["info", "{}"])
+        for name in ["body.obj", "body-nerve.stl", "body-nerve.ply", "body.glb", "body.gltf"]:
+            self.add(name, ["resample", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "--method", "fem", "--quality", "draft", "-o", "{out}/p.nrrd",
+                            "--obstacle", "{}@2000,0,0@from=1,0,0"])
         self.add("rig.json", ["weights", "volume.nrrd", "--rig", "{}", "--method", "rigid", "-o", "{out}/w.nrrd"])
         self.add("weights.nrrd", ["info", "{}"], ["resample", "volume.nrrd", "--rig", "rig.json", "--weights", "{}", "--flex", "Forearm=20", "--method", "lbs", "-o", "{out}/p.nrrd"])
         self.add("body.limber", ["info", "{}"], ["project", "{}", "verify"], ["project", "{}", "recover", "-o", "{out}/r.limber"], ["project", "{}", "export", "rig", "-o", "{out}/r.json"])

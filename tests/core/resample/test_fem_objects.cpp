@@ -177,10 +177,11 @@ TEST_CASE("objects: an object without a way comes by the shortest one, and one t
   CHECK_THROWS_AS(arm().posed(pressing({none})), Error);
 }
 
-TEST_CASE("objects: an object that touches nothing leaves the body as it is") {
-  FemObject object = block(-200);
-  const Posed posed = arm().posed(pressing({object}));
-  CHECK(posed.volume.voxels == arm().phantom.volume.voxels);
+TEST_CASE("objects: one that is not near the skin is refused, also when the body lies inside it") {
+  CHECK_THROWS_WITH_AS(arm().posed(pressing({block(-200)})), doctest::Contains("not near any skin"), Error);
+  FemObject around = block(0);
+  for (glm::dvec3& v : around.surface.V) v *= 50;
+  CHECK_THROWS_WITH_AS(arm().posed(pressing({around})), doctest::Contains("not near any skin"), Error);
 }
 
 TEST_CASE("objects: one and two threads give the same bytes") {
