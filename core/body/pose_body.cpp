@@ -94,7 +94,7 @@ void describe(const PosingSettings& asked, const Armature& rig, const Pose& pose
   settings["fit_joints"] = asked.fit_joints;
   settings["glide"] = asked.glide;
   if (asked.method == kFiniteElements) {
-    settings["contact"] = asked.contact;
+    settings["contact"] = asked.contact || !asked.objects.empty();
     settings["quality"] = asked.quality.empty() ? std::string("normal") : asked.quality;
     if (!asked.mesher.empty()) settings["mesher"] = asked.mesher;
   }
@@ -118,7 +118,12 @@ void note_results(const Body& body, const BoundBody& bound, const PosingSettings
   const Warnings warnings(posed.report, events);
   if (const std::string overlap = overlap_warning(posed.report.glide, deform.bone_overlap_voxels); !overlap.empty())
     warnings.note({overlap});
-  note_shape(warnings, deform, posed.pose, settings.contact);
+  note_shape(warnings, deform, posed.pose, settings.contact || !settings.objects.empty());
+  for (const ObjectReport& object : deform.objects)
+    if (object.crossings > 0)
+      warnings.note({object.name + " crosses the skin in " + std::to_string(object.crossings) + " pairs of triangles"});
+  if (settings.gravity != glm::dvec3(0) && !posed.posed.shape)
+    warnings.note({"the pose bends nothing, so no flesh sags under gravity"});
   if (deform.mass_exact) note_masses(warnings, *deform.mass_exact, body.tissues);
   if (bound.is_from_file) note_foreign_weights(warnings, body, bound, posed);
 }

@@ -19,7 +19,7 @@ namespace limber::cmd {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s2
-constexpr const char* kExample = "write SHAPE@X,Y,Z@from=X,Y,Z, as in phone.stl@-80,0,1500@from=-1,0,0";
+constexpr const char* kExample = "write it as phone.stl@-80,0,1500@from=-1,0,0 or box:450,400,40@0,0,700@force=20";
 
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -70,6 +70,20 @@ TriangleMesh shape_of(const std::string& shape) {
   return read_surface(shape);
 }
 
+glm::dmat3 linear_of(const std::vector<double>& matrix) {
+  glm::dmat3 linear;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) linear[column][row] = matrix[4 * row + column];
+  return linear;
+}
+
+// Returns a direction as a unit vector; none for a zero vector.
+std::optional<glm::dvec3> direction_of(const std::vector<double>& v) {
+  const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (!(largest > 0)) return std::nullopt;
+  return glm::normalize(glm::dvec3(v[0] / largest, v[1] / largest, v[2] / largest));
+}
+
 void put_at(const std::vector<double>& place, TriangleMesh& surface) {
   for (glm::dvec3& v : surface.V) {
     if (place.size() == 3) {
@@ -94,9 +108,8 @@ FemObject object_of(const std::string& request) {
       object.tightens = true;
     } else if (begins(part, "from=")) {
       const auto from = list_of(part.substr(5), {3});
-      if (!from || (*from)[0] * (*from)[0] + (*from)[1] * (*from)[1] + (*from)[2] * (*from)[2] == 0)
-        refuse("from= needs a direction, or \"around\"", where);
-      object.from = glm::dvec3((*from)[0], (*from)[1], (*from)[2]);
+      if (from) object.from = direction_of(*from);
+      if (!object.from) refuse("from= needs a direction, or \"around\"", where);
     } else if (part == "force=weight") {
       object.share_of_weight = 1;
     } else if (begins(part, "force=")) {
@@ -105,6 +118,8 @@ FemObject object_of(const std::string& request) {
       object.force_n = (*force)[0];
     } else {
       const auto place = list_of(part, {3, 12});
+      if (place && place->size() == 12 && std::abs(glm::determinant(linear_of(*place))) < 1e-9)
+        refuse("the matrix presses the object flat", where);
       if (!place) refuse("\"" + part + "\" is no place: it needs 3 or 12 numbers", where);
       put_at(*place, object.surface);
     }
@@ -153,7 +168,14 @@ std::string given_fem_option(const FemOptions& options) {
 
 std::vector<FemObject> objects_of(const FemOptions& options) {
   std::vector<FemObject> objects;
-  for (const std::string& request : options.obstacles) objects.push_back(object_of(request));
+  for (const std::string& request : options.obstacles) {
+    FemObject object = object_of(request);
+    const auto alike = std::count_if(objects.begin(), objects.end(), [&](const FemObject& other) {
+      return other.name == object.name || other.name.starts_with(object.name + " (");
+    });
+    if (alike) object.name += " (" + std::to_string(alike + 1) + ")";
+    objects.push_back(std::move(object));
+  }
   if (objects.empty() && !options.pressure.empty())
     throw Error("there is no pressure without an object", "--pressure " + options.pressure, "give an --obstacle");
   return objects;
@@ -162,10 +184,9 @@ std::vector<FemObject> objects_of(const FemOptions& options) {
 glm::dvec3 gravity_of(const FemOptions& options) {
   if (options.gravity.empty()) return glm::dvec3(0);
   const auto down = list_of(options.gravity, {3});
-  const glm::dvec3 direction = down ? glm::dvec3((*down)[0], (*down)[1], (*down)[2]) : glm::dvec3(0);
-  if (!(glm::length(direction) > 0))
-    throw Error("gravity needs a direction", "--gravity " + options.gravity, "write X,Y,Z, as in 0,0,-1");
-  return kStandardGravity * glm::normalize(direction);
+  const std::optional<glm::dvec3> direction = down ? direction_of(*down) : std::nullopt;
+  if (!direction) throw Error("gravity needs a direction", "--gravity " + options.gravity, "write X,Y,Z, as in 0,0,-1");
+  return kStandardGravity * *direction;
 }
 
 void write_pressure(const std::vector<PressedNode>& pressed, const std::vector<ObjectReport>& objects,

@@ -280,8 +280,9 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
     write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true});
   });
   if (!options.mesh_out.empty()) write_mesh(options, body.tissues, posed.volume, *posed.shape);
-  outputs.write(options.fem->pressure,
-                [&] { write_pressure(posed.shape->pressed, posed.shape->objects, options.fem->pressure); });
+  if (posed.shape)
+    outputs.write(options.fem->pressure,
+                  [&] { write_pressure(posed.shape->pressed, posed.shape->objects, options.fem->pressure); });
   if (options.grey.empty()) return;
   const std::string to = grey_paths(options.grey).to;
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });

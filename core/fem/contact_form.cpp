@@ -87,12 +87,21 @@ void ContactForm::add_push(const NodePositions& step, NodePositions& gradient) c
   }
 }
 
-NodePositions ContactForm::object_forces() const {
-  NodePositions force = NodePositions::Zero(rest_.rows(), 3);
-  for (const Touch& touch : touching_)
-    for (int a = 0; has_object(touch.pair) && a < 4; ++a)
-      force.row(touch.pair.node[a]) -= (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
-  return force;
+ContactForm::ObjectForces ContactForm::object_forces() const {
+  ObjectForces forces{NodePositions::Zero(rest_.rows(), 3), std::vector<int>(rest_.rows(), -1)};
+  std::vector<double> most(rest_.rows(), 0);
+  for (const Touch& touch : touching_) {
+    if (!has_object(touch.pair)) continue;
+    const auto& nodes = touch.pair.node;
+    const int object = *std::max_element(nodes.begin(), nodes.end());
+    for (int a = 0; a < 4; ++a) {
+      const Eigen::RowVector3d force =
+          -(touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
+      forces.force.row(nodes[a]) += force;
+      if (force.norm() > most[nodes[a]]) most[nodes[a]] = force.norm(), forces.pressed_by[nodes[a]] = object;
+    }
+  }
+  return forces;
 }
 
 ContactForm::Fade ContactForm::fade(const ContactPair& pair, const NodePositions& x) const {

@@ -74,8 +74,13 @@ class ContactForm {
   // Adds the change of the gradient on the skin's nodes that a motion of the objects causes, to first order.
   //   step  #nodes: the motion of each node; that of the skin's nodes does not count
   void add_push(const NodePositions& step, NodePositions& gradient) const;
-  // Returns the force on each node, mN, from the pairs that touch and that consist of skin and an object.
-  NodePositions object_forces() const;
+  // The forces between skin and objects: the force on each node, mN, and for each node of the skin the node of the
+  // object that presses it most; -1: none does.
+  struct ObjectForces {
+    NodePositions force;
+    std::vector<int> pressed_by;
+  };
+  ObjectForces object_forces() const;
 
   // Adds to the matrix's sparsity pattern the pairs that touch at x or nearly touch. If another pair begins to touch,
   // the matrix lacks the blocks that couple the pair's two parts: each part then reacts as if the other did not move.

@@ -150,7 +150,7 @@ void FemEnergy::gradient(const NodePositions& x, NodePositions& gradient) {
   if (load_.rows()) gradient -= load_;
 }
 
-NodePositions FemEnergy::object_forces(const NodePositions& x) {
+ContactForm::ObjectForces FemEnergy::object_forces(const NodePositions& x) {
   contact_.update_active_pairs(x);
   return contact_.object_forces();
 }

@@ -90,7 +90,7 @@ class FemEnergy {
   NodePositions limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed);
 
   // Returns the force on each node, mN, from contact between skin and objects. The broad phase must be valid at x.
-  NodePositions object_forces(const NodePositions& x);
+  ContactForm::ObjectForces object_forces(const NodePositions& x);
 
   // Returns the smallest distance of parts that touch at the last newton_step(), in thicknesses of the barrier.
   double tightest() const { return contact_.tightest(); }

@@ -50,8 +50,8 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
-// Number of an object in the list of rigid nodes, above all numbers of bones.
-constexpr int kFirstObject = 1 << 20;
+// Number of all objects in the list of rigid nodes, above all numbers of bones: objects may touch and pass each other.
+constexpr int kObjects = 1 << 20;
 
 NodePositions with_objects(const NodePositions& body, const NodePositions& objects) {
   NodePositions all(body.rows() + objects.rows(), 3);
@@ -263,12 +263,12 @@ NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   return sum;
 }
 
-// Returns, for each node, the number of the bone or the object with which it moves rigidly; -1: none.
+// Returns, for each node, the number of the bone or the objects with which it moves rigidly; -1: none.
 std::vector<int> PoseSolve::rigid_nodes() const {
   std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
     if (!held_[v]) rigid[v] = -1;
-  for (const int object : model_.objects.object) rigid.push_back(kFirstObject + object);
+  rigid.resize(rest_.rows(), kObjects);
   return rigid;
 }
 
@@ -312,7 +312,7 @@ double PoseSolve::follow(double from, double to, NodePositions& x) {
     if (bound < kRough && at - from > shortest_) continue;
     // Objects must stand where they are held: unlike bones, they have no springs that would draw them there.
     const double there = objects.rows() ? from + bound * (at - from) : at;
-    if (there - from < kLeastPart * shortest_) return from;
+    if (there < to && there - from < kLeastPart * shortest_) return from;
     x += bound * step;
     hold_at(there);
     tell(there, ++result_.iterations, std::sqrt(step.rowwise().squaredNorm().maxCoeff()), x);
@@ -413,7 +413,10 @@ bool PoseSolve::good(const std::vector<RigidTransform>& pose, const NodePosition
 // Measures the forces between skin and objects.
 void PoseSolve::measure_objects() {
   energy_->build_broad_phase(x_);
-  const NodePositions forces = energy_->object_forces(x_);
+  const auto [forces, pressed_by] = energy_->object_forces(x_);
+  result_.pressed_by.assign(nodes_, -1);
+  for (Eigen::Index v = 0; v < nodes_; ++v)
+    if (pressed_by[v] >= 0) result_.pressed_by[v] = model_.objects.object[pressed_by[v] - nodes_];
   result_.objects = x_.bottomRows(rest_.rows() - nodes_);
   result_.force_on_skin = forces.topRows(nodes_);
   result_.force_on_objects = forces.bottomRows(rest_.rows() - nodes_);

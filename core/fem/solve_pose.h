@@ -81,8 +81,9 @@ struct SolvedPose {
   // Forces of contact between skin and objects, mN: on each node of the mesh, and on each node of the objects. Empty if
   // there are no objects.
   NodePositions force_on_skin, force_on_objects;
-  NodePositions objects;      // where the objects' nodes are
-  std::int64_t inverted = 0;  // tets of flesh and bone with det F <= 0, summed over the ends of all steps
+  NodePositions objects;        // positions of the objects' nodes
+  std::vector<int> pressed_by;  // #V: the object that presses the node most; -1: none does
+  std::int64_t inverted = 0;    // tets of flesh and bone with det F <= 0, summed over the ends of all steps
   FemSeconds seconds;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -27,6 +28,8 @@ constexpr double kDegreesPerEdge = 22.5;
 constexpr double kTight = 0.02;
 constexpr double kForceTolerance = 0.01;  // largest relative deviation from the force that was asked for
 constexpr int kForceTries = 20;           // largest number of solves to find it
+constexpr int kRounds = 4;                // largest number of times that each object's force is searched
+constexpr double kStuck = 0.02;           // motion of an object that cannot go on, mm
 constexpr double kFirstMove = 1;          // motion of an object from the first try to the second, mm
 constexpr double kDeepest = 50;           // largest distance by which an object may go beyond its place, mm
 constexpr double kMostPoints = 4e6;       // upper limit on the points of an object's sweep
@@ -35,8 +38,7 @@ constexpr double kNearGap = 2;            // largest gap between skin and object
 Eigen::RowVector3d row_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 vec_of(const Eigen::RowVector3d& v) { return {v[0], v[1], v[2]}; }
 
-// Returns the direction from an object's axis to each of its vertices. The axis is the direction to which the
-// triangles' normals are most perpendicular.
+// Returns the direction from an object's axis to each of its vertices; zero for a vertex on the axis.
 std::vector<glm::dvec3> away_from_axis(const TriangleMesh& mesh) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   glm::dvec3 centre(0);
@@ -52,7 +54,10 @@ std::vector<glm::dvec3> away_from_axis(const TriangleMesh& mesh) {
   }
   centre /= std::max(area, 1e-300);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
-  const glm::dvec3 axis = vec_of(solver.eigenvectors().col(0).transpose());
+  // Of the three directions, the axis is the one that stands apart from the other two, which are alike.
+  const Eigen::Vector3d spread = solver.eigenvalues();
+  const glm::dvec3 axis =
+      vec_of(solver.eigenvectors().col(spread[1] - spread[0] >= spread[2] - spread[1] ? 0 : 2).transpose());
   std::vector<glm::dvec3> ways;
   for (const glm::dvec3& v : mesh.V) {
     const glm::dvec3 out = v - centre - glm::dot(v - centre, axis) * axis;
@@ -121,6 +126,10 @@ std::vector<FemObjects::Way> FemObjects::ways_to(const FemObject& object) const 
   };
   if (object.tightens) {
     ways.push_back({away_from_axis(object.surface)});
+    for (const glm::dvec3& way : ways.back().of_vertex)
+      if (way == glm::dvec3(0))
+        throw Error("an object with points on its axis cannot come from around", object.name,
+                    "give a tube or a ring, or a direction");
   } else if (object.from) {
     add(*object.from);
   } else {
@@ -157,10 +166,13 @@ void FemObjects::choose(const std::vector<ObjectClearance>& clearances) {
   way_.clear();
   for (std::size_t k = 0; k < objects_.size(); ++k) {
     if (!std::isfinite(clearances[k].mm))
-      throw Error("the object cannot come to its place: the body is in its way from every side", objects_[k].name,
-                  "place it at the skin, or say from where it comes, as in @from=0,-1,0");
+      throw Error(objects_[k].from || objects_[k].tightens
+                      ? "the object cannot come to its place: over a metre the body is in its way"
+                      : "the object cannot come to its place: over a metre the body is in its way from every side",
+                  objects_[k].name, "place it at the skin, or say from which side it comes, as in @from=0,-1,0");
     if (!clearances[k].presses)
-      throw Error("the object is not near any skin at its place", objects_[k].name, "place it at the skin, in mm");
+      throw Error("the object is not near any skin at its place", objects_[k].name,
+                  "place it at the skin, in mm, and the body not inside it");
     way_.push_back(std::move(ways_to(objects_[k])[clearances[k].way]));
     way_.back().clear_mm = clearances[k].mm;
   }
@@ -256,27 +268,42 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
   settings.has_weight_at_start = true;
   std::vector<double> place(objects_.size(), 0);
   for (std::size_t k = 0; k < objects_.size(); ++k) away_[k] = way_[k].clear_mm;
+  // The solved flesh may reach further out than the way was searched for.
+  for (int tries = 0; tries < kForceTries; ++tries) {
+    const std::vector<std::int64_t> crossing = crossings(model, solved.V);
+    for (std::size_t k = 0; k < crossing.size(); ++k) away_[k] += crossing[k] ? spacing : 0;
+    if (std::all_of(crossing.begin(), crossing.end(), [](std::int64_t count) { return count == 0; })) break;
+  }
   solved = move(model, pose, solved, place, settings, spacing, progress, on_step);
   if (std::exchange(solved.reached, 1) < 1)
     solved.blocked_by = "an object stops before its place: " + solved.blocked_by;
-  for (std::size_t k = 0; k < objects_.size(); ++k) {
-    const double wanted = objects_[k].force_n + objects_[k].share_of_weight * weight_n;
-    if (!(wanted > 0)) continue;
-    asked_n_[k] = wanted;
-    double off = pressing(solved, k) - wanted;
-    ForceSearch search;
-    for (int tries = 0; tries < kForceTries && std::abs(off) > kForceTolerance * wanted; ++tries) {
-      std::vector<double> next = away_;
-      next[k] = std::max(search.next(away_[k], off), -kDeepest);
-      if (next[k] == away_[k]) break;
-      solved = move(model, pose, solved, next, settings, spacing, progress, on_step);
-      solved.reached = 1;
-      off = pressing(solved, k) - wanted;
+  for (std::size_t k = 0; k < objects_.size(); ++k)
+    if (const double wanted = objects_[k].force_n + objects_[k].share_of_weight * weight_n; wanted > 0)
+      asked_n_[k] = wanted;
+  const auto is_off = [&](std::size_t k) {
+    return asked_n_[k] && std::abs(pressing(solved, k) - *asked_n_[k]) > kForceTolerance * *asked_n_[k];
+  };
+  // One object changes what presses another, so that each is searched again until all forces are right.
+  for (int round = 0; round < kRounds; ++round)
+    for (std::size_t k = 0; k < objects_.size(); ++k) {
+      ForceSearch search;
+      for (int tries = 0; tries < kForceTries && is_off(k); ++tries) {
+        std::vector<double> next = away_;
+        next[k] = std::max(search.next(away_[k], pressing(solved, k) - *asked_n_[k]), -kDeepest);
+        const double before = away_[k];
+        if (next[k] == before) break;
+        solved = move(model, pose, solved, next, settings, spacing, progress, on_step);
+        if (std::exchange(solved.reached, 1) < 1 && std::abs(away_[k] - before) < kStuck) break;
+      }
     }
-    if (std::abs(off) <= kForceTolerance * wanted) continue;
-    solved.converged = false;
-    if (solved.blocked_by.empty()) solved.blocked_by = "the force of an object is not reached";
-  }
+  for (std::size_t k = 0; k < objects_.size(); ++k)
+    if (is_off(k)) {
+      char text[200];
+      std::snprintf(text, sizeof text, "%.60s presses with %.3g N instead of %.3g N: ", objects_[k].name.c_str(),
+                    pressing(solved, k), *asked_n_[k]);
+      solved.converged = false;
+      solved.blocked_by = text + (solved.blocked_by.empty() ? "no place for it was found" : solved.blocked_by);
+    }
   return solved;
 }
 
@@ -289,15 +316,28 @@ std::vector<PressedNode> FemObjects::pressed_nodes(const FemModel& model, const 
     const Eigen::Vector3d a = solved.V.row(f[1]) - solved.V.row(f[0]), b = solved.V.row(f[2]) - solved.V.row(f[0]);
     for (const int v : f) area[v] += a.cross(b).norm() / 6;
   }
-  const NodePositions there = positions(away_);
   for (Eigen::Index v = 0; v < solved.V.rows(); ++v) {
     const double force = solved.force_on_skin.row(v).norm();
     if (!(force > 0) || !(area[v] > 0)) continue;
-    Eigen::Index nearest = 0;
-    (there.rowwise() - solved.V.row(v)).rowwise().squaredNorm().minCoeff(&nearest);
-    pressed.push_back({vec_of(solved.V.row(v)), force / area[v], area[v], model.objects.object[nearest]});
+    pressed.push_back({vec_of(solved.V.row(v)), force / area[v], area[v], solved.pressed_by[v]});
   }
   return pressed;
+}
+
+std::vector<std::int64_t> FemObjects::crossings(const FemModel& model, const Eigen::MatrixX3d& body) const {
+  const Eigen::MatrixX3i skin = boundary_of(model.mesh.T);
+  const NodePositions there = positions(away_);
+  Eigen::MatrixX3d V(body.rows() + there.rows(), 3);
+  V << body, there;
+  Eigen::MatrixX3i F(skin.rows() + model.objects.F.rows(), 3);
+  F << skin, model.objects.F.array() + int(body.rows());
+  const auto object_of = [&](int face) {
+    return face < skin.rows() ? -1 : model.objects.object[model.objects.F(face - skin.rows(), 0)];
+  };
+  std::vector<std::int64_t> count(objects_.size(), 0);
+  for (const auto& [a, b] : crossing_pairs(V, F))
+    if (const int one = object_of(a), other = object_of(b); (one < 0) != (other < 0)) ++count[std::max(one, other)];
+  return count;
 }
 
 std::vector<ObjectReport> FemObjects::report(const FemModel& model, const SolvedPose& solved) const {
@@ -322,12 +362,8 @@ std::vector<ObjectReport> FemObjects::report(const FemModel& model, const Solved
     report.area_mm2 += node.area_mm2;
     report.largest_kpa = std::max(report.largest_kpa, node.kpa);
   }
-  const auto object_of = [&](int face) {
-    return face < skin.rows() ? -1 : model.objects.object[model.objects.F(face - skin.rows(), 0)];
-  };
-  for (const auto& [a, b] : crossing_pairs(V, F))
-    if (const int one = object_of(a), other = object_of(b); (one < 0) != (other < 0))
-      ++reports[std::max(one, other)].crossings;
+  const std::vector<std::int64_t> crossing = crossings(model, solved.V);
+  for (std::size_t k = 0; k < reports.size(); ++k) reports[k].crossings = crossing[k];
   std::vector<double> gap(reports.size(), INFINITY);
   const std::vector<int> free(V.rows(), -1);
   for (const ContactPair& pair :

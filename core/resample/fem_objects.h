@@ -90,6 +90,8 @@ class FemObjects {
                   const std::vector<double>& away, const SolveSettings& settings, double spacing, Progress& progress,
                   const std::function<void(const SolveStep&)>& on_step);
   double pressing(const SolvedPose& solved, std::size_t object) const;
+  // Returns, for each object, the pairs of triangles of the skin and of the object that cross.
+  std::vector<std::int64_t> crossings(const FemModel& model, const Eigen::MatrixX3d& body) const;
 
   std::vector<FemObject> objects_;
   std::vector<Way> way_;      // the chosen way of each object

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/fem/contact_gap.h"
@@ -256,19 +257,22 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                                .contact_mm = std::min(size_ * kContact, finest_ / 4),
                                .object_mm = std::min(size_ * SolveSettings().object_mm, finest_ / 4),
                                .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
-                               .has_weight_at_start = solved_ > 1,
+                               .has_weight_at_start = has_weight_,
                                .step_tolerance_mm = finest_ / 2,
                                .tolerance_mm = size_ * SolveSettings().tolerance_mm,
                                .bone_drift_mm = std::max(size_ * kDrift, spacing_ / 2),
                                .size = size_};
   double angle = largest_angle_degrees(from, to);
-  if (fem_.gravity != glm::dvec3(0) && solved_ == 1) angle = std::max(angle, kSagging);
+  if (fem_.gravity != glm::dvec3(0) && !has_weight_) angle = std::max(angle, kSagging);
   SolvedPose solved = solve_pose(last_.model.fem, path, angle, settings, progress, fem_.on_step, &last_.V);
   // The solve needs no step although the pose bends joints if no bone that moves holds a node of the mesh.
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
                 "choose a finer quality, or blend instead");
-  if (!objects_.empty() && solved_ == 1 && solved.reached == 1)
+  has_weight_ = has_weight_ || solved.reached == 1;
+  if (!objects_.empty() && !is_pressed_ && solved.reached < 1)
+    solved.blocked_by += ", so the objects were not brought to the body";
+  if (!objects_.empty() && !std::exchange(is_pressed_, is_pressed_ || solved.reached == 1) && solved.reached == 1)
     solved = objects_.press(last_.model.fem, path(1), std::move(solved), settings, spacing_, weight_n_, progress,
                             fem_.on_step);
   const bool ends = solved_ == poses_.size();

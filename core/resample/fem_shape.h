@@ -57,8 +57,10 @@ class FemSequence {
   std::vector<FemModel::Waiting> waiting_;  // nodes that a bone moves at first; `until` is a position on the whole path
   std::size_t solved_ = 0;                  // number of poses solved so far
   FemObjects objects_;
-  double weight_n_ = 0;  // weight of the body, N
-  FemShape last_;        // the shape solved last; at rest before the first solve
+  double weight_n_ = 0;      // weight of the body, N
+  bool is_pressed_ = false;  // whether the objects are in their places
+  bool has_weight_ = false;  // whether gravity acts at the start of the next solve
+  FemShape last_;            // the shape solved last; at rest before the first solve
 };
 
 }  // namespace limber

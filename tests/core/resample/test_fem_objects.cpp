@@ -184,6 +184,39 @@ TEST_CASE("objects: one that is not near the skin is refused, also when the body
   CHECK_THROWS_WITH_AS(arm().posed(pressing({around})), doctest::Contains("not near any skin"), Error);
 }
 
+TEST_CASE("objects: two that press from two sides both get their forces, and the pressures belong to the right one") {
+  FemObject other = block(0, 6);
+  for (glm::dvec3& v : other.surface.V) v.x = arm().low.x + arm().high.x - v.x;
+  for (glm::ivec3& f : other.surface.F) std::swap(f.x, f.y);
+  other.name = "other";
+  other.from = glm::dvec3(-1, 0, 0);
+  const Posed posed = arm().posed(pressing({block(0, 9), other}));
+  CHECK(posed.report.solve->converged);
+  CHECK(posed.report.objects.at(0).pressing_n == doctest::Approx(9).epsilon(0.011));
+  CHECK(posed.report.objects.at(1).pressing_n == doctest::Approx(6).epsilon(0.011));
+  const double middle = (arm().low.x + arm().high.x) / 2;
+  for (const PressedNode& node : posed.shape->pressed) CHECK(node.object == (node.position.x > middle ? 0 : 1));
+}
+
+TEST_CASE("objects: two objects that pass through each other do not press each other") {
+  FemObject across = block(10);
+  for (glm::dvec3& v : across.surface.V) v.z += 10;
+  const Posed alone = arm().posed(pressing({block(10)})), both = arm().posed(pressing({block(10), across}));
+  CHECK(both.report.solve->converged);
+  CHECK(both.report.objects.at(0).pressing_n < 2 * alone.report.objects.at(0).pressing_n);
+}
+
+TEST_CASE("objects: a bent arm is pressed after it has bent") {
+  Pose pose = rest_pose(arm().phantom.armature);
+  flex(pose, arm().phantom.armature, require_bone(arm().phantom.armature, "Forearm"), 8);
+  FemObject object = block(6);
+  const Posed posed = resample(arm().phantom.volume, arm().phantom.tissues, arm().phantom.armature, arm().weights, pose,
+                               pressing({object}));
+  CHECK(posed.report.solve->reached == 1);
+  CHECK(std::abs(posed.report.objects.at(0).away_mm) < 0.1);
+  CHECK(posed.report.objects.at(0).crossings == 0);
+}
+
 TEST_CASE("objects: one and two threads give the same bytes") {
   std::vector<Posed> posed;
   for (const int threads : {1, 2}) {
