@@ -56,8 +56,8 @@ std::string labels_text(const std::vector<double>& labels) {
 
 Json read_facts(const Path& file) { return Json::parse(sound_json(read_file(file)), nullptr, false); }
 
-// Returns the SHA-256 of a file, or for a packed NRRD file that of its unpacked content, because the packer chooses
-// among codes of the same length by the addresses of its memory.
+// Returns the SHA-256 of a file, or for a packed NRRD file that of its unpacked content, because the packer does not
+// promise the same bytes for the same content.
 std::string content_hash(const Path& file) {
   std::string bytes = read_file(file);
   const std::size_t header = bytes.find("\n\n");

@@ -73,7 +73,7 @@ Method method_of(const PosingSettings& settings, const PosingEvents& events) {
   if (!method) throw Error("there is no such method", settings.method, "write " + method_summaries(Methods::All));
   if (method->blend) return *method->blend;
   Fem fem;
-  fem.contact = settings.contact || !settings.objects.empty();
+  fem.contact = settings.has_contact();
   fem.objects = settings.objects;
   fem.gravity = settings.gravity;
   if (settings.quality == "draft") fem.quality = FemQuality::Draft;
@@ -94,7 +94,7 @@ void describe(const PosingSettings& asked, const Armature& rig, const Pose& pose
   settings["fit_joints"] = asked.fit_joints;
   settings["glide"] = asked.glide;
   if (asked.method == kFiniteElements) {
-    settings["contact"] = asked.contact || !asked.objects.empty();
+    settings["contact"] = asked.has_contact();
     settings["quality"] = asked.quality.empty() ? std::string("normal") : asked.quality;
     if (!asked.mesher.empty()) settings["mesher"] = asked.mesher;
   }
@@ -118,7 +118,7 @@ void note_results(const Body& body, const BoundBody& bound, const PosingSettings
   const Warnings warnings(posed.report, events);
   if (const std::string overlap = overlap_warning(posed.report.glide, deform.bone_overlap_voxels); !overlap.empty())
     warnings.note({overlap});
-  note_shape(warnings, deform, posed.pose, settings.contact || !settings.objects.empty());
+  note_shape(warnings, deform, posed.pose, settings.has_contact());
   for (const ObjectReport& object : deform.objects)
     if (object.crossings > 0)
       warnings.note({object.name + " crosses the skin in " + std::to_string(object.crossings) + " pairs of triangles"});

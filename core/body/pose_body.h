@@ -27,6 +27,8 @@ struct PosingSettings {
   std::string glide = "joint";     // a word of glide_poses.h
   bool fit_joints = false;         // fits the axes of joints to the bones around them first; only for one pose
   ResampleSettings resample;       // its seams are those of the bound body
+
+  bool has_contact() const { return contact || !objects.empty(); }  // objects press only where there is contact
 };
 
 // Called during the work; each may be empty.

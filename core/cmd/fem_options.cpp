@@ -18,7 +18,6 @@ namespace limber::cmd {
 
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s2
 constexpr const char* kExample = "write it as phone.stl@-80,0,1500@from=-1,0,0 or box:450,400,40@0,0,700@force=20";
 
 std::vector<std::string> parts_of(const std::string& text, char separator) {

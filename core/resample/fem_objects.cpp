@@ -19,7 +19,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kGravity = 9.80665;  // standard acceleration of gravity, m/s2
 constexpr double kFar = 10000;        // distance from its place at which an object waits while the body is posed, mm
 // The solver takes its steps by the largest rotation of a joint. An object's motion by one edge length of the tets
 // counts as this rotation, degrees.
@@ -395,7 +394,7 @@ double weight_of(const LabelVolume& volume, const TissueVoxels& tissue, const Ti
   for (const Tissue& each : tissues.tissues) density[each.label] = each.density;
   double sum = 0;
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) { sum += density[volume.at(v)]; });
-  return 1e-6 * sum * volume.grid.voxel_volume() * kGravity;
+  return 1e-6 * sum * volume.grid.voxel_volume() * kStandardGravity;
 }
 
 }  // namespace limber

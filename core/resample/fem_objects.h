@@ -14,6 +14,8 @@
 
 namespace limber {
 
+constexpr double kStandardGravity = 9.80665;  // acceleration of gravity, m/s2
+
 struct FemObject {
   std::string name;      // for messages and the report
   TriangleMesh surface;  // in its place, world, mm
