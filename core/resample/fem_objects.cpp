@@ -19,7 +19,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kFar = 10000;        // distance from its place at which an object waits while the body is posed, mm
+constexpr double kFar = 10000;  // distance from its place at which an object waits while the body is posed, mm
 // The solver takes its steps by the largest rotation of a joint. An object's motion by one edge length of the tets
 // counts as this rotation, degrees.
 constexpr double kDegreesPerEdge = 22.5;
@@ -27,6 +27,7 @@ constexpr double kDegreesPerEdge = 22.5;
 constexpr double kTight = 0.02;
 constexpr double kForceTolerance = 0.01;  // largest relative deviation from the force that was asked for
 constexpr int kForceTries = 20;           // largest number of solves to find it
+constexpr double kMostOff = 4;            // upper limit on a force in the search, as a multiple of the one asked for
 constexpr int kRounds = 4;                // largest number of times that each object's force is searched
 constexpr double kStuck = 0.02;           // motion of an object that cannot go on, mm
 constexpr double kFirstMove = 1;          // motion of an object from the first try to the second, mm
@@ -273,6 +274,9 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
     for (std::size_t k = 0; k < crossing.size(); ++k) away_[k] += crossing[k] ? spacing : 0;
     if (std::all_of(crossing.begin(), crossing.end(), [](std::int64_t count) { return count == 0; })) break;
   }
+  // The last shape in which no object presses too hard. Each try starts from it: flesh that is squeezed may jam.
+  SolvedPose gentle = solved;
+  std::vector<double> gentle_away = away_;
   solved = move(model, pose, solved, place, settings, spacing, progress, on_step);
   if (std::exchange(solved.reached, 1) < 1)
     solved.blocked_by = "an object stops before its place: " + solved.blocked_by;
@@ -287,8 +291,17 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
     for (std::size_t k = 0; k < objects_.size(); ++k) {
       ForceSearch search;
       for (int tries = 0; tries < kForceTries && is_off(k); ++tries) {
+        const double wanted = *asked_n_[k], off = pressing(solved, k) - wanted;
         std::vector<double> next = away_;
-        next[k] = std::max(search.next(away_[k], pressing(solved, k) - *asked_n_[k]), -kDeepest);
+        next[k] = std::max(search.next(away_[k], std::min(off, kMostOff * wanted)), -kDeepest);
+        if (off < 0) {
+          gentle = solved, gentle_away = away_;
+        } else {
+          gentle.steps = solved.steps, gentle.iterations = solved.iterations;
+          gentle.factorizations = solved.factorizations, gentle.analyses = solved.analyses;
+          gentle.seconds = solved.seconds;
+          solved = gentle, away_ = gentle_away;
+        }
         const double before = away_[k];
         if (next[k] == before) break;
         solved = move(model, pose, solved, next, settings, spacing, progress, on_step);

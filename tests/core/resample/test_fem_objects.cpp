@@ -118,6 +118,14 @@ TEST_CASE("objects: a block presses with the force that was asked for, and the p
   }
 }
 
+TEST_CASE("objects: a light touch is found, also from a place deep in the bone") {
+  const Posed posed = arm().posed(pressing({block(45, 5)}));
+  CHECK(posed.report.solve->converged);
+  CHECK(posed.report.objects.at(0).pressing_n == doctest::Approx(5).epsilon(0.01));
+  CHECK(posed.report.objects.at(0).away_mm > 20);
+  CHECK(posed.report.objects.at(0).crossings == 0);
+}
+
 TEST_CASE("objects: a table carries the weight of the arm") {
   FemObject table{"table", {}, glm::dvec3(0, 1, 0)};
   table.surface =
