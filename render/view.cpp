@@ -19,6 +19,10 @@ constexpr double kRest = 0.1;          // time without a change after which the 
 constexpr double kFrame = 0.028;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
+constexpr int kImageTile = 40;         // the same where a grey image is drawn, whose rays take ten times as long
+// Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
+// something moves.
+constexpr double kFineStep = 0.7, kCoarseStep = 1.4;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -114,12 +118,24 @@ struct BodyKey {
   std::optional<std::array<glm::dvec3, 2>> box, plane;
   Camera camera;
   glm::ivec2 size{0};
-  bool places = false;  // true: the rest position of each pixel is needed, to look up its weights
+  bool places = false;            // true: the rest position of each pixel is needed, to look up its weights
+  std::optional<ShownGrey> grey;  // only if the grey image is drawn instead of the body
 
   bool operator==(const BodyKey&) const = default;
 };
+// Returns true if the 3D view shows the grey image instead of the body.
+bool shows_image(const Scene& scene) { return scene.display == Display::Image && scene.grey && scene.grey->image; }
+// Returns what the rendering of the image depends on: not on the window where its colours are fixed to values.
+std::optional<ShownGrey> rendered_image(const Scene& scene) {
+  if (!shows_image(scene)) return std::nullopt;
+  ShownGrey grey = *scene.grey;
+  grey.tissues = 0;
+  if (grey.rendering != GreyRendering::Window && grey.rendering != GreyRendering::Maximum) grey.level = grey.width = 0;
+  return grey;
+}
 BodyKey key_of(const Scene& scene, const Camera& camera, const glm::ivec2& size, bool places) {
-  return {scene.volume, scene.pose, scene.looks, scene.display, scene.clip.box, scene.clip.plane, camera, size, places};
+  return {scene.volume,     scene.pose, scene.looks, scene.display, scene.clip.box,
+          scene.clip.plane, camera,     size,        places,        rendered_image(scene)};
 }
 
 // These functions return true if two scenes have the same posed bones, the same bone highlights, and the same overlays
@@ -211,8 +227,9 @@ struct View3D::Impl {
   bool refines = false;  // true: the picture will be refined to full resolution and averaged (scale 0)
   PixelRect rect;        // the rectangle that the body covers, in pixels of the picture drawn at shown_scale
   std::int64_t rays_followed = 0;
+  int image_slices = 0;    // slices of the grey image that were uploaded when the picture was drawn last
   int weight_changes = 0;  // value of WeightTexture::changes() when the picture was drawn last
-  bool has_all_weights = true;
+  bool has_all_weights = true, has_whole_image = true;
 
   struct Source {
     PassResources::Body* body = nullptr;
@@ -220,6 +237,7 @@ struct View3D::Impl {
     std::vector<const VisibleField*> layers;
     const PosedTexture* pose = nullptr;
     const WeightTexture* weights = nullptr;
+    const GreyTexture* image = nullptr;         // the grey image to draw instead of the body; null: the body is drawn
     std::vector<const PosedHull*> posed_hulls;  // one for each layer; null at rest
 
     const Hull& hull(size_t layer) const {
@@ -230,7 +248,9 @@ struct View3D::Impl {
     if (!scene.volume || !scene.looks) return std::nullopt;
     Source result;
     result.body = &resources.body(scene.volume);
-    result.looks = &resources.looks(*result.body, scene.looks, scene.display);
+    if (shows_image(scene)) result.image = resources.grey(scene.grey, extent);
+    result.looks =
+        &resources.looks(*result.body, scene.looks, scene.display == Display::Image ? Display::Solid : scene.display);
     result.pose = resources.pose(*result.body, scene.pose);
     result.weights = resources.weights(*result.body, scene.weights, extent);
     for (size_t layer = 0; layer < result.looks->layers().size(); ++layer) {
@@ -240,10 +260,24 @@ struct View3D::Impl {
     return result;
   }
 
-  ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
+  // Returns the corners of the box around what the picture shows, in padded coordinates.
+  static std::array<glm::vec3, 2> shown_box(const Source& source) {
     const Hull& outer = source.hull(0);
-    ViewRays rays =
-        view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), outer.low(), outer.high());
+    if (!source.image) return {outer.low(), outer.high()};
+    const auto [low, high] = ImagePass::box(*source.body->volume, source.pose, *source.image);
+    if (outer.empty()) return {glm::vec3(low), glm::vec3(high)};
+    return {glm::min(glm::vec3(low), outer.low()), glm::max(glm::vec3(high), outer.high())};
+  }
+  // Returns the rectangle that the body or the image can cover in a picture of `size` pixels.
+  static PixelRect covered_by(const Source& source, const ViewRays& rays, const glm::ivec2& size) {
+    if (!source.image) return VolumePass::covered(source.hull(0), rays, size);
+    const auto [low, high] = shown_box(source);
+    return VolumePass::covered(low, high, rays, size);
+  }
+
+  ViewRays rays_of(const Source& source, const glm::ivec2& size, int sample) const {
+    const auto [low, high] = shown_box(source);
+    ViewRays rays = view_rays(key.camera, source.body->volume->grid(), size, jitter_of(sample), low, high);
     rays.label_shift = label_shift_of(sample);
     rays.mirrored_taps = sample % 2 != 0;
     return rays;
@@ -269,6 +303,16 @@ struct View3D::Impl {
       pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer],
                  source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
   }
+  // Draws a rectangle of the grey image into the picture of the body, which has the size of the buffers.
+  //   step  length of a ray's steps, voxels of the image
+  void draw_image(const Source& source, const ViewRays& rays, const Layers& buffers, double step,
+                  const PixelRect& part) {
+    body.resize(buffers[0].size(), GL_RGBA8);
+    body.bind();
+    resources.image.draw(*source.body->volume, source.pose, *source.image, *scene.grey, scene.clip, rays, step, part,
+                         body.size());
+    image_slices = source.image->uploaded();
+  }
   ShadePass::Colours colours() const {
     if (!scene.weights) return ShadePass::Colours::Tissues;
     if (!scene.weights->contours) return ShadePass::Colours::Weights;
@@ -293,10 +337,16 @@ struct View3D::Impl {
   void draw_at_once(const Source& source, int scale) {
     const glm::ivec2 size = glm::max((key.size + scale - 1) / scale, glm::ivec2(1));
     const ViewRays rays = rays_of(source, size, 0);
-    rect = VolumePass::covered(source.hull(0), rays, size);
+    rect = covered_by(source, rays, size);
     start(source, rays, shown, size, rect);
     march(source, rays, shown, rect);
-    shade(source, rays, shown, rect);
+    if (source.image) {
+      body.resize(size, GL_RGBA8);
+      body.clear();
+      draw_image(source, rays, shown, scale == 1 ? kFineStep : kCoarseStep, rect);
+    } else {
+      shade(source, rays, shown, rect);
+    }
     shown_scale = scale;
   }
 
@@ -304,20 +354,27 @@ struct View3D::Impl {
   bool refine(const Source& source) {
     const double begin = seconds();
     const ViewRays rays = rays_of(source, key.size, sample);
-    const PixelRect part = VolumePass::covered(source.hull(0), rays, key.size);
-    if (next_tile == 0) start(source, rays, jittered, key.size, part);
-    const glm::ivec2 tiles = (part.high - part.low + kTile - 1) / kTile;
+    const PixelRect part = covered_by(source, rays, key.size);
+    if (next_tile == 0) {
+      start(source, rays, jittered, key.size, part);
+      body.resize(key.size, GL_RGBA8);
+      if (source.image) body.clear();
+    }
+    const int edge = source.image ? kImageTile : kTile;
+    const glm::ivec2 tiles = (part.high - part.low + edge - 1) / edge;
     const int count = part.empty() ? 0 : tiles.x * tiles.y;
     do {
       if (next_tile >= count) break;
-      const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * kTile;
-      march(source, rays, jittered, intersection(part, {low, low + kTile}));
+      const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * edge;
+      const PixelRect tile = intersection(part, {low, low + edge});
+      march(source, rays, jittered, tile);
+      if (source.image) draw_image(source, rays, jittered, kFineStep, tile);
       ++next_tile;
       glFinish();
     } while (seconds() - begin < kTileBudget);
     if (next_tile < count) return false;
 
-    shade(source, rays, jittered, part);
+    if (!source.image) shade(source, rays, jittered, part);
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
     average.bind();
@@ -393,12 +450,15 @@ struct View3D::Impl {
     if (has_body && scene.outlined)
       resources.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
     if (has_body && scene.mesh) draw_mesh();
-    resources.armature.draw(scene, key.camera, key.size,
-                            has_body && scene.display != Display::XRay ? &shown[0].depth : nullptr);
+    resources.armature.draw(
+        scene, key.camera, key.size,
+        has_body && scene.display != Display::XRay && !shows_image(scene) ? &shown[0].depth : nullptr);
     gl::check_gl("drawing a picture");
   }
 
-  bool complete() const { return drawn && has_all_weights && (!refines || sample >= resources.pictures_at_rest); }
+  bool complete() const {
+    return drawn && has_all_weights && has_whole_image && (!refines || sample >= resources.pictures_at_rest);
+  }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -421,12 +481,14 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   const auto source = my.source(scene, scale == 0 ? PassResources::Extent::InTime : PassResources::Extent::Whole);
   my.refines = scale == 0 && source;
   my.has_all_weights = !source || !source->weights || source->weights->complete();
+  my.has_whole_image = !source || !source->image || source->image->complete();
   const bool more_weights = my.drawn && source && source->weights && source->weights->changes() != my.weight_changes;
-  bool redraw = overlay_changed || moved || recoloured || more_weights;
+  const bool more_image = my.drawn && source && source->image && source->image->uploaded() != my.image_slices;
+  bool redraw = overlay_changed || moved || recoloured || more_weights || more_image;
   if (!source) {
     my.shown_scale = 0;
     my.sample = 0;
-  } else if (moved) {
+  } else if (moved || more_image) {
     my.changed_at = now;
     my.sample = my.next_tile = 0;
     const double begin = seconds();
@@ -439,7 +501,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
       if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
       else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
     }
-  } else if (recoloured || more_weights) {
+  } else if ((recoloured || more_weights) && !source->image) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
   } else if (my.refines && my.sample < my.resources.pictures_at_rest && now - my.changed_at >= kRest) {
@@ -533,7 +595,7 @@ struct SliceView::Impl {
   explicit Impl(Renderer& renderer) : resources(renderer.resources()) {}
   PassResources& resources;
   Target output;
-  bool has_all_weights = true;
+  bool has_all_weights = true, has_whole_image = true;
   // The lines along which the slice cuts the mesh, cached with the inputs from which they were computed.
   struct {
     CutMesh mesh;
@@ -569,21 +631,24 @@ SliceView::~SliceView() = default;
 void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size) {
   Impl& my = *impl_;
   const KeepFramebuffer keep;
-  my.has_all_weights = true;
+  my.has_all_weights = my.has_whole_image = true;
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
   my.resources.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
   if (scene.volume && scene.looks) {
     auto& body = my.resources.body(scene.volume);
+    const GreyTexture* grey = my.resources.grey(scene.grey, PassResources::Extent::InTime);
+    my.has_whole_image = !grey || grey->complete();
     my.resources.slice.draw(*body.volume, my.resources.pose(body, scene.pose),
                             my.resources.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
-                            scene.weights && scene.weights->contours, camera, display, scene.outlined, size);
+                            scene.weights && scene.weights->contours, grey, scene.grey.value_or(ShownGrey{}), camera,
+                            display, scene.outlined, size);
     if (scene.mesh) my.draw_mesh(scene, camera, display, size);
   }
   gl::check_gl("drawing a slice");
 }
 
-bool SliceView::complete() const { return impl_->has_all_weights; }
+bool SliceView::complete() const { return impl_->has_all_weights && impl_->has_whole_image; }
 unsigned SliceView::texture() const { return impl_->output.texture().name(); }
 Image SliceView::read() const { return read_back(impl_->output, false); }
 

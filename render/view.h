@@ -100,7 +100,7 @@ class SliceView {
   explicit SliceView(Renderer& renderer);
   ~SliceView();
   void draw(const Scene& scene, const SliceCamera& camera, SliceDisplay display, const glm::ivec2& size);
-  bool complete() const;  // true if all weights that the last picture shows were uploaded
+  bool complete() const;  // true if all weights and images that the last picture shows were uploaded
   unsigned texture() const;
   Image read() const;
 

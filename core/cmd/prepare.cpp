@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber prepare IN -o OUT [--orient CODE] [--flip x|y|z] [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop]
-//   [--pad N] [--close-skin inward|outward [--skin-label L]] [--statistics CSV] [--tissues T]
+// limber prepare IN -o OUT [--from-ct [--thresholds BODY,FAT,SOFT,BONE]] [--orient CODE] [--flip x|y|z]
+//   [--merge A=B ...] [--spacing MM] [--drop-specks N] [--crop] [--pad N] [--close-skin inward|outward [--skin-label
+//   L]] [--statistics CSV] [--tissues T]
 //   [--seams SEAMS.nrrd --rig RIG]: prepares a label volume for posing.
 #include "core/prepare/prepare.h"
 #include "core/volume_io/grey_image.h"
@@ -19,6 +20,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/prepare/close_skin.h"
+#include "core/prepare/ct_labels.h"
 #include "core/rig_io/rig_io.h"
 #include "core/seams/find_seams.h"
 #include "core/seams/seams_io.h"
@@ -30,6 +32,8 @@ namespace {
 struct Options {
   std::string in, out, tissues, statistics, orientation, flip, seams, rig, close_skin, skin_label;
   std::vector<std::string> merges;
+  bool from_ct = false;
+  std::vector<double> thresholds;
   std::optional<double> spacing;
   std::int64_t specks = 0;
   bool crop = false;
@@ -153,6 +157,21 @@ void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, co
   print("seams: %lld voxel faces between limbs that touch\n", static_cast<long long>(seams.size()));
 }
 
+// Returns the labels that thresholds make of a CT, as if they had been read from a file.
+VolumeFile labels_of(const Options& options, Progress& progress) {
+  CtThresholds thresholds;
+  if (!options.thresholds.empty()) {
+    thresholds.body = options.thresholds[0];
+    thresholds.fat = options.thresholds[1];
+    thresholds.soft = options.thresholds[2];
+    thresholds.bone = options.thresholds[3];
+  }
+  const GreyVolume ct = read_grey_volume(options.in, progress);
+  CtLabels labels = labels_of_ct(grey_levels(ct.grid, ct.voxels), thresholds, progress);
+  print("labels: made from densities; contrast agent and metal count as bone, and bones that touch are one\n");
+  return {std::move(labels.volume), std::move(labels.tissues), {"NRRD", "uint8", true}, ct.warnings};
+}
+
 void prepare(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
@@ -160,12 +179,12 @@ void prepare(const Options& options) {
   check_writable(options.out);
   if (!options.statistics.empty()) check_place(options.statistics);
   if (!options.seams.empty()) check_writable(options.seams);
-  VolumeFile file = read_volume(options.in, progress);
+  VolumeFile file = options.from_ct ? labels_of(options, progress) : read_volume(options.in, progress);
   warn(file.warnings);
   TissueTable user;
   if (!options.tissues.empty()) user = read_tissue_table(options.tissues);
   TissueTable tissues = merge_tissue_tables(file.tissues, options.tissues.empty() ? nullptr : &user);
-  require_labels(file.volume, tissues, options.in);
+  if (!options.from_ct) require_labels(file.volume, tissues, options.in);
 
   LabelVolume& volume = file.volume;
   if (!options.orientation.empty()) volume = reorient(volume, options.orientation);
@@ -187,14 +206,26 @@ void prepare(const Options& options) {
 }  // namespace
 
 void add_prepare(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "prepare",
-      "makes a label volume ready; whatever is asked is done in this order: --orient, --flip, --merge, --spacing, "
-      "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
+  auto* command = app.add_subcommand("prepare",
+                                     "makes a label volume ready; whatever is asked is done in this order: --from-ct, "
+                                     "--orient, --flip, --merge, --spacing, "
+                                     "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
-  command->add_option("IN", options->in, "label volume")->required();
+  command->add_option("IN", options->in, "label volume; with --from-ct a CT")->required();
   writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))
       ->required();
+  auto* from_ct = command->add_flag(
+      "--from-ct", options->from_ct,
+      "IN is a CT: labels for skin, fat, soft tissue, lung, gas and bone are made from its densities; the table and "
+      "other thin things around the body are left out");
+  command
+      ->add_option("--thresholds", options->thresholds,
+                   "from-ct: the Hounsfield units from which voxels belong to the body, are fat, soft tissue, bone "
+                   "(default: -300,-190,-30,200)")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("BODY,FAT,SOFT,BONE")
+      ->needs(from_ct);
   command->add_option("--tissues", options->tissues, "label table with names and densities");
   command->add_option("--orient", options->orientation, "turn voxel axes to these directions exactly: LPS, RAS ...");
   command->add_option("--flip", options->flip, "mirror the body along a world axis")

@@ -47,6 +47,7 @@ void draw_bone(Editor& editor, Column& column);
 void draw_fit_check(Editor& editor, Column& column);
 void draw_display(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
+void draw_image_section(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
 void draw_motion(Editor& editor, Column& column);
 void draw_layers(Editor& editor, Column& column);

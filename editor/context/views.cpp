@@ -87,7 +87,8 @@ void update_scene(Views& views, const Document& document, const Selection& selec
     views.looks_of_tissues = tissues;
     views.looks_of_visibility = visibility;
   }
-  scene.display = views.display;
+  scene.grey = views.image;
+  scene.display = views.display == render::Display::Image && !views.image ? render::Display::Solid : views.display;
   scene.clip = {};
   if (document.volume && visibility && visibility->clip_box.enabled)
     scene.clip.box = cut_of(visibility->clip_box, document.volume->grid);
@@ -96,7 +97,8 @@ void update_scene(Views& views, const Document& document, const Selection& selec
   scene.outlined = selection.tissue;
   scene.armature = !views.bones ? nullptr : views.preview_armature ? views.preview_armature : document.armature;
   scene.bone_shape = views.bone_shape;
-  scene.bones_in_front = views.bones_in_front || views.display == render::Display::XRay;
+  scene.bones_in_front =
+      views.bones_in_front || scene.display == render::Display::XRay || scene.display == render::Display::Image;
   scene.bones.assign(scene.armature ? scene.armature->bones.size() : 0, {});
   for (const int bone : selection.bones)
     if (bone < std::ssize(scene.bones)) scene.bones[bone].selected = true;

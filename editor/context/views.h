@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/file.h"
 #include "core/project/document.h"
 #include "core/volume/tissue_voxels.h"
 #include "editor/context/layout.h"
@@ -85,6 +86,8 @@ struct Views {
   bool grid = true, axes = true, scale_bar = true, letters = true, bones = true;
   render::BoneShape bone_shape = render::BoneShape::Octahedron;
   bool bone_names = false, bone_axes = false, bones_in_front = false;
+  std::optional<render::ShownGrey> image;  // the grey image shown with the labels (editor/volume/shown_image.h)
+  Path image_path;                         // the file or the DICOM folder from which `image` was read
   ViewId active = ViewId::Body;
   Hover hover;
 

@@ -29,6 +29,7 @@
 #include "editor/shown/frame_all.h"
 #include "editor/skin/weight_layers.h"
 #include "editor/volume/grey_image_panel.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -103,8 +104,22 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
 struct ReadVolume {
   std::optional<VolumeFile> labels;
   std::shared_ptr<const GreyVolume> image;
-  std::string doubt;  // why the file seems to be a grey image; "": it is a label volume
+  std::shared_ptr<const GreyLevels> levels;  // of the image; null: there is none
+  std::string doubt;                         // why the file seems to be a grey image; "": it is a label volume
+  bool is_image = false;                     // true: it is one for certain
+  std::shared_ptr<Opened> as_project;        // a project for the image alone; null: there is no image
 };
+
+// Returns a project for a bare image that was read from `path`. `agreed` and `then` are left to the caller.
+std::shared_ptr<Opened> project_for_image(const GreyLevels& image, const Path& path) {
+  auto opened = std::make_shared<Opened>();
+  opened->document = document_for_image(image);
+  opened->extents = shared(extents_of(opened->document.volume));
+  opened->inputs = inputs_of(FileKind::Volume, path);
+  opened->name = path.stem().string();
+  opened->label = "Open image " + path.filename().string();
+  return opened;
+}
 
 ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   ReadVolume read;
@@ -116,19 +131,52 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   }
   if (read.labels)
     if (const auto doubt = grey_image_doubt(read.labels->volume, read.labels->tissues)) read.doubt = *doubt;
-  if (!read.doubt.empty()) read.image = shared(read_grey_volume(path, progress));
+  constexpr double kAirOfCt = -100;  // a value below this is Hounsfield units of air or fat, and no label
+  if (read.labels && read.doubt.empty())
+    for (const Tissue& tissue : read.labels->tissues.tissues)
+      if (tissue.file_value < kAirOfCt) read.doubt = "it has negative values, as a CT has";
+  if (read.doubt.empty()) return read;
+  read.image = shared(read_grey_volume(path, progress));
+  read.levels = levels_of(*read.image);
+  // Labels are not negative, and a series of DICOM images whose values look grey is what a scanner made.
+  read.is_image = !read.labels || read.levels->least < 0 || read.image->type.format == "DICOM";
+  read.as_project = project_for_image(*read.levels, path);
   return read;
 }
 
-// Opens a label volume by calling `take`. If the file seems to be a grey image, first shows the image in a dialog, and
-// calls `take` only if the user agrees to open the image as labels.
+// Shows an image that was read from `path` with the open body. If no body is open, opens a project for the image.
+void take_image(Editor& editor, const std::shared_ptr<const GreyLevels>& image, const std::shared_ptr<Opened>& opened,
+                const Path& path) {
+  if (const auto& tissues = editor.document().tissues; tissues && !tissues->tissues.empty()) {
+    show_image(editor, image, path);
+    editor.messages.ok(path.filename().string(), "The image is shown with the body. Sidebar > Image sets how.");
+    return;
+  }
+  opened->agreed = editor.history.revision();
+  opened->then = [image, path](Editor& e) {
+    show_image(e, image, path);
+    e.views->display = render::Display::Image;
+    e.messages.ok(path.filename().string(),
+                  "A grey image. Edit > Prepare volume > Labels from CT makes tissues of it that can be rigged.");
+  };
+  add_recent(editor.recent_files, path, std::time(nullptr));
+  replace_project(editor, opened);
+}
+
+// Opens a label volume by calling `take`. A grey image is shown with the body instead. If the file may be either, first
+// shows the image in a dialog, and calls `take` only if the user agrees to open the image as labels.
 void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
   if (!read.image) return take(editor);
+  const Finish show = [levels = read.levels, opened = read.as_project, path](Editor& e) {
+    take_image(e, levels, opened, path);
+  };
+  if (read.is_image) return show(editor);
   show_grey_image(editor, {.image = read.image,
                            .name = path.filename().string(),
                            .doubt = read.doubt,
-                           .answer = read.labels ? answer : "",
-                           .as_labels = take});
+                           .answer = answer,
+                           .as_labels = take,
+                           .as_image = show});
 }
 
 using Change = std::function<void(Document&)>;
@@ -370,6 +418,15 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
         return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take); };
       });
   editor.step_of_job[job] = step_of(kind);
+}
+
+void open_image(Editor& editor, const Path& path) {
+  const int job = start_task(editor, "Open image " + path.filename().string(), [path](Progress& progress) -> Finish {
+    const auto levels = levels_of(read_grey_volume(path, progress));
+    return
+        [levels, opened = project_for_image(*levels, path), path](Editor& e) { take_image(e, levels, opened, path); };
+  });
+  editor.step_of_job[job] = StepOfWork::Prepare;
 }
 
 const SampleFacts& facts_of(Sample sample) {

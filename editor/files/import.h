@@ -23,9 +23,13 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then = {});
 void open_volume(Editor& editor, const Path& path, Then then = {});
 
 // Imports a file into the open project as one edit. A volume replaces the open volume and removes the rig, weights and
-// other data made for the old volume. A grey image is first shown in a dialog (editor/volume/grey_image_panel.h), and
-// becomes a label volume only if the user agrees.
+// other data made for the old volume. A grey image that cannot be labels is shown with the body (open_image); one that
+// might be labels is first shown in a dialog (editor/volume/grey_image_panel.h), and the user decides.
 void import_file(Editor& editor, FileKind kind, const Path& path, Then then = {});
+
+// Shows a grey image (CT, MR; a file or a DICOM folder) with the open body. If no body is open, opens a project for the
+// image: a volume without tissue on the image's grid, from which labels can be made.
+void open_image(Editor& editor, const Path& path);
 
 enum class Sample { Arm, ArmXray, Body, BodyTissues };
 struct SampleFacts {

@@ -47,6 +47,15 @@ void import_dicom(Editor& editor) {
                   .chosen = [](Editor& e, const Path& path) { open_files(e, {path}); }});
 }
 
+void import_image(Editor& editor) {
+  browse(editor, {.purpose = "image",
+                  .title = "Import a grey image (CT, MR)",
+                  .action = "Import",
+                  .filters = {volume_files()},
+                  .takes_dicom = true,
+                  .chosen = [](Editor& e, const Path& path) { open_image(e, path); }});
+}
+
 // Imports a file of any kind. A volume replaces the open volume; any other file is added to the open project.
 void import_any(Editor& editor) {
   browse(editor, {.purpose = "import",
@@ -83,6 +92,9 @@ std::vector<Operator> import_operators() {
                       nullptr),
       {"file.import_dicom", "DICOM folder...", icon::kImport, "File", "Open a folder of DICOM images as one volume.",
        import_dicom},
+      {"file.import_image", "Image (CT, MR)...", icon::kImport, "File",
+       "Show a grey image with the open body, or by itself. Slices show it below the tissues; it moves with the pose.",
+       import_image},
       import_operator({"file.import_rig",
                        "Rig...",
                        "Import a skeleton into the project.",

@@ -12,6 +12,7 @@
 #include "editor/files/view_state_json.h"
 #include "editor/shown/frame_all.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -156,6 +157,7 @@ void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
   editor.name = opened->name;
   editor.selection = {};
   editor.start_screen = false;
+  close_image(editor);
   if (opened->extents) editor.views->extents = opened->extents;
   frame_all(editor, false);
   try {

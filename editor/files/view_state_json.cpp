@@ -8,6 +8,7 @@
 #include "core/base/json_text.h"
 #include "editor/context/layout_json.h"
 #include "editor/skin/weight_display.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -78,6 +79,23 @@ void restore(const Json& json, render::Camera& camera) {
   take_choice(json, "projection", 2, camera.projection);
 }
 
+// Starts to read the image with which the project was saved. If its file is gone, looks beside the project's file.
+void restore_image(Editor& editor, const Json& json) {
+  const Json path = json.value("path", Json());
+  if (!path.is_string() || path.get<std::string>().empty()) return;
+  render::ShownGrey shown;
+  take(json, "level", -1e9, 1e9, shown.level);
+  take(json, "width", 1e-9, 1e9, shown.width);
+  take(json, "tissues", 0, 1, shown.tissues);
+  take_choice(json, "rendering", 5, shown.rendering);
+  Path file = path.get<std::string>();
+  std::error_code error;
+  if (const Path beside = editor.project_path.parent_path() / file.filename();
+      !std::filesystem::exists(file, error) && std::filesystem::exists(beside, error))
+    file = beside;
+  reopen_image(editor, file, shown);
+}
+
 }  // namespace
 
 std::string editor_state(const Editor& editor) {
@@ -106,6 +124,12 @@ std::string editor_state(const Editor& editor) {
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back(
         {{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
+  if (views.image)
+    json["image"] = {{"path", views.image_path.string()},
+                     {"level", views.image->level},
+                     {"width", views.image->width},
+                     {"tissues", views.image->tissues},
+                     {"rendering", static_cast<int>(views.image->rendering)}};
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
   return json.dump();
 }
@@ -115,7 +139,8 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   if (!json.is_object() || json.value("schema", Json()) != kSchema) return;
   Views& views = *editor.views;
   take_choice(json, "workspace", 4, editor.workspace);
-  take_choice(json, "display", 3, views.display);
+  take_choice(json, "display", 4, views.display);
+  if (const auto image = json.find("image"); image != json.end() && image->is_object()) restore_image(editor, *image);
   take_choice(json, "slices", 2, views.slice_display);
   if (const Json method = json.value("method", Json()); method.is_string() && find_method(method.get<std::string>()))
     editor.resampling.method = method;

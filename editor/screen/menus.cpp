@@ -84,7 +84,7 @@ std::vector<Menu> menus() {
         "file.recent_6", "file.recent_7", "file.recent_8", "file.recent_9", "file.recent_10", "<",
         "> Samples", "file.sample_arm", "file.sample_arm_xray", "file.sample_body", "file.sample_body_open", "<",
         "file.open_recent", "-", "file.save", "file.save_as", "file.save_copy", "file.recover", "-",
-        "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_rig",
+        "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_image", "file.import_rig",
         "file.import_motion", "file.import_weights", "file.import_tissues", "file.import_pose", "<",
         "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion",
         "file.export_weights", "file.export_tissues", "file.export_gltf", "view.screenshot", "view.turntable", "<",
@@ -97,7 +97,7 @@ std::vector<Menu> menus() {
         "-", "edit.rename", "-",
         "> Prepare volume", "prepare.regrid", "prepare.flip_x", "prepare.flip_y", "prepare.flip_z",
         "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge",
-        "prepare.specks", "prepare.statistics", "<",
+        "prepare.specks", "prepare.statistics", "-", "image.labels", "<",
         "> Rig", "rig.auto_fit", "rig.templates", "-", "rig.fit_joint_axis", "rig.joint_fit_before",
         "rig.joint_fit_after", "rig.take_joint_fit", "rig.leave_joint_fit", "-", "rig.next_leaving",
         "pose.apply_as_rest", "-", "rig.colour_bones", "rig.clear_bone_map", "<",
@@ -137,7 +137,10 @@ std::vector<Menu> menus() {
         "> Navigate", "view.walk", "view.centre_on_pick", "view.orbit_left", "view.orbit_right", "view.orbit_up",
         "view.orbit_down", "view.zoom_in", "view.zoom_out", "<",
         "-",
-        "> Display", "view.solid", "view.xray_display", "view.tissue", "<",
+        "> Display", "view.solid", "view.xray_display", "view.tissue", "view.image_display", "<",
+        "> Image", "image.window_soft", "image.window_bone", "image.window_lung", "image.window_brain",
+        "image.window_all", "-", "image.render_bone", "image.render_muscle", "image.render_skin",
+        "image.render_window", "image.render_maximum", "-", "image.labels", "image.close", "<",
         "> Weights", "skin.show_active", "skin.show_dominant", "skin.show_mixed", "skin.show_count",
         "skin.show_tissues", "skin.contours", "-", "skin.isolate_region", "skin.hide_region", "skin.reveal_regions",
         "-", "skin.find_bone", "<",
@@ -188,8 +191,8 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom",
         "view.opposite", "-",
         "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
-  if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue", "-", "view.clip_box",
-        "view.clip_plane"}};
+  if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue",
+        "view.image_display", "-", "view.clip_box", "view.clip_plane"}};
   if (name == "Weight display")
     return {name, {"skin.show_active", "skin.show_dominant", "skin.show_mixed", "skin.show_count",
         "skin.show_tissues", "-",

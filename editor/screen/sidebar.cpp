@@ -66,6 +66,7 @@ void draw_sidebar(Editor& editor) {
     draw_display(editor, column);
     draw_tissues(editor, column);
     draw_tissue(editor, column);
+    draw_image_section(editor, column);
     draw_clipping(editor, column);
     draw_under_cursor(editor, column);
     draw_history(editor, column);

@@ -195,7 +195,8 @@ void put_options(Editor& editor, Header& header) {
   header.to_left();
   const bool paints = editor.workspace == Workspace::Skin && editor.document().weights;
   if (!paints) {
-    header.segments({"view.solid", "view.xray_display", "view.tissue"});
+    if (editor.views->image) header.segments({"view.solid", "view.xray_display", "view.tissue", "view.image_display"});
+    else header.segments({"view.solid", "view.xray_display", "view.tissue"});
     header.line();
   }
   if (editor.workspace == Workspace::Rig) {

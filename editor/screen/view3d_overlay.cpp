@@ -97,9 +97,10 @@ std::string state_of(const Editor& editor) {
            (proposed->shows_after ? "after the fit" : "before the fit");
   if (editor.bone_table->coloured && editor.workspace == Workspace::Rig && editor.views->scene.weights)
     return "X-ray \u00b7 bone tissue coloured by its rig bone";
-  std::string state = editor.views->display == render::Display::Solid  ? "Solid"
-                      : editor.views->display == render::Display::XRay ? "X-ray"
-                                                                       : "Tissue";
+  std::string state = editor.views->display == render::Display::Solid   ? "Solid"
+                      : editor.views->display == render::Display::XRay  ? "X-ray"
+                      : editor.views->display == render::Display::Image ? "Image"
+                                                                        : "Tissue";
   if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
   else if (const PreviewMap* map = editor.views->scene.pose.get())

@@ -37,9 +37,8 @@ class GreyImageDialog final : public Dialog {
     const Look& look = editor.look;
     const Rect rect = begin_dialog(editor, shown_.name + " is a grey image", kWidth, kHeight);
     const std::string words = "A grey image, not labels: " + shown_.doubt +
-                              ". You can view it here; the open project does not change. Rigs, weights and poses need "
-                              "the label volume that was segmented from it; limber resample --with poses the image "
-                              "together with that volume.";
+                              ". Shown as an image, it lies below the tissues and moves with the pose; rigs, weights "
+                              "and poses need the label volume that was segmented from it.";
     const float text = put_wrapped(editor, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
     const float foot = rect.high.y - look.px(28), top = rect.low.y + text + look.px(10);
     const float gap = look.px(kGap);
@@ -186,7 +185,8 @@ class GreyImageDialog final : public Dialog {
     const double range = std::max(most_ - least_, 1e-3);
     number("Level", window_.level, least_ - range, most_ + range);
     number("Width", window_.width, 1e-3 * range, 2 * range);
-    const ButtonLook close{"", "Close", ButtonStyle::Primary}, labels{"", shown_.answer, ButtonStyle::Plain};
+    const ButtonLook show{"", "Show as image", ButtonStyle::Primary}, close{"", "Close", ButtonStyle::Plain},
+        labels{"", shown_.answer, ButtonStyle::Plain};
     float right = rect.high.x;
     const auto press = [&](const std::string& name, const ButtonLook& face) {
       const float width = std::max(width_of_button(editor, face) + look.px(8), look.px(80));
@@ -194,14 +194,14 @@ class GreyImageDialog final : public Dialog {
       right = place.low.x - look.px(8);
       return button(editor, name, place, face);
     };
-    const bool closes = press("Close image", close);
-    const bool takes = !shown_.answer.empty() && press(shown_.answer, labels);
+    const bool shows = press("Show as image", show), closes = press("Close image", close),
+               takes = press(shown_.answer, labels);
     put_text(editor, look.fonts.mono, look.theme.text2, Rect{{x, rect.low.y}, {right, rect.high.y}}, value_at_cross());
-    if (!closes && !takes) return;
-    const auto act = shown_.as_labels;
+    if (!shows && !closes && !takes) return;
+    const auto act = takes ? shown_.as_labels : shows ? shown_.as_image : nullptr;
     editor.close_dialog();
     editor.touch();
-    if (takes && act) attempt(editor, shown_.name, act);
+    if (act) attempt(editor, shown_.name, act);
   }
 
   static constexpr render::SliceAxis kAxes[] = {render::SliceAxis::Axial, render::SliceAxis::Coronal,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A dialog that shows a grey image (CT, MR) that the user opened or imported. It shows three linked slices and a
-// maximum intensity projection that can be turned. Level and width of the grey values can be set. The open project does
-// not change.
+// A dialog that shows a file that may be a grey image (MR) or labels, and asks which it is. It shows three linked
+// slices and a maximum intensity projection that can be turned. Level and width of the grey values can be set. The open
+// project does not change.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@ struct ShownImage {
   std::shared_ptr<const GreyVolume> image;
   std::string name;    // the file's name
   std::string doubt;   // why it is no label volume: "it has 300 values, and ..."
-  std::string answer;  // label of the button that opens it as labels anyway; "": its values cannot be labels
-  std::function<void(Editor&)> as_labels;
+  std::string answer;  // label of the button that opens it as labels anyway
+  std::function<void(Editor&)> as_labels, as_image;
 };
 void show_grey_image(Editor& editor, ShownImage shown);
 

@@ -131,8 +131,12 @@ void draw_tissues(Editor& editor, Column& column) {
       const std::vector<const Tissue*> rows = found(editor, *tissues);
       take_key(editor, rows);
       for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, *rows[i]);
-      if (rows.empty() &&
-          empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search"))
+      if (tissues->tissues.empty()) {
+        const Rect rect = column.row(30);
+        put_text(editor, look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high},
+                 "No tissue: the volume is all air");
+      } else if (rows.empty() &&
+                 empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search"))
         editor.tissue_search.clear();
     }
   }

@@ -6,6 +6,7 @@
 #include "editor/context/panels.h"
 #include "editor/ui/input_fields.h"
 #include "editor/ui/tooltip.h"
+#include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
@@ -114,6 +115,20 @@ void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>&
   }
 }
 
+// Draws the value of the grey image under the pointer, at the point's place at rest.
+void draw_image_value(Editor& editor, Column& column) {
+  const Hover& hover = editor.views->hover;
+  const auto& volume = editor.document().volume;
+  std::optional<double> value;
+  if (hover.inside) value = image_value_at(*editor.views, world_from_voxel(volume->grid) * glm::dvec3(hover.voxel));
+  else if (hover.view && *hover.view != ViewId::Body && !editor.views->scene.pose)
+    value = image_value_at(*editor.views, hover.point);
+  char text[40] = "-";
+  if (value)
+    std::snprintf(text, sizeof text, "%.4g%s", *value, looks_like_ct(*editor.views->image->image) ? " HU" : "");
+  put_text(editor, editor.look.fonts.mono, editor.look.theme.text, column.property("Image"), text, Align::Right);
+}
+
 }  // namespace
 
 void draw_tissue(Editor& editor, Column& column) {
@@ -173,6 +188,7 @@ void draw_under_cursor(Editor& editor, Column& column) {
     const Rect voxel = column.property("Voxel");
     if (hover.inside) std::snprintf(text, sizeof text, "%d %d %d", hover.voxel.x, hover.voxel.y, hover.voxel.z);
     put_text(editor, look.fonts.mono, look.theme.text, voxel, text, Align::Right);
+    if (editor.views->image) draw_image_value(editor, column);
     if (editor.document().weights) draw_weights(editor, column, hover.weights);
     column.space(4);
   }

@@ -88,6 +88,16 @@ const PosedHull* PassResources::posed_hull(Body& body, size_t layer, const std::
   return hull.get();
 }
 
+GreyTexture* PassResources::grey(const std::optional<ShownGrey>& shown, Extent extent) {
+  if (!shown || !shown->image) return nullptr;
+  if (!grey_ || !same(grey_->original(), shown->image)) {
+    grey_.reset();  // frees its memory before the next image asks for some
+    grey_ = std::make_unique<GreyTexture>(shown->image, largest_texture);
+  }
+  grey_->upload(extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
+  return grey_.get();
+}
+
 VolumePass& PassResources::volume_pass(const VolumeTexture& volume, VolumePass::Space space) {
   auto& pass = volume_passes_[{volume.layout().atlases, space}];
   if (!pass) pass = std::make_unique<VolumePass>(volume.layout().atlases, space);

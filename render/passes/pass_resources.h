@@ -12,6 +12,7 @@
 
 #include "render/passes/armature_pass.h"
 #include "render/passes/compose_pass.h"
+#include "render/passes/image_pass.h"
 #include "render/passes/line_pass.h"
 #include "render/passes/shade_pass.h"
 #include "render/passes/slice_pass.h"
@@ -19,6 +20,7 @@
 #include "render/passes/weight_pass.h"
 #include "render/scene/scene.h"
 #include "render/textures/appearance_texture.h"
+#include "render/textures/grey_texture.h"
 #include "render/textures/inverse_map_texture.h"
 #include "render/textures/surface_field.h"
 #include "render/textures/volume_texture.h"
@@ -52,6 +54,8 @@ struct PassResources {
   WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
   // Returns the hull of a layer of the posed body. Rays start at the hull. Null if `map` is null.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
+  // Uploads the shown grey image, whole or as much as the frame's time limit allows. Returns null if none is shown.
+  GreyTexture* grey(const std::optional<ShownGrey>& shown, Extent extent);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   int largest_texture;
@@ -60,6 +64,7 @@ struct PassResources {
   ComposePass compose;
   ArmaturePass armature;
   SlicePass slice;
+  ImagePass image;
   WeightPass weigh;
   LinePass lines;
   std::string note;
@@ -74,6 +79,7 @@ struct PassResources {
   };
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Looks> looks_;
+  std::unique_ptr<GreyTexture> grey_;  // the grey image that was shown last
   // One pass for each number of atlas textures and each space (at rest or posed) in which rays march.
   std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;
 };

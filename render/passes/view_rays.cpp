@@ -3,15 +3,7 @@
 
 #include <cmath>
 
-#include "render/textures/brick_atlas.h"
-
 namespace limber::render {
-
-AffineTransform padded_from_world(const Grid& grid) {
-  AffineTransform transform = voxel_from_world(grid);
-  transform.offset += kPad + 0.5;
-  return transform;
-}
 
 ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& size, const glm::dvec2& jitter,
                    const glm::vec3& low, const glm::vec3& high) {

@@ -10,6 +10,7 @@
 #include "core/volume/grid.h"
 #include "render/gl/program.h"
 #include "render/scene/camera.h"
+#include "render/textures/brick_atlas.h"
 
 namespace limber::render {
 
@@ -31,8 +32,6 @@ struct ViewRays {
   // does this.
   bool mirrored_taps = false;
 };
-
-AffineTransform padded_from_world(const Grid& grid);
 
 // Computes the rays of a picture of `size` pixels.
 //   jitter     shift of the picture relative to the pixel grid, pixels

@@ -17,6 +17,7 @@
 #include "core/volume/label_volume.h"
 
 namespace limber {
+struct GreyLevels;
 class SkinWeights;
 class TissueVoxels;
 struct PreviewMap;
@@ -28,6 +29,23 @@ enum class Display {
   Solid,   // the outermost visible tissue, opaque
   XRay,    // skin and flesh as a transparent ghost (denser where seen at a slant), with solid bone inside
   Tissue,  // every visible tissue with its own opacity, blended from front to back
+  Image,   // the grey image instead of the tissues, rendered as ShownGrey::rendering says
+};
+
+// How the 3D view renders a grey image: which values are seen, in which colours (render/scene/grey_transfer.h). Bone,
+// Muscle and Skin are for CT, whose values are Hounsfield units. Window and Maximum follow the window of ShownGrey.
+enum class GreyRendering { Bone, Muscle, Skin, Window, Maximum };
+
+// A grey image (CT, MR). Slices show it below the tissues, and Display::Image in the 3D view. A posed body carries the
+// image along, like its labels; where the pose leaves no tissue, nothing of the image is shown.
+struct ShownGrey {
+  std::shared_ptr<const GreyLevels> image;
+  // The value that slices show as middle grey, and the difference between the values shown as white and as black.
+  double level = 40, width = 400;
+  float tissues = 0.35f;  // opacity of tissues and weights over the image in slices, [0, 1]
+  GreyRendering rendering = GreyRendering::Bone;
+
+  bool operator==(const ShownGrey&) const = default;
 };
 
 // The appearance of a label.
@@ -104,6 +122,7 @@ struct Scene {
   std::optional<ShownWeights> weights;  // empty: tissue colours are shown
   std::optional<Label> outlined;        // the tissue that has a selection outline
   std::optional<CutMesh> mesh;
+  std::optional<ShownGrey> grey;  // shown only together with a volume, which may be all air
 
   std::shared_ptr<const Armature> armature;
   std::vector<RigidTransform> posed_from_rest;  // one for each bone; empty: the rig is at rest

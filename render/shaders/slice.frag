@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws a slice through the labels or the skin weights. It uses the volume's own index, since it needs every block with
-// tissue; the index that rays use contains only blocks with visible tissue.
+// Draws a slice through the labels or the skin weights, over a grey image if one is shown. It uses the volume's own
+// index, since it needs every block with tissue; the index that rays use contains only blocks with visible tissue.
 #include "atlases.glsl"
 #ifdef POSED
 #include "posed.glsl"
 #endif
 #ifdef WEIGHTS
 #include "weights.glsl"
+#endif
+#ifdef GREY
+#include "grey.glsl"
 #endif
 
 in vec2 ndc;
@@ -19,6 +22,10 @@ uniform bool u_outline;
 uniform uint u_outlined;
 layout(location = 0) out vec4 colour;
 
+#ifdef GREY
+uniform vec2 u_window;   // the level shown as black, and the grey that one level adds
+uniform float u_over;    // opacity of tissues and weights over the image
+#endif
 #ifdef WEIGHTS
 uniform float u_contours;
 const float kContour = 0.55, kTissueBorder = 0.86;
@@ -85,9 +92,19 @@ void main() {
     }
   }
 #endif
-  if (u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined)) {
+  bool marked = u_outlined != 0u && border && (label == u_outlined || right == u_outlined || below == u_outlined);
+  if (marked) {
     rgb = vec3(1.0, 0.624, 0.18);
     alpha = 1.0;
   }
+#ifdef GREY
+  // Areas of tissue let the image through; lines do not.
+  if (!(u_outline && border) && !marked) alpha *= u_over;
+  vec3 place = grey_place(p);
+  float below_all = in_grey(place) ? 1.0 - alpha : 0.0;
+  float grey = clamp((grey_level(place) - u_window.x) * u_window.y, 0.0, 1.0);
+  colour = vec4(rgb * alpha + grey * below_all, alpha + below_all);
+#else
   colour = vec4(rgb * alpha, alpha);
+#endif
 }

@@ -30,6 +30,12 @@ inline constexpr int kSlot = kBlock + 2 * kApron;
 inline constexpr int kBricksPerBlock = kBlock / kBrick;  // number of bricks per axis of a block
 inline constexpr int kMostAtlases = 4;
 
+inline AffineTransform padded_from_world(const Grid& grid) {
+  AffineTransform transform = voxel_from_world(grid);
+  transform.offset += kPad + 0.5;
+  return transform;
+}
+
 struct BlockLayout {
   glm::ivec3 blocks{0};            // number of blocks per axis
   std::vector<int> slot_of_block;  // slot of each block; -1: the block has no slot

@@ -78,6 +78,7 @@ std::vector<Proof> proofs_of_test_poses();
 std::vector<Proof> proofs_of_weight_problems();
 std::vector<Proof> proofs_of_seams();
 std::vector<Proof> proofs_of_bone_table();
+std::vector<Proof> proofs_of_images();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/image_labels.h"
+
+#include "core/base/error.h"
+#include "core/prepare/ct_labels.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/shown/frame_all.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Fields = std::vector<FormField>;
+
+CtThresholds thresholds_of(const Fields& fields) {
+  CtThresholds thresholds;
+  thresholds.bone = fields[0].value;
+  thresholds.soft = fields[1].value;
+  thresholds.fat = fields[2].value;
+  thresholds.body = fields[3].value;
+  thresholds.skin_mm = fields[4].value;
+  return thresholds;
+}
+
+std::string outcome(const Editor& editor, const Fields& fields) {
+  const CtThresholds t = thresholds_of(fields);
+  if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
+    throw Error("the thresholds must rise", "from body over fat and soft tissue to bone", "raise the higher one");
+  return size_text(editor.views->image->image->grid.size) + " voxels." +
+         (editor.document().tissues && !editor.document().tissues->tissues.empty()
+              ? " The labels, rig and weights of the open body are replaced; undo brings them back."
+              : "");
+}
+
+void start_labels(Editor& editor, const CtThresholds& thresholds) {
+  const auto image = editor.views->image->image;
+  const int id = editor.jobs.start("Labels from CT", [image, thresholds](Progress& progress) -> Edit {
+    CtLabels labels = labels_of_ct(*image, thresholds, progress);
+    const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
+    const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
+    return [volume, tissues](const Document& now) {
+      Document next;
+      next.volume = volume;
+      next.tissues = tissues;
+      next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
+      next.clips = now.clips;
+      next.clip = now.clip;
+      next.frame = now.frame;
+      return next;
+    };
+  });
+  editor.step_of_job[id] = StepOfWork::Prepare;
+  editor.after_job[id] = [](Editor& e, const JobStatus& job) {
+    if (job.state != JobState::Done) return;
+    e.selection = {};
+    e.views->display = render::Display::Solid;
+    frame_all(e, false);
+    e.messages.ok("Labels from CT", std::to_string(e.document().tissues->tissues.size()) +
+                                        " tissues. Look through the slices: contrast agent and metal count as bone.");
+  };
+  editor.touch();
+}
+
+}  // namespace
+
+void ask_for_labels(Editor& editor) {
+  const CtThresholds usual;
+  const auto field = [](const char* name, const char* description, double value) {
+    return number_of(name, description, value, -1024, 3071, "%.0f", "HU");
+  };
+  editor.open_dialog(make_form(
+      {"Labels from CT",
+       "Tell tissues apart by their density. The table and blankets are left out. Bones that touch become one label.",
+       "Make labels",
+       {field("Bone from", "Voxels from this density on are bone.", usual.bone),
+        field("Soft tissue from", "Voxels from this density on, up to bone, are soft tissue.", usual.soft),
+        field("Fat from", "Voxels from this density on, up to soft tissue, are fat.", usual.fat),
+        field("Body from", "Voxels below this density are air or lung.", usual.body),
+        number_of("Skin", "The thickness of the skin, at least one voxel.", usual.skin_mm, 0, 10, "%.1f", "mm")},
+       outcome,
+       [](Editor& e, const Fields& fields) { start_labels(e, thresholds_of(fields)); }}));
+}
+
+}  // namespace limber::editor

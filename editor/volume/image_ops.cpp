@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators for the grey image (CT, MR) that the views show with the labels.
+#include <algorithm>
+#include <cmath>
+
+#include "editor/context/operator_polls.h"
+#include "editor/context/pointer_context.h"
+#include "editor/ui/icons.h"
+#include "editor/volume/image_labels.h"
+#include "editor/volume/shown_image.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Share of the window's width, and of a width of 400, by which a drag of one pixel at scale 1 changes level and width.
+constexpr double kPerPixel = 1.0 / 300;
+
+std::string needs_image(const Editor& editor) {
+  return editor.views && editor.views->image ? "" : "Open an image first: File > Import > Image";
+}
+
+// Changes the window while the pointer is dragged: to the right widens it, up makes the picture darker, as radiologists
+// are used to.
+void drag_window(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  if (!place || !editor.views->image) return;
+  const render::ShownGrey before = *editor.views->image;
+  const MouseButton button = editor.input.down(MouseButton::Right)    ? MouseButton::Right
+                             : editor.input.down(MouseButton::Middle) ? MouseButton::Middle
+                                                                      : MouseButton::Left;
+  editor.drag = Drag{button,
+                     [](Editor& e, const glm::vec2& pixels) {
+                       if (!e.views->image) return;
+                       render::ShownGrey& image = *e.views->image;
+                       const GreyLevels& levels = *image.image;
+                       const double range = std::max(levels.most() - levels.least, 1e-6);
+                       const glm::dvec2 by = glm::dvec2(pixels) / double(e.look.scale) * kPerPixel;
+                       image.level = std::clamp(image.level - by.y * std::max(image.width, range / 100),
+                                                levels.least - range, levels.most() + range);
+                       image.width = std::clamp(image.width * std::exp(2 * by.x), range / 5000, 2 * range);
+                     },
+                     {},
+                     [before](Editor& e) {
+                       if (e.views->image && e.views->image->image == before.image) e.views->image = before;
+                     },
+                     PointerWrap(place->rect, editor.look.px(2))};
+}
+
+Operator window_operator(const ImageWindow& window) {
+  return {window.id,
+          std::string(window.name) + " window",
+          "",
+          "View",
+          "Show the image in the usual window of values (Hounsfield units) for this.",
+          [window](Editor& e) {
+            e.views->image->level = window.level;
+            e.views->image->width = window.width;
+          },
+          needs_image,
+          [window](const Editor& e) {
+            return e.views->image && e.views->image->level == window.level && e.views->image->width == window.width;
+          }};
+}
+
+void show_all_values(Editor& editor) {
+  const auto [level, width] = usual_window(*editor.views->image->image);
+  editor.views->image->level = level;
+  editor.views->image->width = width;
+}
+
+Operator rendering_operator(const char* id, const char* label, const char* description,
+                            render::GreyRendering rendering) {
+  return {id,
+          label,
+          "",
+          "View",
+          description,
+          [rendering](Editor& e) {
+            e.views->image->rendering = rendering;
+            e.views->display = render::Display::Image;
+          },
+          needs_image,
+          [rendering](const Editor& e) { return e.views->image && e.views->image->rendering == rendering; }};
+}
+
+}  // namespace
+
+std::vector<Operator> image_operators() {
+  std::vector<Operator> all = {
+      {"image.close", "Close image", "", "View", "Stop showing the grey image. Nothing of the project changes.",
+       close_image, needs_image},
+      {"image.drag_window", "Change window by dragging", "", "View",
+       "Drag in a slice: to the right widens the window of values, up raises its middle.", drag_window, needs_image},
+      {"image.window_all", "All values", "", "View", "Show the image from its darkest to its brightest values.",
+       show_all_values, needs_image},
+      {"view.image_display", "Image", "", "View", "Show the grey image in 3D instead of the tissues.",
+       [](Editor& e) { e.views->display = render::Display::Image; }, needs_image,
+       [](const Editor& e) { return e.views->display == render::Display::Image; }},
+      rendering_operator("image.render_bone", "Bone in 3D", "Show what is as dense as bone (CT).",
+                         render::GreyRendering::Bone),
+      rendering_operator("image.render_muscle", "Muscle in 3D", "Show muscle, translucent, with the bones in it (CT).",
+                         render::GreyRendering::Muscle),
+      rendering_operator("image.render_skin", "Skin in 3D", "Show the surface between body and air (CT).",
+                         render::GreyRendering::Skin),
+      rendering_operator("image.render_window", "Window in 3D",
+                         "Show the values of the window: the brighter in slices, the denser in 3D.",
+                         render::GreyRendering::Window),
+      rendering_operator("image.render_maximum", "Maximum in 3D",
+                         "Show the largest value along each line of sight (maximum intensity projection).",
+                         render::GreyRendering::Maximum),
+      {"image.labels", "Labels from CT...", icon::kTissues, "Edit",
+       "Make a label volume from the open CT by thresholds: skin, soft tissue, fat, lung, gas, bone.", ask_for_labels,
+       needs_image},
+  };
+  for (const ImageWindow& window : ct_windows()) all.push_back(window_operator(window));
+  return all;
+}
+
+}  // namespace limber::editor

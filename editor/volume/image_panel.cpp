@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Draws the section "Image" of the sidebar: the window of values, the opacity of the tissues over the image, and how
+// the 3D view renders it.
+#include <algorithm>
+#include <array>
+
+#include "editor/context/operator_button.h"
+#include "editor/context/panels.h"
+#include "editor/ui/input_fields.h"
+#include "editor/volume/shown_image.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::array kRenderings = {"image.render_bone", "image.render_muscle", "image.render_skin",
+                                    "image.render_window", "image.render_maximum"};  // in the order of GreyRendering
+
+// Draws a number field whose value changes at once, also while it is dragged.
+void draw_number(Editor& editor, Column& column, const char* label, double low, double high, const char* unit,
+                 bool filled, double& value) {
+  bool committed = false;
+  double number = value;
+  if (!number_field(editor, label, column.property(label), number, low, high, filled ? "%.0f" : "%.4g", unit, filled,
+                    committed))
+    return;
+  value = number;
+  editor.touch();
+}
+
+void draw_windows(Editor& editor, Column& column) {
+  std::vector<std::string> names{"Own"};
+  std::vector<const char*> ids{""};
+  int chosen = 0;
+  const auto add = [&](const char* id, const std::string& name) {
+    if (const Operator* op = find_operator(editor, id); op && op->checked && op->checked(editor))
+      chosen = static_cast<int>(names.size());
+    names.push_back(name);
+    ids.push_back(id);
+  };
+  if (looks_like_ct(*editor.views->image->image))
+    for (const ImageWindow& window : ct_windows()) add(window.id, window.name);
+  add("image.window_all", "All values");
+  const Rect field = column.property("Window");
+  const PathScope scope(editor, "Window");
+  if (choice_field(editor, field, names, chosen) && chosen > 0) run(editor, ids[static_cast<std::size_t>(chosen)]);
+}
+
+void draw_renderings(Editor& editor, Column& column) {
+  std::vector<std::string> names;
+  for (const char* id : kRenderings) {
+    const std::string& label = find_operator(editor, id)->label;
+    names.push_back(label.substr(0, label.rfind(" in 3D")));
+  }
+  int chosen = static_cast<int>(editor.views->image->rendering);
+  const Rect field = column.property("3D view");
+  const PathScope scope(editor, "3D view");
+  if (choice_field(editor, field, names, chosen)) run(editor, kRenderings[static_cast<std::size_t>(chosen)]);
+}
+
+}  // namespace
+
+void draw_image_section(Editor& editor, Column& column) {
+  if (!editor.views->image) return;
+  if (column.begin_section("Image", editor.views->image_path.filename().string())) {
+    render::ShownGrey& image = *editor.views->image;
+    const double least = image.image->least, most = image.image->most(), range = std::max(most - least, 1e-6);
+    const char* unit = looks_like_ct(*image.image) ? "HU" : "";
+    column.space(6);
+    draw_windows(editor, column);
+    draw_number(editor, column, "Level", least - range, most + range, unit, false, image.level);
+    draw_number(editor, column, "Width", range / 5000, 2 * range, unit, false, image.width);
+    double percent = 100.0 * double(image.tissues);
+    draw_number(editor, column, "Tissues over it", 0, 100, "%", true, percent);
+    image.tissues = static_cast<float>(percent / 100);
+    draw_renderings(editor, column);
+    column.space(4);
+    const Rect row = column.row(26);
+    const float middle = std::round(row.centre().x), gap = editor.look.px(3), side = editor.look.px(10);
+    operator_button(editor, "image.labels", {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}},
+                    "Make labels...");
+    operator_button(editor, "image.close", {{middle + gap, row.low.y}, {row.high.x - side, row.high.y}}, "Close");
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/shown_image.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/tissue/tissue_table.h"
+#include "editor/context/background_task.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::array kCtWindows = {
+    ImageWindow{"image.window_soft", "Soft tissue", 40, 400}, ImageWindow{"image.window_bone", "Bone", 480, 2500},
+    ImageWindow{"image.window_lung", "Lung", -600, 1500}, ImageWindow{"image.window_brain", "Brain", 40, 80}};
+
+Box box_of_grid(const Grid& grid) {
+  Document document;
+  document.volume = std::make_shared<const LabelVolume>(LabelVolume{grid, {}});
+  return world_box(document);
+}
+
+// Returns by how many mm two boxes miss each other; 0 if they meet.
+double gap_between(const Box& a, const Box& b) {
+  return glm::length(glm::max(glm::max(a.low - b.high, b.low - a.high), glm::dvec3(0)));
+}
+
+void require_same_place(const Document& document, const GreyLevels& image, const Path& path) {
+  if (!document.volume) return;
+  const double gap = gap_between(world_box(document), box_of_grid(image.grid));
+  if (gap <= 0) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "this image lies %.0f mm away from the open body", gap);
+  throw Error(text, path.string(), "open the image of this body, or start a new project for this image");
+}
+
+}  // namespace
+
+std::span<const ImageWindow> ct_windows() { return kCtWindows; }
+
+bool looks_like_ct(const GreyLevels& image) { return image.least < -700 && image.least > -5000 && image.most() > 150; }
+
+std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image) {
+  return std::make_shared<const GreyLevels>(grey_levels(image.grid, image.voxels));
+}
+
+void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const Path& path) {
+  require_same_place(editor.document(), *image, path);
+  render::ShownGrey shown;
+  if (!looks_like_ct(*image)) {
+    const auto [level, width] = usual_window(*image);
+    shown.level = level;
+    shown.width = width;
+    shown.rendering = render::GreyRendering::Window;
+  }
+  shown.image = std::move(image);
+  editor.views->image = std::move(shown);
+  editor.views->image_path = path;
+  editor.touch();
+}
+
+Document document_for_image(const GreyLevels& image) {
+  LabelVolume air;
+  air.grid = image.grid;
+  air.voxels.resize(static_cast<std::size_t>(image.grid.voxel_count()));
+  Document document;
+  document.volume = std::make_shared<const LabelVolume>(std::move(air));
+  document.tissues = std::make_shared<const TissueTable>();
+  document.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
+  return document;
+}
+
+void close_image(Editor& editor) {
+  editor.views->image.reset();
+  editor.views->image_path.clear();
+  editor.touch();
+}
+
+void reopen_image(Editor& editor, const Path& path, const render::ShownGrey& shown) {
+  start_task(
+      editor, "Open image " + path.filename().string(),
+      [path, shown](Progress& progress) -> Finish {
+        auto image = levels_of(read_grey_volume(path, progress));
+        return [image, path, shown](Editor& e) {
+          show_image(e, image, path);
+          e.views->image = shown;
+          e.views->image->image = image;
+        };
+      },
+      [path](Editor& e, const std::string& error) {
+        e.messages.warn("The image of this project is not shown: " + path.filename().string(), error);
+      });
+}
+
+std::optional<double> image_value_at(const Views& views, const glm::dvec3& world) {
+  if (!views.image) return std::nullopt;
+  const GreyLevels& image = *views.image->image;
+  const glm::ivec3 voxel(glm::floor(voxel_from_world(image.grid) * world + 0.5));
+  if (!image.grid.contains(voxel)) return std::nullopt;
+  return image.value_at(voxel);
+}
+
+}  // namespace limber::editor

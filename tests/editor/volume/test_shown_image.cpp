@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/volume/shown_image.h"
+
+#include <cmath>
+
+#include "core/volume_io/volume_io.h"
+#include "editor/files/import.h"
+#include "tests/editor/operator_proofs.h"
+
+namespace limber::test {
+
+namespace {
+
+using editor::Views;
+
+// A CT of the ball of small_body() on a grid of its own: flesh around bone, in air.
+GreyVolume scan() {
+  GreyVolume image;
+  image.grid = {{40, 40, 40}, {2.5, 2.5, 2.5}, {-49, -49, -49}, glm::dmat3(1)};
+  image.type = {"NRRD", "int16", true};
+  const AffineTransform world = world_from_voxel(image.grid);
+  for (int z = 0; z < 40; ++z)
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 40; ++x) {
+        const double r = glm::length(world * glm::dvec3(x, y, z));
+        image.voxels.push_back(static_cast<float>((r < 12 ? 800 : r < 40 ? 50 : -1000) + (x + 3 * y + 5 * z) % 17));
+      }
+  return image;
+}
+
+struct Scan : Home {
+  Scan() { write_grey_volume(scan(), *this / "ct.nrrd"); }
+};
+
+const render::ShownGrey& image_of(editor::Editor& e) {
+  REQUIRE(e.views->image);
+  return *e.views->image;
+}
+
+std::function<bool(Stage&, const Seen&)> has_window(double level, double width) {
+  return [=](Stage& s, const Seen&) {
+    const auto& image = s.editor().views->image;
+    return image && image->level == level && image->width == width;
+  };
+}
+std::function<bool(Stage&, const Seen&)> renders(render::GreyRendering rendering) {
+  return [=](Stage& s, const Seen&) {
+    return s.editor().views->display == render::Display::Image && image_of(s.editor()).rendering == rendering;
+  };
+}
+
+void show_scan(Stage& stage) {
+  write_grey_volume(scan(), stage.home / "ct.nrrd");
+  editor::open_image(stage.editor(), stage.home / "ct.nrrd");
+  stage.play("wait-job\n wait-idle");
+}
+
+}  // namespace
+
+std::vector<Proof> proofs_of_images() {
+  using render::GreyRendering;
+  const char* four = "key Ctrl+Alt+Q\n wait-idle";
+  return {
+      {.id = "file.import_image",
+       .deeds =
+           "click File/Import/\"Image (CT, MR)...\"\n wait-idle\n type ct.nrrd\n key Return\n wait-job\n wait-idle",
+       .effect = [](Stage& s, const Seen&) { return s.editor().views->image.has_value(); },
+       .shows = Shows::InSlice,
+       .first = four,
+       .ready =
+           [](Stage& s) {
+             write_grey_volume(scan(), s.home / "ct.nrrd");
+             s.editor().project_path = s.home / "limb.limber";
+           }},
+      {"image.window_bone", "click View/Image/\"Bone window\"", has_window(480, 2500), Shows::InSlice, four},
+      {"image.window_soft", "click View/Image/\"Soft tissue window\"", has_window(40, 400), Shows::InSlice, four},
+      {"image.window_lung", "click View/Image/\"Lung window\"", has_window(-600, 1500), Shows::InSlice, four},
+      {"image.window_brain", "click View/Image/\"Brain window\"", has_window(40, 80), Shows::InSlice, four},
+      {"image.window_all", "click View/Image/\"All values\"",
+       [](Stage& s, const Seen&) { return image_of(s.editor()).width > 1000; }, Shows::InSlice, four},
+      {"image.drag_window", "drag Axial/view 40 -20 RMB Ctrl",
+       [](Stage& s, const Seen&) {
+         const render::ShownGrey& image = image_of(s.editor());
+         return image.width > 450 && image.level > 45;
+       },
+       Shows::InSlice, "key Ctrl+Alt+Q\n wait-idle\n click View/Image/\"Soft tissue window\""},
+      {"view.image_display", "click View/Display/Image",
+       [](Stage& s, const Seen&) { return s.editor().views->display == render::Display::Image; }, Shows::InBody,
+       "click View/Display/Solid"},
+      {"image.render_skin", "click View/Image/\"Skin in 3D\"", renders(GreyRendering::Skin), Shows::InBody},
+      {"image.render_muscle", "click View/Image/\"Muscle in 3D\"", renders(GreyRendering::Muscle), Shows::InBody},
+      {"image.render_bone", "click View/Image/\"Bone in 3D\"", renders(GreyRendering::Bone), Shows::InBody},
+      {"image.render_window", "click View/Image/\"Window in 3D\"", renders(GreyRendering::Window), Shows::InBody},
+      {"image.render_maximum", "click View/Image/\"Maximum in 3D\"", renders(GreyRendering::Maximum), Shows::InBody},
+      {"image.labels",
+       "click View/Image/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         return s.document().volume != b.document.volume && s.document().tissues->find(6) &&
+                s.document().tissues->find(6)->name == "Bone";
+       },
+       Shows::InBody},
+      {"image.close", "click View/Image/\"Close image\"",
+       [](Stage& s, const Seen&) { return !s.editor().views->image; }, Shows::InSlice, four},
+  };
+}
+
+TEST_CASE("operators: the grey image, its windows and its renderings") {
+  Stage stage;
+  prove(stage, proofs_of_images());
+}
+
+TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and undo and redo go between them") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"});
+  sitting.play("wait-idle\n expect dialog no\n expect error none\n expect volume yes\n expect unsaved no");
+  CHECK(image_of(sitting.editor()).level == 40);
+  CHECK(sitting.editor().views->display == render::Display::Image);
+  CHECK(sitting.editor().document().tissues->tissues.empty());
+  const Document bare = sitting.editor().document();
+  sitting.play("click View/Image/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n wait-idle");
+  sitting.play("expect error none\n expect unsaved yes");
+  const Document labelled = sitting.editor().document();
+  REQUIRE(labelled.tissues->find(6));
+  CHECK(labelled.volume->grid == scan().grid);
+  CHECK(labelled.volume->at({20, 20, 20}) == 6);
+  CHECK(sitting.editor().views->image);
+  sitting.play("key Ctrl+Z\n wait-idle");
+  CHECK(sitting.editor().document() == bare);
+  sitting.play("key Ctrl+Shift+Z\n wait-idle");
+  CHECK(sitting.editor().document() == labelled);
+}
+
+TEST_CASE("image: a CT of the open body is shown with it, and one of elsewhere is refused in a sentence") {
+  const Scan files;
+  Sitting sitting(files.folder.path());
+  sitting.open_ball();
+  const Document before = sitting.editor().document();
+  editor::open_files(sitting.editor(), {files / "ct.nrrd"});
+  sitting.play("wait-job\n wait-job\n wait-idle\n expect error none\n expect dialog no");
+  CHECK(sitting.editor().document() == before);
+  CHECK(image_of(sitting.editor()).image->grid == scan().grid);
+  GreyVolume far = scan();
+  far.grid.origin.x += 500;
+  write_grey_volume(far, files / "far.nrrd");
+  editor::open_image(sitting.editor(), files / "far.nrrd");
+  sitting.play("wait-job\n wait-idle");
+  CHECK(sitting.test.fact("error").find("mm away from the open body") != std::string::npos);
+  CHECK(sitting.editor().views->image_path.filename() == "ct.nrrd");
+}
+
+TEST_CASE("image: the value under the pointer is that of the image") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"});
+  sitting.play("wait-idle");
+  const GreyVolume image = scan();
+  const glm::ivec3 voxel(20, 21, 22);
+  const auto value = editor::image_value_at(
+      *sitting.editor().views, world_from_voxel(image.grid) * (glm::dvec3(voxel) + glm::dvec3(0.3, -0.3, 0)));
+  REQUIRE(value);
+  CHECK(std::abs(*value - double(image.voxels[static_cast<std::size_t>(image.grid.index(voxel))])) < 0.05);
+  CHECK_FALSE(editor::image_value_at(*sitting.editor().views, {500, 0, 0}));
+}
+
+TEST_CASE("image: a project shows its image again, from beside the project too, and says when it is gone") {
+  const Scan files;
+  const Path project = files / "limb.limber";
+  {
+    Sitting sitting(files.folder.path());
+    sitting.open_ball();
+    editor::open_image(sitting.editor(), files / "ct.nrrd");
+    sitting.play("wait-job\n wait-idle\n click View/Image/\"Bone window\"\n wait-idle");
+    sitting.editor().views->image->tissues = 0.7f;
+    editor::save_project_as(sitting.editor(), project);
+    sitting.play("wait-job\n wait-idle");
+  }
+  const auto reopened = [&] {
+    auto sitting = std::make_unique<Sitting>(files.folder.path(), std::vector<Path>{project});
+    sitting->play("wait-job\n wait-job\n wait-idle\n expect dialog no\n expect error none");
+    return sitting;
+  };
+  {
+    const auto sitting = reopened();
+    CHECK(image_of(sitting->editor()).level == 480);
+    CHECK(image_of(sitting->editor()).tissues == doctest::Approx(0.7f));
+    CHECK(sitting->test.fact("unsaved") == "no");
+  }
+  std::filesystem::create_directories(files / "moved");
+  for (const char* name : {"ct.nrrd", "limb.limber"}) std::filesystem::rename(files / name, files / "moved" / name);
+  {
+    Sitting sitting(files.folder.path(), {files / "moved/limb.limber"});
+    sitting.play("wait-job\n wait-job\n wait-idle\n expect error none");
+    CHECK(sitting.editor().views->image_path == files / "moved/ct.nrrd");
+  }
+  std::filesystem::remove(files / "moved/ct.nrrd");
+  {
+    Sitting sitting(files.folder.path(), {files / "moved/limb.limber"});
+    sitting.play("wait-job\n wait-job\n wait-idle\n expect error none");
+    CHECK_FALSE(sitting.editor().views->image);
+    CHECK(sitting.test.fact("text:The image of this project is not shown: ct.nrrd") == "shown");
+  }
+}
+
+}  // namespace limber::test
