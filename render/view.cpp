@@ -20,6 +20,7 @@ constexpr double kFrame = 0.028;       // time limit for drawing the body while 
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
 constexpr int kImageTile = 40;         // the same where a grey image is drawn, whose rays take ten times as long
+constexpr int kImagePictures = 2;      // largest number of pictures of a grey image that are averaged
 // Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
 // something moves.
 constexpr double kFineStep = 0.7, kCoarseStep = 1.4;
@@ -456,9 +457,11 @@ struct View3D::Impl {
     gl::check_gl("drawing a picture");
   }
 
-  bool complete() const {
-    return drawn && has_all_weights && has_whole_image && (!refines || sample >= resources.pictures_at_rest);
+  // The number of pictures to average. Those of a grey image take ten times as long, and have no hard edges.
+  int pictures() const {
+    return shows_image(scene) ? std::min(kImagePictures, resources.pictures_at_rest) : resources.pictures_at_rest;
   }
+  bool complete() const { return drawn && has_all_weights && has_whole_image && (!refines || sample >= pictures()); }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -504,7 +507,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   } else if ((recoloured || more_weights) && !source->image) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
-  } else if (my.refines && my.sample < my.resources.pictures_at_rest && now - my.changed_at >= kRest) {
+  } else if (my.refines && my.sample < my.pictures() && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
   my.drawn = true;

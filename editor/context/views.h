@@ -72,6 +72,16 @@ struct Hover {
   std::vector<BoneWeight> weights;  // skin weights of the voxel, largest first; empty if it has none
 };
 
+class ScratchFolder;
+
+// The grey image that was posed together with a result.
+struct PosedImage {
+  std::weak_ptr<const LabelVolume> result;  // the result's volume
+  std::shared_ptr<const GreyLevels> levels;
+  std::shared_ptr<const ScratchFolder> folder;  // holds `file` until the last result that needs it is gone
+  Path file;                                    // the posed image with the image's own values
+};
+
 struct Views {
   // Needs a current OpenGL context. Throws Error when its version is older than 3.3.
   explicit Views(int largest_texture = 0);
@@ -88,6 +98,7 @@ struct Views {
   bool bone_names = false, bone_axes = false, bones_in_front = false;
   std::optional<render::ShownGrey> image;  // the grey image shown with the labels (editor/volume/shown_image.h)
   Path image_path;                         // the file or the DICOM folder from which `image` was read
+  std::vector<PosedImage> posed_images;    // of the results that were made while an image was shown
   ViewId active = ViewId::Body;
   Hover hover;
 

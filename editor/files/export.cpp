@@ -26,6 +26,7 @@
 #include "editor/files/study_pictures.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/shown_image.h"
 #include "render/image_io.h"
 
 namespace limber::editor {
@@ -242,6 +243,20 @@ void export_result(Editor& editor, const std::shared_ptr<const Result>& result, 
     throw Error("the result has no mesh", result->name, "select a FEM result whose pose bends a joint");
   if (exporter && exporter->needs_frequency) ask_frequency(editor, result, path);
   else start_export(editor, result, path, 0);
+}
+
+void export_posed_image(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+  check_writable(path);
+  const PosedImage* kept = posed_image_of(*editor.views, result->volume);
+  if (!kept) throw Error("this result was made without an image", result->name, "show the image, and resample again");
+  // The folder is kept alive, also if the result is deleted while the file is written.
+  start_task(editor, "Export " + path.filename().string(),
+             [file = kept->file, folder = kept->folder, path](Progress& progress) -> Finish {
+               write_grey_volume(read_grey_volume(file, progress), path);
+               return [path](Editor& e) {
+                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+               };
+             });
 }
 
 void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {

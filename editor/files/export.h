@@ -14,6 +14,8 @@ void export_file(Editor& editor, ExportKind kind, const Path& path);
 // Writes the result in the format of the file's ending: a volume, surfaces, the posed mesh, or the input of a
 // simulation program. For some programs, a dialog first asks for the frequency of the simulated field.
 void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
+// Writes the grey image that was posed together with the result. Throws Error if there is none.
+void export_posed_image(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
 // Writes a report in the format of the file's ending. `.html`: a page of all results, which the browser then opens.
 // `.json`: the result's report as stored. Any other ending: the result's report as readable text.
 void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);

@@ -9,6 +9,7 @@
 #include "editor/files/file_filters.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -103,6 +104,13 @@ std::string needs_result(const Editor& editor) {
   return editor.document().results.empty() ? "Resample a pose first" : "";
 }
 
+std::string needs_posed_image(const Editor& editor) {
+  if (const std::string reason = needs_result(editor); !reason.empty()) return reason;
+  const auto result = chosen_result(editor);
+  return result && posed_image_of(*editor.views, result->volume) ? ""
+                                                                 : "Show an image (File > Import), then resample again";
+}
+
 }  // namespace
 
 std::vector<Operator> export_operators() {
@@ -153,6 +161,13 @@ std::vector<Operator> export_operators() {
                            formats_of(*chosen_result(e)), export_result);
        },
        needs_result},
+      {"file.export_image", "Posed image...", icon::kExport, "File",
+       "Export the grey image (CT, MR) as it was posed together with the selected result.",
+       [](Editor& e) {
+         browse_for_result(e, "Export posed image", "posed image", stem_of(e) + "-image", writable_volumes(),
+                           export_posed_image);
+       },
+       needs_posed_image},
       {"report.open", "Report...", icon::kReport, "Result",
        "Write a page of all results with pictures and quality gates and open it, or write the selected result's report "
        "as text or JSON.",

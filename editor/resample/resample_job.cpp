@@ -17,6 +17,7 @@
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/volume/body_seams.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -28,11 +29,13 @@ struct Request {
   double spacing = 0;  // voxel spacing of the posed volume, mm; 0: same as the volume at rest
   bool bones_apart = false, mass_exact = false, contact = false;
   std::string quality;  // FEM only: "draft", "normal" or "fine"
+  Path image;           // the shown grey image, to pose with the volume; empty: none
   std::string scratch;
   WorkerSettings worker;
   std::shared_ptr<SolveFeed> feed;  // passes the steps of a FEM solve to the views; null: no FEM
 };
 
+constexpr char kImage[] = "image.nrrd";
 constexpr char kSteps[] = "solve";  // base name of the files that the solver writes at each step
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
@@ -59,6 +62,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   if (request.spacing > 0) job["spacing"] = request.spacing;
   if (request.bones_apart) job["glide"] = "joint";
   if (request.mass_exact) job["mass-exact"] = true;
+  if (!request.image.empty()) job["with"] = request.image.string() + "=" + (folder / kImage).string();
   if (request.method == "fem") {
     job["quality"] = request.quality;
     job["steps"] = kSteps;
@@ -123,7 +127,24 @@ std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
   return std::make_shared<const SolvedMesh>(SolvedMesh{std::move(*mesh), std::move(step->V)});
 }
 
-Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Progress& progress) {
+// Reads the posed grey image and moves its file into a folder of its own, which outlives the job's.
+PosedImage read_posed_image(const Request& request, const ScratchFolder& folder, Progress& progress) {
+  PosedImage image;
+  const auto kept = std::make_shared<const ScratchFolder>(request.scratch);
+  image.file = *kept / kImage;
+  std::filesystem::rename(folder / kImage, image.file);
+  image.folder = kept;
+  image.levels = levels_of(read_grey_volume(image.file, progress));
+  return image;
+}
+
+// What a job makes beside its edit of the document.
+struct Made {
+  std::string name;  // of the result
+  PosedImage image;
+};
+
+Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Progress& progress) {
   const ScratchFolder folder(request.scratch);
   write_inputs(request, folder, progress);
   if (request.feed) request.worker.on_progress = StepReader(folder / kSteps, request.feed);
@@ -133,6 +154,10 @@ Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Pr
   result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
   result->overlap = read_overlap(folder / "overlap.nrrd", progress);
   result->report = read_file(folder / "report.json");
+  if (!request.image.empty()) {
+    made->image = read_posed_image(request, folder, progress);
+    made->image.result = result->volume;
+  }
   result->from_volume = request.from.volume;
   result->from_tissues = request.from.tissues;
   result->from_armature = request.from.armature;
@@ -143,9 +168,9 @@ Edit resample_in_worker(Request& request, std::shared_ptr<std::string>& name, Pr
   if (request.feed) result->solved = read_solved(folder / kSteps);
   const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " +
                              method_name(result->method) + (request.mass_exact ? ", mass-exact" : "");
-  return [result, wanted, name](const Document& now) {
+  return [result, wanted, made](const Document& now) {
     Document next = now;
-    result->name = *name = unique_name(now.results, wanted);
+    result->name = made->name = unique_name(now.results, wanted);
     next.results.push_back(result);
     return next;
   };
@@ -186,6 +211,7 @@ void start_resampling(Editor& editor) {
                   editor.resampling.mass_exact,
                   editor.resampling.contact,
                   editor.resampling.quality,
+                  editor.views->image ? editor.views->image_path : Path(),
                   editor.preferences.scratch_folder,
                   {},
                   {}};
@@ -195,23 +221,24 @@ void start_resampling(Editor& editor) {
   request.worker.yields = editor.workers_yield;
   request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;
   request.worker.time_limit = editor.preferences.worker_minutes * 60.0;
-  auto name = std::make_shared<std::string>();
+  const auto made = std::make_shared<Made>();
   const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
   const int id = editor.jobs.start(
-      label, [request, name](Progress& progress) mutable { return resample_in_worker(request, name, progress); },
+      label, [request, made](Progress& progress) mutable { return resample_in_worker(request, made, progress); },
       request.feed ? Lane::Long : Lane::Common);
   editor.step_of_job[id] = StepOfWork::Resample;
   if (request.feed) {
     editor.fem->solves[id] = {request.from, largest_angle_degrees(*request.from.pose), request.feed};
     watch(editor);
   }
-  editor.after_job[id] = [name](Editor& e, const JobStatus& job) {
+  editor.after_job[id] = [made](Editor& e, const JobStatus& job) {
     const bool was_watched = e.fem->watched == job.id;
     e.fem->solves.erase(job.id);
     if (was_watched) stop_watching(e);
     if (job.state != JobState::Done) return;
-    tell(e, *name);
-    if (was_watched && e.workspace == Workspace::Resample) show_result(e, *name);
+    if (made->image.levels) keep_posed_image(*e.views, std::move(made->image));
+    tell(e, made->name);
+    if (was_watched && e.workspace == Workspace::Resample) show_result(e, made->name);
   };
   editor.touch();
 }

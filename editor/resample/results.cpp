@@ -16,6 +16,7 @@
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/test_pose.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -265,6 +266,9 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
   scene.pose = nullptr;
   if (result && document.volume) {
     scene.volume = result->volume;
+    const PosedImage* image = posed_image_of(*editor.views, result->volume);
+    if (scene.grey && image) scene.grey->image = image->levels;
+    else scene.grey.reset();
     if (scene.clip.box) {
       if (result->volume->grid.direction == document.volume->grid.direction)
         scene.clip.box = in_grid(*scene.clip.box, document.volume->grid, result->volume->grid);

@@ -87,7 +87,7 @@ std::vector<Menu> menus() {
         "> Import", "file.import", "file.import_volume", "file.import_dicom", "file.import_image", "file.import_rig",
         "file.import_motion", "file.import_weights", "file.import_tissues", "file.import_pose", "<",
         "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion",
-        "file.export_weights", "file.export_tissues", "file.export_gltf", "view.screenshot", "view.turntable", "<",
+        "file.export_weights", "file.export_tissues", "file.export_gltf", "file.export_image", "view.screenshot", "view.turntable", "<",
         "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "edit.adjust_last", "-",

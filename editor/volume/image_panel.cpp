@@ -6,6 +6,7 @@
 
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/shown/shown_result.h"
 #include "editor/ui/input_fields.h"
 #include "editor/volume/shown_image.h"
 
@@ -74,6 +75,12 @@ void draw_image_section(Editor& editor, Column& column) {
     draw_number(editor, column, "Tissues over it", 0, 100, "%", true, percent);
     image.tissues = static_cast<float>(percent / 100);
     draw_renderings(editor, column);
+    if (const auto result = shown_result(editor); result && !posed_image_of(*editor.views, result->volume)) {
+      const Rect note = column.row(36);
+      put_wrapped(editor, editor.look.fonts.regular, editor.look.theme.text2,
+                  note.low + glm::vec2(editor.look.px(10), editor.look.px(2)), note.width() - editor.look.px(20),
+                  "This result was made without the image; resample again to pose it.");
+    }
     column.space(4);
     const Rect row = column.row(26);
     const float middle = std::round(row.centre().x), gap = editor.look.px(3), side = editor.look.px(10);

@@ -95,6 +95,17 @@ void reopen_image(Editor& editor, const Path& path, const render::ShownGrey& sho
       });
 }
 
+void keep_posed_image(Views& views, PosedImage image) {
+  std::erase_if(views.posed_images, [](const PosedImage& kept) { return kept.result.expired(); });
+  views.posed_images.push_back(std::move(image));
+}
+
+const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const LabelVolume>& result) {
+  for (const PosedImage& image : views.posed_images)
+    if (image.result.lock() == result) return &image;
+  return nullptr;
+}
+
 std::optional<double> image_value_at(const Views& views, const glm::dvec3& world) {
   if (!views.image) return std::nullopt;
   const GreyLevels& image = *views.image->image;

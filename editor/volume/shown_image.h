@@ -39,6 +39,11 @@ void close_image(Editor& editor);
 // message says so.
 void reopen_image(Editor& editor, const Path& path, const render::ShownGrey& shown);
 
+// Keeps the posed image of a result, and drops those of results that are gone.
+void keep_posed_image(Views& views, PosedImage image);
+// Returns the posed image of a result; null if it was made without one.
+const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const LabelVolume>& result);
+
 // Returns the value of the image at a world point; empty outside the image. Of a posed body, `world` is a point at
 // rest.
 std::optional<double> image_value_at(const Views& views, const glm::dvec3& world);

@@ -94,6 +94,20 @@ void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
   commit(editor, what, std::move(next));
 }
 
+void set_kind(Editor& editor, Label label, TissueKind kind) {
+  Tissue tissue = *editor.document().tissues->find(label);
+  if (tissue.kind == kind) return;
+  Tissue before = tissue, after = tissue;
+  after.kind = kind;
+  apply_kind_defaults(before);
+  apply_kind_defaults(after);
+  tissue.kind = kind;
+  tissue.priority = after.priority;
+  for (double Tissue::*number : {&Tissue::density, &Tissue::young_modulus, &Tissue::poisson_ratio})
+    if (tissue.*number == before.*number) tissue.*number = after.*number;
+  set_tissue(editor, "Kind of " + shown_name(tissue), tissue);
+}
+
 void rename_tissue(Editor& editor, Label label, const std::string& name) {
   Tissue tissue = *editor.document().tissues->find(label);
   if (name.empty() || name == tissue.name) return;

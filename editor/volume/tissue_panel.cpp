@@ -62,6 +62,16 @@ void draw_opacity(Editor& editor, Column& column, const Tissue& tissue) {
   set_look(editor, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, opacity});
 }
 
+void draw_kind(Editor& editor, Column& column, const Tissue& tissue) {
+  std::vector<std::string> names;
+  for (int kind = 0; kind <= static_cast<int>(TissueKind::Nail); ++kind)
+    names.push_back(capitalized(std::string(to_string(static_cast<TissueKind>(kind)))));
+  int chosen = static_cast<int>(tissue.kind);
+  const Rect field = column.property("Kind");
+  const PathScope scope(editor, "Kind");
+  if (choice_field(editor, field, names, chosen)) set_kind(editor, tissue.label, static_cast<TissueKind>(chosen));
+}
+
 void draw_colour(Editor& editor, Column& column, const Tissue& tissue) {
   const Look& look = editor.look;
   const Rect rect = column.property("Colour");
@@ -141,8 +151,7 @@ void draw_tissue(Editor& editor, Column& column) {
     column.space(6);
     std::string name = tissue.name;
     if (text_field(editor, "Name", column.property("Name"), name)) rename_tissue(editor, tissue.label, name);
-    const Rect kind = column.property("Kind");
-    put_text(editor, editor.look.fonts.regular, editor.look.theme.text, kind, to_string(tissue.kind));
+    draw_kind(editor, column, tissue);
     draw_colour(editor, column, tissue);
     draw_opacity(editor, column, tissue);
     const MaterialSources sources = material_sources(tissue.kind);

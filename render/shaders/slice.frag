@@ -101,7 +101,12 @@ void main() {
   // Areas of tissue let the image through; lines do not.
   if (!(u_outline && border) && !marked) alpha *= u_over;
   vec3 place = grey_place(p);
-  float below_all = in_grey(place) ? 1.0 - alpha : 0.0;
+#ifdef POSED
+  bool shown = label != 0u && in_grey(place);  // the map reaches a little into the air around the body
+#else
+  bool shown = in_grey(place);
+#endif
+  float below_all = shown ? 1.0 - alpha : 0.0;
   float grey = clamp((grey_level(place) - u_window.x) * u_window.y, 0.0, 1.0);
   colour = vec4(rgb * alpha + grey * below_all, alpha + below_all);
 #else

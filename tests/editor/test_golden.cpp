@@ -22,6 +22,7 @@
 #include "core/phantom/phantom.h"
 #include "editor/context/background_task.h"
 #include "editor/files/project_session.h"
+#include "editor/volume/shown_image.h"
 #include "tests/editor/sitting.h"
 
 namespace limber::test {
@@ -296,6 +297,21 @@ TEST_CASE("golden: body with organs") {
       visibility.looks[tissue.label].visible = false;
   scene.open(std::move(phantom), "body", visibility);
   check_golden("body_organs", scene.picture());
+}
+
+TEST_CASE("golden: a CT below the labels in the slices, and its bones in 3D") {
+  Arm scene;
+  const LabelVolume& volume = *scene.editor().document().volume;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i) {
+    const Tissue* tissue = scene.editor().document().tissues->find(volume.voxels[i]);
+    const double density = !tissue ? -1000 : is_bone(tissue->kind) ? 700 : tissue->kind == TissueKind::Fat ? -100 : 50;
+    values.push_back(static_cast<float>(density + double(i * 7919 % 41) - 20));
+  }
+  show_image(scene.editor(), std::make_shared<const GreyLevels>(grey_levels(volume.grid, values)), "ct.nrrd");
+  scene.play(
+      "click view.four\n click view.image_display\n click \"sidebar/sections/Outliner/fold\"\n move \"Axial/view\"");
+  check_golden("ct", scene.picture());
 }
 
 TEST_CASE("golden: preferences") {

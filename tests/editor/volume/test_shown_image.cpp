@@ -3,8 +3,11 @@
 
 #include <cmath>
 
+#include "core/pose/pose_io.h"
 #include "core/volume_io/volume_io.h"
+#include "editor/files/export.h"
 #include "editor/files/import.h"
+#include "editor/resample/resample_job.h"
 #include "tests/editor/operator_proofs.h"
 
 namespace limber::test {
@@ -55,6 +58,21 @@ void show_scan(Stage& stage) {
   stage.play("wait-job\n wait-idle");
 }
 
+// A result that stands for one made together with the image.
+void add_posed_scan(Stage& stage) {
+  Document next = stage.document();
+  auto result = std::make_shared<Result>();
+  result->name = "Posed";
+  result->volume = std::make_shared<const LabelVolume>(*next.volume);
+  next.results.push_back(result);
+  stage.editor().history.commit("Result", next);
+  keep_posed_image(*stage.editor().views, {.result = result->volume,
+                                           .levels = image_of(stage.editor()).image,
+                                           .folder = nullptr,
+                                           .file = stage.home / "ct.nrrd"});
+  stage.editor().project_path = stage.home / "limb.limber";
+}
+
 }  // namespace
 
 std::vector<Proof> proofs_of_images() {
@@ -99,6 +117,12 @@ std::vector<Proof> proofs_of_images() {
                 s.document().tissues->find(6)->name == "Bone";
        },
        Shows::InBody},
+      {"file.export_image", "click File/Export/\"Posed image...\"\n wait-idle\n type ct-posed\n key Return\n wait-job",
+       [](Stage& s, const Seen&) {
+         return std::filesystem::exists(s.home / "ct-posed.nrrd") &&
+                read_grey_volume(s.home / "ct-posed.nrrd").voxels == scan().voxels;
+       },
+       Shows::Nothing, "", add_posed_scan},
       {"image.close", "click View/Image/\"Close image\"",
        [](Stage& s, const Seen&) { return !s.editor().views->image; }, Shows::InSlice, four},
   };
@@ -146,6 +170,67 @@ TEST_CASE("image: a CT of the open body is shown with it, and one of elsewhere i
   sitting.play("wait-job\n wait-idle");
   CHECK(sitting.test.fact("error").find("mm away from the open body") != std::string::npos);
   CHECK(sitting.editor().views->image_path.filename() == "ct.nrrd");
+}
+
+TEST_CASE("image: resampling poses it, to the voxel as the command line does, and the result shows and exports it") {
+  const Home home;
+  const auto at = [&](const char* name) { return (home / name).string(); };
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "6", "-o", at("arm")}).exit_code == 0);
+  const LabelVolume volume = read_volume(home / "arm/volume.nrrd").volume;
+  GreyVolume image;
+  image.grid = volume.grid;
+  image.type = {"NRRD", "int16", true};
+  for (std::size_t i = 0; i < volume.voxels.size(); ++i)
+    image.voxels.push_back(volume.voxels[i] ? static_cast<float>(40 + volume.voxels[i] * 30 + i % 7) : -1000.0f);
+  write_grey_volume(image, home / "ct.nrrd");
+  REQUIRE(run_limber({"weights", at("arm/volume.nrrd"), "--tissues", at("arm/tissues.json"), "--rig",
+                      at("arm/rig.json"), "-o", at("w.nrrd")})
+              .exit_code == 0);
+
+  Sitting sitting(home.folder.path(),
+                  {home / "arm/volume.nrrd", home / "arm/tissues.json", home / "arm/rig.json", home / "w.nrrd"});
+  editor::Editor& e = sitting.editor();
+  e.worker_program = LIMBER_PROGRAM;
+  e.workers_yield = false;
+  sitting.play("wait-job\n wait-job\n wait-job\n wait-job\n wait-idle\n expect error none");
+  editor::open_image(e, home / "ct.nrrd");
+  sitting.play("wait-job\n wait-idle\n expect error none");
+  Document bent = e.document();
+  Pose pose = rest_pose(*bent.armature);
+  flex(pose, *bent.armature, require_bone(*bent.armature, "Forearm"), 70);
+  bent.pose = std::make_shared<const Pose>(pose);
+  commit(e, "Bend", std::move(bent));
+  e.resampling.method = "dqs";
+  editor::start_resampling(e);
+  sitting.play("key Ctrl+4\n wait-job\n wait-idle\n expect error none");
+  REQUIRE(e.document().results.size() == 1);
+  const auto result = e.document().results.back();
+  const editor::PosedImage* kept = editor::posed_image_of(*e.views, result->volume);
+  REQUIRE(kept);
+  editor::export_posed_image(e, result, home / "from-editor.nrrd");
+  sitting.play("wait-job\n wait-idle\n expect error none");
+
+  write_pose(pose, *e.document().armature, home / "pose.json");
+  REQUIRE(run_limber({"resample", at("arm/volume.nrrd"), "--tissues", at("arm/tissues.json"), "--rig",
+                      at("arm/rig.json"), "--weights", at("w.nrrd"), "--pose", at("pose.json"), "--method", "dqs",
+                      "--with", at("ct.nrrd") + "=" + at("from-command.nrrd"), "-o", at("posed.nrrd")})
+              .exit_code == 0);
+  const GreyVolume ours = read_grey_volume(home / "from-editor.nrrd"),
+                   theirs = read_grey_volume(home / "from-command.nrrd");
+  CHECK(ours.grid == theirs.grid);
+  CHECK(ours.voxels == theirs.voxels);
+  CHECK(kept->levels->grid == theirs.grid);
+
+  // The views show the posed image with the result, and none with a result that was made without one.
+  e.comparison.b = result->name;
+  sitting.play("key 2\n wait-idle");
+  REQUIRE(e.views->scene.volume == result->volume);
+  REQUIRE(e.views->scene.grey);
+  CHECK(e.views->scene.grey->image == kept->levels);
+  e.views->posed_images.clear();
+  e.touch();
+  sitting.play("wait-idle");
+  CHECK_FALSE(e.views->scene.grey);
 }
 
 TEST_CASE("image: the value under the pointer is that of the image") {
