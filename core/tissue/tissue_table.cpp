@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text_parse.h"
+#include "core/tissue/atlas_colours.h"
 #include "core/tissue/tissue_rows.h"
 
 namespace limber {
@@ -83,6 +84,20 @@ glm::vec3 label_colour(double file_value) {
   return srgb_of(kLightness[label % 3], 0.11, hue);
 }
 
+// Returns the colour that anatomy atlases give a tissue; nothing if its kind decides, as with muscle and bone.
+//   row  name of the row of tissues.csv that matches the tissue; empty: none
+std::optional<glm::vec3> atlas_colour(const Tissue& tissue, const std::string& row) {
+  switch (tissue.kind) {
+    case TissueKind::Vessel: return vein_colour(tissue.name);
+    case TissueKind::Unknown:
+    case TissueKind::Organ:
+    case TissueKind::Brain:
+    case TissueKind::Nerve:
+    case TissueKind::Cavity: return tissue.name.empty() ? std::nullopt : organ_colour(row);
+    default: return std::nullopt;
+  }
+}
+
 const KindDefaults& defaults_of(TissueKind kind) { return kDefaults[static_cast<std::size_t>(kind)]; }
 }  // namespace
 
@@ -108,8 +123,10 @@ std::string_view to_string(TissueKind kind) { return defaults_of(kind).name; }
 
 void apply_kind_defaults(Tissue& tissue) {
   const KindDefaults& from = defaults_of(tissue.kind);
-  tissue.colour = from.colour == kByLabel ? label_colour(tissue.file_value) : srgb_of(from.colour);
-  tissue.density = usual_density(tissue).value;
+  const UsualDensity density = usual_density(tissue);
+  tissue.colour = atlas_colour(tissue, density.row)
+                      .value_or(from.colour == kByLabel ? label_colour(tissue.file_value) : srgb_of(from.colour));
+  tissue.density = density.value;
   tissue.young_modulus = from.young_modulus;
   tissue.poisson_ratio = from.poisson_ratio;
   tissue.priority = from.priority;

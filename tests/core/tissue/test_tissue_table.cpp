@@ -188,3 +188,25 @@ TEST_CASE("tissue table: labels of unknown kind each get a colour of their own, 
     colours.push_back(tissue.colour);
   }
 }
+
+TEST_CASE("tissue table: organs have the colours of anatomy atlases in any vocabulary, both sides the same") {
+  const auto colour = [](const char* name, TissueKind kind, Label label = 5) {
+    Tissue tissue;
+    tissue.label = label;
+    tissue.file_value = label;
+    tissue.name = name;
+    tissue.kind = kind;
+    apply_kind_defaults(tissue);
+    return tissue.colour;
+  };
+  const auto organ = [&](const char* name, Label label = 5) { return colour(name, TissueKind::Organ, label); };
+  CHECK(organ("kidney_left") == organ("Right kidney", 9));
+  CHECK(organ("liver") != organ("spleen"));
+  const glm::vec3 bile = organ("gallbladder"), vein = colour("inferior_vena_cava", TissueKind::Vessel),
+                  artery = colour("aorta", TissueKind::Vessel);
+  CHECK((bile.g > bile.r && bile.g > bile.b));
+  CHECK((vein.b > vein.r && artery.r > artery.b));
+  // What has no organ's name is told apart by its label, and kinds keep their colours.
+  CHECK(organ("thing", 5) != organ("thing", 6));
+  CHECK(colour("Left brachialis", TissueKind::Muscle) == colour("Right soleus", TissueKind::Muscle));
+}
