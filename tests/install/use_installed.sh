@@ -3,6 +3,7 @@
 #   use_installed.sh CMAKE BUILD_FOLDER
 set -euo pipefail
 cmake=$1 build=$2
+here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$cmake" --install "$build" --prefix "$folder" --component Unspecified >/dev/null
@@ -37,7 +38,29 @@ for module in lib/limber/slicer/limber-*; do
   [ "$("$module" --xml | head -c 5)" = '<?xml' ] || fail "$module does not describe itself"
 done
 
+# Programs among the examples can be run as such.
+programs=$(cd "$here/../../assets" && find . -type f -perm -u+x -not -path './desktop/*')
+[ -n "$programs" ] || fail "no program among the assets"
+for program in $programs; do [ -x "share/limber/$program" ] || fail "share/limber/$program cannot be run"; done
+
 # The desktop's files.
 if command -v desktop-file-validate >/dev/null; then desktop-file-validate share/applications/limber.desktop; fi
 if command -v xmllint >/dev/null; then xmllint --noout share/mime/packages/limber.xml share/icons/hicolor/scalable/apps/limber.svg; fi
+
+# The menu entry of an unpacked archive: it lies in a folder that a shell, sed and the entry's own rules must not change.
+mkdir home
+archive="$folder/an \$unpacked & \"odd\" \`one\` | \\n"
+mkdir "$archive"
+cp -r bin lib share "$archive"
+cp "$here/../../assets/desktop/add-to-menu" "$archive"
+export HOME=$folder/home XDG_DATA_HOME=$folder/home/data
+"$archive/add-to-menu" >/dev/null
+entry=$XDG_DATA_HOME/applications/limber.desktop
+if command -v desktop-file-validate >/dev/null; then desktop-file-validate "$entry"; fi
+"$here/start_from_menu.sh" "$entry" "$folder/menu.png" "$folder/arm/volume.nrrd"
+"$archive/add-to-menu" --remove >/dev/null
+[ -z "$(find "$XDG_DATA_HOME" -name 'limber.*')" ] || fail "something stays in the menu"
+mv "$archive" "$folder/100%"
+if "$folder/100%/add-to-menu" 2>warnings.txt; then fail "a path that no entry can name is taken"; fi
+[ "$(wc -l <warnings.txt)" = 1 ] || fail "one line should say why"
 echo "the installed program works"
