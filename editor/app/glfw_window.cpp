@@ -229,8 +229,8 @@ void Window::toggle_full_screen() {
 
 }  // namespace
 
-std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& title) {
-  return std::make_unique<Window>(size, title);
-}
-
 }  // namespace limber::editor
+
+extern "C" limber::editor::Host* limber_open_window(const glm::ivec2& size, const std::string& title) {
+  return new limber::editor::Window(size, title);
+}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Opens the editor's window on the desktop, through GLFW.
+// Opens the editor's window on the desktop, through GLFW. GLFW needs the libraries of X11, which a machine without a
+// display may lack. So it lies in a module of its own, limber_window.so, which only open_window() loads.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,11 @@
 
 namespace limber::editor {
 
-// Opens the window and returns it. Throws Error if no display can be reached, or if the driver has no OpenGL 3.3.
+// Opens the window and returns it. Throws Error if the module or a library that it needs is missing, if no display can
+// be reached, or if the driver has no OpenGL 3.3.
 std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& title);
 
 }  // namespace limber::editor
+
+// The function of the module: makes the window, which the caller owns, and throws as open_window() does.
+extern "C" limber::editor::Host* limber_open_window(const glm::ivec2& size, const std::string& title);

@@ -14,6 +14,11 @@ bin/limber --version | grep -qE '^[0-9]+\.[0-9]+\.[0-9]+' || fail "no version"
 bin/limber phantom arm --spacing 6 -o arm >/dev/null
 bin/limber info arm/volume.nrrd | grep -q 'NRRD' || fail "the installed reader does not read"
 
+# Commands run on a node of a cluster, which has no libraries of a display.
+for program in bin/limber lib/limber/limber_reader; do
+  if ldd "$program" | grep -E 'libX|libxcb|libwayland|libGL'; then fail "$program needs a display's libraries"; fi
+done
+
 # The shell's completion.
 source share/bash-completion/completions/limber
 completed() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _limber "$folder/bin/limber"; printf '%s\n' "${COMPREPLY[@]}"; }
@@ -63,4 +68,10 @@ if command -v desktop-file-validate >/dev/null; then desktop-file-validate "$ent
 mv "$archive" "$folder/100%"
 if "$folder/100%/add-to-menu" 2>warnings.txt; then fail "a path that no entry can name is taken"; fi
 [ "$(wc -l <warnings.txt)" = 1 ] || fail "one line should say why"
+
+# Without the module that opens windows: one line, and commands go on.
+rm lib/limber/limber_window.so
+if bin/limber 2>warnings.txt; then fail "there is a window without its module"; fi
+[ "$(wc -l <warnings.txt)" = 1 ] || fail "one line should say that windows cannot be opened"
+bin/limber info arm/volume.nrrd >/dev/null || fail "commands need the module that opens windows"
 echo "the installed program works"
