@@ -28,6 +28,10 @@ namespace limber {
 struct AnatomicalHinge {
   glm::dvec3 axis{0};  // unit vector in the world at rest: a positive turn flexes (toes: extends; ankles: dorsiflexion)
   double at_rest = 0;  // flexion at rest, radians
+  // The knuckle of a finger and the saddle joint of a thumb also spread, about an axis that flexion carries along:
+  // rotation from rest = turn(axis, flexion - at_rest) turn(spread_axis, spread - spread_at_rest).
+  glm::dvec3 spread_axis{0};  // unit vector in the world at rest, square to `axis`; zero: the joint only bends
+  double spread_at_rest = 0;  // radians
 };
 
 struct BoneFrame {

@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/pose/finger_frames.h"
+#include "core/pose/joint_turns.h"
 #include "core/rig/joint_limits.h"
 
 namespace limber {
@@ -16,115 +18,44 @@ namespace {
 using enum BodyJoint;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
-const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, back and up
-// Unit normal of the left shoulder blade, which is at 35 degrees to the frontal plane. A blade that rotates about this
-// axis stays on the ribs [Kapandji, The Physiology of the Joints].
-const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
+const glm::dvec3 kZ(0, 0, 1);  // upwards in the body's axes
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
-
-constexpr BodyJoint kJoints[] = {Spine, Neck,  Girdle, Shoulder, Elbow, Forearm, Wrist, Hip,
-                                 Knee,  Ankle, Toes,   Thumb,    Index, Middle,  Ring,  Little};
-
-bool is_finger(BodyJoint joint) { return joint >= Thumb; }
 
 // Returns the angle of a joint's motion (such as flexion) in radians, zero if it is not given.
 double radians_of(const JointMotions& motions, std::size_t motion) {
   return motions[motion].value_or(0) * std::numbers::pi / 180;
 }
 
-// Returns the rotation, from the anatomical position and in the body's axes, of a joint with these angles. Left joints
-// are assumed; callers mirror the rotation for right ones.
-glm::dquat turn_of(BodyJoint joint, const JointMotions& motions) {
-  const double a = radians_of(motions, 0), b = radians_of(motions, 1), c = radians_of(motions, 2);
-  switch (joint) {
-    case Spine:
-    case Neck: return about(kX, a) * about(kY, -b) * about(kZ, c);
-    case Girdle: return about(kZ, -b) * about(kY, -a) * about(kOffBlade, -c);
-    case Shoulder:
-    case Hip: return about(kX, -a) * about(kY, -b) * about(kZ, -c);
-    case Elbow:
-    case Toes: return about(kX, -a);
-    case Wrist:
-    case Ankle: return about(kX, -a) * about(kY, b);
-    case Knee: return about(kX, a);
-    default: return kNoTurn;
-  }
-}
-
-// Returns the angle, degrees, between an arm with these shoulder angles and an arm that hangs down.
-double raise_of(const JointMotions& shoulder) {
-  const glm::dvec3 arm = turn_of(Shoulder, shoulder) * -kZ;
-  return glm::degrees(std::acos(std::clamp(-arm.z, -1.0, 1.0)));
-}
-
-// Adds the shoulder rhythm: when an arm is raised by more than 30 degrees, the shoulder blade contributes a third of
-// the further motion. Half of this third happens at the collarbone's inner end, the other half between collarbone and
-// blade [Inman, Saunders & Abbott 1944, Observations on the function of the shoulder joint]. Only the first half, a
-// sixth of the motion, is added here: rigs move the blade together with the collarbone, and with more rotation the
-// blade would leave the ribs. Collarbones whose angles are requested are not changed.
+// Adds the shoulder rhythm to collarbones whose angles are not requested.
 JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
-  constexpr double kSetting = 30, kShare = 1.0 / 6;
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
     const auto shoulder = angles.find({Shoulder, side});
-    const double raise = shoulder == angles.end() ? 0 : raise_of(shoulder->second) - kSetting;
-    if (raise > 0 && frames.find(BodyPart::Clavicle, side))
-      angles.try_emplace({Girdle, side}, JointMotions{0.0, 0.0, kShare * raise});
+    const double upward = shoulder == angles.end() ? 0 : shoulder_rhythm(raise_of_arm(shoulder->second));
+    if (upward > 0 && frames.find(BodyPart::Clavicle, side))
+      angles.try_emplace({Girdle, side}, JointMotions{0.0, 0.0, upward});
   }
   return angles;
 }
 
-// Returns the bones that a joint turns, from the trunk outwards.
-std::vector<int> bones_of(const BodyFrames& frames, const SidedJoint& joint) {
-  std::vector<int> bones;
-  const auto add = [&](BodyPart part, int index) {
-    if (const auto bone = frames.find(part, joint.side, index); bone && *bone != frames.only_root)
-      bones.push_back(*bone);
-  };
-  const BodyPart part = part_of(joint.joint);
-  if (joint.joint == Spine || joint.joint == Neck) {
-    for (int index = 0; frames.find(part, BodySide::Middle, index); ++index) add(part, index);
-    if (joint.joint == Neck) add(BodyPart::Head, 0);
-  } else if (is_finger(joint.joint)) {
-    for (int segment = 1; segment <= 3; ++segment) add(part, segment);
-    // A bone that stands for all fingers together bends by the angles of the middle finger.
-    if (bones.empty() && joint.joint == Middle) add(BodyPart::Fingers, 0);
-  } else {
-    add(part, 0);
-  }
-  return bones;
-}
-
-// Returns the index of the hand bone, which shares the forearm's pronation. Returns nothing if there is no hand bone,
-// or if the hand bone is the rig's only root bone.
-std::optional<int> hand_of_forearm(const BodyFrames& frames, BodySide side) {
-  const auto hand = frames.find(BodyPart::Hand, side);
-  return hand && *hand != frames.only_root ? hand : std::nullopt;
-}
-
-bool has(const BodyFrames& frames, const SidedJoint& joint) {
-  if (joint.joint == Forearm && hand_of_forearm(frames, joint.side)) return true;
-  return !bones_of(frames, joint).empty();
-}
-
 bool has_on_a_side(const BodyFrames& frames, BodyJoint joint) {
-  return has(frames, {joint, BodySide::Left}) || has(frames, {joint, BodySide::Right});
+  return has_joint(frames, {joint, BodySide::Left}) || has_joint(frames, {joint, BodySide::Right});
 }
 
 // Adds the side to a joint without one, if the rig has the joint on one side only. Throws Error if the rig does not
 // have the joint, or has it on both sides.
 SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::string& where) {
-  if (has(frames, joint)) return joint;
+  if (has_joint(frames, joint)) return joint;
   const std::string known = joints_of_rig(frames);
   if (known.empty())
     throw Error("no bone of the rig is known by its name", where,
                 "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   if (is_paired(joint.joint) && joint.side == BodySide::Middle) {
     const SidedJoint left{joint.joint, BodySide::Left}, right{joint.joint, BodySide::Right};
-    if (has(frames, left) && has(frames, right))
+    if (has_joint(frames, left) && has_joint(frames, right))
       throw Error("the rig has two of \"" + name_of(joint) + "\"", where, "write left, right or both before it");
-    if (has(frames, left)) return left;
-    if (has(frames, right)) return right;
+    if (has_joint(frames, left)) return left;
+    if (has_joint(frames, right)) return right;
   }
   throw Error("the rig has no " + name_of(joint) + " between bones that are known by their names", where,
               "use what it has: " + known);
@@ -165,7 +96,7 @@ class Posing {
   };
 
   void want(const SidedJoint& joint, const JointMotions& motions) {
-    const std::vector<int> bones = bones_of(frames_, joint);
+    const std::vector<int> bones = bones_turned_by(frames_, joint);
     for (std::size_t i = 0; i < bones.size(); ++i) {
       Wanted& wanted = wanted_[static_cast<std::size_t>(bones[i])];
       wanted.joints.emplace_back(joint, motions);
@@ -176,7 +107,7 @@ class Posing {
         wanted.motion = role->first.part == BodyPart::Fingers ? 0 : static_cast<std::size_t>(role->first.index - 1);
     }
     // The hand takes the share of the pronation that the forearm does not take.
-    const auto hand = joint.joint == Forearm ? hand_of_forearm(frames_, joint.side) : std::nullopt;
+    const auto hand = joint.joint == Forearm ? pronating_hand(frames_, joint.side) : std::nullopt;
     if (hand) wanted_[static_cast<std::size_t>(*hand)].joints.emplace_back(joint, motions);
   }
 
@@ -217,54 +148,23 @@ class Posing {
     return glm::normalize(now);
   }
 
-  // Returns the bone relative to which the angles of a joint are measured. For a shoulder this is the parent of the
-  // collarbone, for any other joint the parent of `bone`.
-  int reference_of(int bone, BodyJoint joint) const {
-    int above = armature_.bones[static_cast<std::size_t>(bone)].parent;
-    if (joint != Shoulder) return above;
-    for (int b = above; b >= 0; b = armature_.bones[static_cast<std::size_t>(b)].parent)
-      for (const auto& [role, named] : frames_.bone)
-        if (named == b && role.part == BodyPart::Clavicle) above = armature_.bones[static_cast<std::size_t>(b)].parent;
-    return above;
-  }
-
-  // Converts a bone's rotation from the rest pose into its rotation from the anatomical position, in world axes.
-  glm::dquat from_anatomical(int bone, const glm::dquat& turned) const {
-    return bone < 0 ? kNoTurn
-                    : turned * glm::conjugate(frames_.frames[static_cast<std::size_t>(bone)].anatomical_from_rest);
-  }
-
-  bool mirrored(BodySide side) const {
-    const auto found = frames_.is_right.find(side);
-    return found != frames_.is_right.end() && found->second;
-  }
-  glm::dquat in_world(BodySide side, const glm::dquat& q) const {
-    const glm::dquat own = mirrored(side) ? glm::dquat(q.w, q.x, -q.y, -q.z) : q, axes = glm::quat_cast(frames_.body);
-    return axes * own * glm::conjugate(axes);
-  }
-  glm::dquat in_body(BodySide side, const glm::dquat& world) const {
-    const glm::dquat axes = glm::quat_cast(frames_.body), q = glm::conjugate(axes) * world * axes;
-    return mirrored(side) ? glm::dquat(q.w, q.x, -q.y, -q.z) : q;
-  }
-
   glm::dquat with_joint(int bone, const glm::dquat& now, const SidedJoint& joint, const JointMotions& motions,
                         const Wanted& wanted) {
     const BoneFrame& frame = frames_.frames[static_cast<std::size_t>(bone)];
     const bool across = motions[1].value_or(0) != 0 || motions[2].value_or(0) != 0;
-    if (is_finger(joint.joint))
-      return motions[wanted.motion] && frame.hinge ? hinged(bone, now, radians_of(motions, wanted.motion), *frame.hinge)
-                                                   : now;
+    if (is_finger(joint.joint)) return frame.hinge ? finger_turn(bone, now, motions, wanted.motion, *frame.hinge) : now;
     if (frame.hinge && joint.joint != Forearm && !across)
       return hinged(bone, now, radians_of(motions, 0), *frame.hinge);
 
-    const int reference = reference_of(bone, joint.joint);
-    const glm::dquat above = reference < 0 ? kNoTurn : from_anatomical(reference, turned(reference));
-    const glm::dquat before = glm::conjugate(above) * from_anatomical(bone, now);
-    glm::dquat turn = turn_of(joint.joint, motions);
+    const int reference = reference_bone(armature_, frames_, bone, joint.joint);
+    const glm::dquat above = reference < 0 ? kNoTurn : turn_from_anatomical(frames_, reference, turned(reference));
+    const glm::dquat before = glm::conjugate(above) * turn_from_anatomical(frames_, bone, now);
+    glm::dquat turn = joint_turn(joint.joint, motions);
     if (joint.joint == Spine || joint.joint == Neck) turn = exponential(wanted.share * rotation_vector(turn));
     if (joint.joint == Elbow || joint.joint == Forearm || joint.joint == Wrist)
-      turn = arm_turn(bone, in_body(joint.side, before), joint, motions);
-    const glm::dquat world = frame.joint_axes * in_world(joint.side, turn) * glm::conjugate(frame.joint_axes);
+      turn = arm_turn(bone, turn_in_body(frames_, joint.side, before), joint, motions);
+    const glm::dquat world =
+        frame.joint_axes * turn_in_world(frames_, joint.side, turn) * glm::conjugate(frame.joint_axes);
     return above * world * frame.anatomical_from_rest;
   }
 
@@ -272,6 +172,19 @@ class Posing {
   glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
     return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) *
            about(hinge.axis, flexion - hinge.at_rest);
+  }
+
+  // Returns the world rotation of a finger's bone. An angle that is not requested keeps its value.
+  //   segment  index of the bone's flexion in JointMotions
+  glm::dquat finger_turn(int bone, const glm::dquat& now, const JointMotions& motions, std::size_t segment,
+                         const AnatomicalHinge& hinge) const {
+    const glm::dquat& base = base_.rotation[static_cast<std::size_t>(bone)];
+    const bool spreads = segment == 0 && hinge.spread_axis != glm::dvec3(0);
+    if (!motions[segment] && !(spreads && motions[kSpread])) return now;
+    FingerAngles angles = finger_angles(hinge, base);
+    if (motions[segment]) angles.flexion = radians_of(motions, segment);
+    if (spreads && motions[kSpread]) angles.spread = radians_of(motions, kSpread);
+    return now * glm::conjugate(base) * rotation_of_finger(hinge, angles);
   }
 
   static glm::dvec3 rotation_vector(const glm::dquat& q) {
@@ -290,10 +203,9 @@ class Posing {
     if (joint.joint == Forearm && share == 0) return before;
     // The pronation is a rotation about the limb's length: the leftmost factor of a hand's rotation, the rightmost
     // factor of a forearm's rotation.
-    const glm::dmat3 m = glm::mat3_cast(before);
-    const glm::dquat kept = about(kZ, is_hand ? std::atan2(-m[1].x, m[1].y) : std::atan2(-m[1].x, m[0].x));
-    if (joint.joint == Elbow) return turn_of(Elbow, motions) * kept;
-    if (joint.joint == Wrist) return kept * turn_of(Wrist, motions);
+    const glm::dquat kept = about(kZ, is_hand ? pronation_in_hand(before) : pronation_in_forearm(before));
+    if (joint.joint == Elbow) return joint_turn(Elbow, motions) * kept;
+    if (joint.joint == Wrist) return kept * joint_turn(Wrist, motions);
     const glm::dquat pronated = about(kZ, -share * radians_of(motions, 0));
     return is_hand ? pronated * glm::conjugate(kept) * before : before * glm::conjugate(kept) * pronated;
   }
@@ -320,13 +232,13 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
   // out.
   JointAngles found;
   for (const auto& [joint, motions] : angles)
-    if (angles.size() == 1 || has(frames, joint) ||
+    if (angles.size() == 1 || has_joint(frames, joint) ||
         (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
       found[sided(frames, joint, where)] = motions;
   if (!found.empty() || angles.empty()) return found;
   // A limb whose bone names tell no side takes angles that are requested for the left or the right side.
   for (const auto& [joint, motions] : angles)
-    if (has(frames, {joint.joint, BodySide::Middle})) found[{joint.joint, BodySide::Middle}] = motions;
+    if (has_joint(frames, {joint.joint, BodySide::Middle})) found[{joint.joint, BodySide::Middle}] = motions;
   if (found.empty()) sided(frames, angles.begin()->first, where);
   return found;
 }
@@ -334,12 +246,12 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
 JointAngles known_to_rig(const BodyFrames& frames, const JointAngles& angles) {
   JointAngles known;
   for (const auto& [joint, motions] : angles) {
-    if (has(frames, joint)) known[joint] = motions;
+    if (has_joint(frames, joint)) known[joint] = motions;
     // A limb whose bone names tell no side takes the angles of the left or the right side, as its shape tells.
     const bool right = joint.side == BodySide::Right;
     const SidedJoint sideless{joint.joint, BodySide::Middle};
     const auto shape = frames.is_right.find(BodySide::Middle);
-    if (is_paired(joint.joint) && joint.side != BodySide::Middle && has(frames, sideless) &&
+    if (is_paired(joint.joint) && joint.side != BodySide::Middle && has_joint(frames, sideless) &&
         shape != frames.is_right.end() && shape->second == right)
       known[sideless] = motions;
   }
@@ -353,7 +265,7 @@ std::string lacking_within_limbs(const BodyFrames& frames, const JointAngles& an
   for (const auto& [joint, motions] : angles)
     for (const auto& [above, below] : kNextBelow) {
       const bool lacking =
-          joint.joint == above && !frames.find(part_of(above), joint.side) && has(frames, {below, joint.side});
+          joint.joint == above && !frames.find(part_of(above), joint.side) && has_joint(frames, {below, joint.side});
       if (lacking) names += (names.empty() ? "" : ", ") + name_of(joint);
     }
   return names;
@@ -381,7 +293,7 @@ std::string limbs_apart(const Armature& armature, const BodyFrames& frames) {
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles) {
   std::vector<int> all;
   for (const auto& [joint, motions] : angles) {
-    const std::vector<int> bones = bones_of(frames, joint);
+    const std::vector<int> bones = bones_turned_by(frames, joint);
     all.insert(all.end(), bones.begin(), bones.end());
   }
   return all;
@@ -389,9 +301,9 @@ std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& an
 
 std::string joints_of_rig(const BodyFrames& frames) {
   std::string names;
-  for (const BodyJoint joint : kJoints)
+  for (const BodyJoint joint : kAllJoints)
     for (const BodySide side : {BodySide::Left, BodySide::Right, BodySide::Middle}) {
-      if ((side == BodySide::Middle || is_paired(joint)) && has(frames, {joint, side}))
+      if ((side == BodySide::Middle || is_paired(joint)) && has_joint(frames, {joint, side}))
         names += (names.empty() ? "" : ", ") + name_of({joint, side});
     }
   return names;

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/pose/joint_turns.h"
+#include "core/rig/joint_limits.h"
+
 namespace limber {
 
 namespace {
@@ -89,6 +92,26 @@ double bend(const glm::dvec3& before, const glm::dvec3& after, const glm::dvec3&
 
 using Hinges = std::vector<std::pair<int, AnatomicalHinge>>;
 
+// Adds to the hinge of a thumb's metacarpal the axis about which it leaves the palm's plane.
+//   palmar  unit normal of the palm
+void add_abduction(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dvec3& palmar) {
+  const glm::dvec3 axis = unit(glm::cross(bone, hinge.axis));
+  if (axis == glm::dvec3(0) || palmar == glm::dvec3(0)) return;
+  hinge.spread_axis = glm::dot(palmar, hinge.axis) < 0 ? -axis : axis;
+  hinge.spread_at_rest = std::asin(std::clamp(glm::dot(bone, palmar), -1.0, 1.0));
+}
+
+// Adds to the hinge of a finger's first bone the axis about which it spreads towards `towards`.
+//   level  the direction, unit, in which the unspread bone lies at the knuckle's rest flexion: angles count from it
+void add_spreading(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dvec3& towards, const glm::dvec3& level) {
+  const glm::dvec3 axis = unit(glm::cross(bone, hinge.axis));
+  if (axis == glm::dvec3(0) || level == glm::dvec3(0) || towards == glm::dvec3(0)) return;
+  const double sign = glm::dot(towards, hinge.axis) < 0 ? -1 : 1;
+  const auto rise = [&](const glm::dvec3& v) { return std::asin(std::clamp(glm::dot(v, hinge.axis), -1.0, 1.0)); };
+  hinge.spread_axis = sign * axis;
+  hinge.spread_at_rest = sign * (rise(bone) - rise(level));
+}
+
 void add_hinges(Hinges& hinges, const Armature& armature, const Finger& finger, const glm::dvec3& across) {
   if (finger.bones.empty()) return;
   const glm::dvec3 turning = curl(finger),
@@ -108,6 +131,29 @@ void add_hinges(Hinges& hinges, const Armature& armature, const Finger& finger, 
 }
 
 }  // namespace
+
+FingerAngles finger_angles(const AnatomicalHinge& hinge, const glm::dquat& rotation) {
+  if (hinge.spread_axis == glm::dvec3(0)) return {hinge.at_rest + swing_twist(rotation, hinge.axis).twist, 0};
+  const glm::dquat axes =
+      glm::quat_cast(glm::dmat3(hinge.axis, hinge.spread_axis, glm::cross(hinge.axis, hinge.spread_axis)));
+  const glm::dvec3 xyz = cardan_xyz(glm::conjugate(axes) * rotation * axes);
+  // Two pairs of angles give the same rotation. The finger is where the smaller ones say.
+  constexpr double kPi = std::numbers::pi;
+  const auto angles = [&](double bend, double aside) {
+    return FingerAngles{std::remainder(hinge.at_rest + bend, 2 * kPi),
+                        std::remainder(hinge.spread_at_rest + aside, 2 * kPi)};
+  };
+  const auto size = [](const FingerAngles& one) { return std::abs(one.flexion) + std::abs(one.spread); };
+  const FingerAngles one = angles(xyz.x, xyz.y), other = angles(xyz.x + kPi, kPi - xyz.y);
+  return size(one) <= size(other) ? one : other;
+}
+
+glm::dquat rotation_of_finger(const AnatomicalHinge& hinge, const FingerAngles& angles) {
+  const glm::dquat bend = glm::angleAxis(angles.flexion - hinge.at_rest, hinge.axis);
+  return angles.spread == hinge.spread_at_rest
+             ? bend
+             : bend * glm::angleAxis(angles.spread - hinge.spread_at_rest, hinge.spread_axis);
+}
 
 std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side) {
   const auto from = wrist(skeleton, side);
@@ -157,10 +203,23 @@ Hinges finger_hinges(const Armature& armature, const Skeleton& skeleton, BodySid
   // The fingers of a left hand flex by a positive rotation about the axis from index to little finger. In a right hand
   // the axis is opposite.
   const glm::dvec3 across = right ? -to_little : to_little;
-  for (const BodyPart finger : kFingers) add_hinges(hinges, armature, finger_of(skeleton, finger, side), across);
+  for (const BodyPart part : kFingers) {
+    const Finger finger = finger_of(skeleton, part, side);
+    const std::size_t first = hinges.size();
+    add_hinges(hinges, armature, finger, across);
+    if (hinges.size() > first && bone_of(skeleton, part, side, 1) == hinges[first].first)
+      add_spreading(hinges[first].second, finger.directions[1], part == BodyPart::Index ? -to_little : to_little,
+                    finger.directions[0]);
+  }
   // A thumb bends across the palm, towards the little finger.
   const Finger thumb = finger_of(skeleton, BodyPart::Thumb, side);
-  if (!thumb.bones.empty()) add_hinges(hinges, armature, thumb, unit(glm::cross(thumb.directions[1], to_little)));
+  if (!thumb.bones.empty()) {
+    const std::size_t first = hinges.size();
+    add_hinges(hinges, armature, thumb, unit(glm::cross(thumb.directions[1], to_little)));
+    const glm::dvec3 palmar = unit(glm::cross(across, along_hand(skeleton, side).value_or(glm::dvec3(0))));
+    if (hinges.size() > first && bone_of(skeleton, BodyPart::Thumb, side, 1) == hinges[first].first)
+      add_abduction(hinges[first].second, thumb.directions[1], palmar);
+  }
   if (const auto fingers = bone_of(skeleton, BodyPart::Fingers, side, 0)) {
     const glm::dvec3 along = along_hand(skeleton, side).value_or(skeleton.tip[*fingers] - skeleton.place[*fingers]);
     add_hinges(hinges, armature, {{*fingers}, {unit(along), unit(direction_of(skeleton, *fingers))}}, across);

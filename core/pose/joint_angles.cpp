@@ -112,6 +112,8 @@ constexpr MotionWord kMotions[] = {
     {Shoulder, "lateral rotation", 2, -1},
     {Elbow, "flexion", 0},
     {Elbow, "extension", 0, -1},
+    {Elbow, "valgus", 1},
+    {Elbow, "varus", 1, -1},
     {Forearm, "pronation", 0},
     {Forearm, "supination", 0, -1},
     {Wrist, "flexion", 0},
@@ -128,11 +130,17 @@ constexpr MotionWord kMotions[] = {
     {Hip, "lateral rotation", 2, -1},
     {Knee, "flexion", 0},
     {Knee, "extension", 0, -1},
+    {Knee, "varus", 1},
+    {Knee, "valgus", 1, -1},
+    {Knee, "internal rotation", 2},
+    {Knee, "external rotation", 2, -1},
     {Ankle, "dorsiflexion", 0},
     {Ankle, "plantarflexion", 0, -1},
     {Ankle, "plantar flexion", 0, -1},
     {Ankle, "inversion", 1},
     {Ankle, "eversion", 1, -1},
+    {Ankle, "internal rotation", 2},
+    {Ankle, "external rotation", 2, -1},
     {Toes, "extension", 0},
     {Toes, "flexion", 0, -1},
 };
@@ -140,27 +148,26 @@ constexpr MotionWord kMotions[] = {
 struct UsualRange {
   BodyJoint joint;
   std::size_t motion;
-  double low, high;  // range that adults usually reach, degrees
+  AngleRange range;
 };
 
 constexpr UsualRange kUsual[] = {
-    {Spine, 0, -35, 90},  {Spine, 1, -40, 40},     {Spine, 2, -50, 50},     {Neck, 0, -60, 60},
-    {Neck, 1, -45, 45},   {Neck, 2, -80, 80},      {Girdle, 0, -10, 40},    {Girdle, 1, -20, 30},
-    {Girdle, 2, -10, 60}, {Shoulder, 0, -60, 180}, {Shoulder, 1, -50, 180}, {Shoulder, 2, -90, 90},
-    {Elbow, 0, -10, 150}, {Forearm, 0, -10, 175},  {Wrist, 0, -75, 80},     {Wrist, 1, -20, 35},
-    {Hip, 0, -30, 125},   {Hip, 1, -30, 50},       {Hip, 2, -45, 45},       {Knee, 0, -10, 150},
-    {Ankle, 0, -50, 30},  {Ankle, 1, -20, 35},     {Toes, 0, -45, 70},
+    {Spine, 0, {-35, 90}},  {Spine, 1, {-40, 40}},     {Spine, 2, {-50, 50}},     {Neck, 0, {-60, 60}},
+    {Neck, 1, {-45, 45}},   {Neck, 2, {-80, 80}},      {Girdle, 0, {-10, 40}},    {Girdle, 1, {-20, 30}},
+    {Girdle, 2, {-10, 60}}, {Shoulder, 0, {-60, 180}}, {Shoulder, 1, {-50, 180}}, {Shoulder, 2, {-90, 90}},
+    {Elbow, 0, {-10, 150}}, {Elbow, 1, {-5, 20}},      {Forearm, 0, {-10, 175}},  {Wrist, 0, {-75, 80}},
+    {Wrist, 1, {-20, 35}},  {Hip, 0, {-30, 125}},      {Hip, 1, {-30, 50}},       {Hip, 2, {-45, 45}},
+    {Knee, 0, {-10, 150}},  {Knee, 1, {-10, 10}},      {Knee, 2, {-40, 30}},      {Ankle, 0, {-50, 30}},
+    {Ankle, 1, {-20, 35}},  {Ankle, 2, {-20, 20}},     {Toes, 0, {-45, 70}},
 };
-constexpr UsualRange kUsualThumb[] = {{Thumb, 0, -10, 60}, {Thumb, 1, -15, 80}, {Thumb, 2, -15, 80}};
-constexpr UsualRange kUsualFinger[] = {{Index, 0, -45, 95}, {Index, 1, -10, 110}, {Index, 2, -10, 90}};
+constexpr AngleRange kUsualThumb[] = {{-10, 60}, {-15, 80}, {-15, 80}, {-10, 70}};
+constexpr AngleRange kUsualFinger[] = {{-45, 95}, {-10, 110}, {-10, 90}, {-20, 30}};
 
 constexpr double kMostDegrees = 360;
 // Bend of a finger's last joint relative to the bend of its middle joint, since one tendon bends both joints.
 constexpr double kLastJointShare = 2.0 / 3;
 // Bend of the thumb relative to the bend of the fingers when a request curls the whole hand.
 constexpr double kThumbShare = 0.5;
-
-constexpr bool is_finger(BodyJoint joint) { return joint >= Thumb; }
 
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
@@ -201,38 +208,49 @@ std::string request_of(const std::string& request) {
   return quoted += '"';
 }
 
-double degrees_of(const std::string& request, std::size_t equals, const std::string& where) {
+double degrees_of(const std::string& request, std::size_t equals) {
   double degrees = 0;
   const char* end = request.data() + request.size();
   const char* begin = equals == request.npos ? end : request.data() + equals + 1;
   while (begin != end && (*begin == ' ' || *begin == '+')) ++begin;
   while (begin != end && (end[-1] == ' ')) --end;
   const auto [stop, error] = std::from_chars(begin, end, degrees);
-  if (begin == end || error != std::errc() || stop != end || !std::isfinite(degrees) ||
-      std::abs(degrees) > kMostDegrees)
-    throw Error("this is no angle of a joint", where + " " + request_of(request),
-                "write JOINT MOTION=DEGREES, from -360 to 360, as in \"left hip flexion=90\"");
-  return degrees;
+  return begin == end || error != std::errc() || stop != end ? std::nan("") : degrees;
+}
+
+void merge(JointMotions& into, const JointMotions& from) {
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (from[i]) into[i] = from[i];
 }
 
 void set_fingers(JointAngles& angles, Sides sides, double degrees, bool with_thumb) {
   for (const BodySide side : sides_of(sides)) {
     for (const BodyJoint finger : {Index, Middle, Ring, Little})
-      angles[{finger, side}] = {degrees, degrees, kLastJointShare * degrees};
-    if (with_thumb) angles[{Thumb, side}] = {std::nullopt, kThumbShare * degrees, kThumbShare * degrees};
+      merge(angles[{finger, side}], {degrees, degrees, kLastJointShare * degrees});
+    if (with_thumb) merge(angles[{Thumb, side}], {std::nullopt, kThumbShare * degrees, kThumbShare * degrees});
   }
 }
 
-// Reads a request that sets several finger joints at once ("left hand curl", "fingers flexion") and adds the angles.
-// Returns false if the request is not of this kind.
+// Spreads the fingers away from the middle finger, which stays in line with its metacarpal.
+void spread_fingers(JointAngles& angles, Sides sides, double degrees) {
+  for (const BodySide side : sides_of(sides)) {
+    for (const BodyJoint finger : {Index, Ring, Little}) angles[{finger, side}][kSpread] = degrees;
+    angles[{Middle, side}][kSpread] = 0;
+  }
+}
+
+// Reads a request that sets several finger joints at once ("left hand curl", "hands spread", "fingers flexion") and
+// adds the angles. Returns false if the request is not of this kind.
 bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words, std::size_t first, Sides sides,
                       double degrees) {
   if (words.size() != first + 2) return false;
   const std::string& hand = words[first];
-  const bool curl = words[first + 1] == "curl" && (hand == "hand" || hand == "hands");
+  const bool of_hand = hand == "hand" || hand == "hands";
+  const bool curl = words[first + 1] == "curl" && of_hand, spread = words[first + 1] == "spread" && of_hand;
   const bool fingers = hand == "fingers" && (words[first + 1] == "flexion" || words[first + 1] == "extension");
-  if (!curl && !fingers) return false;
+  if (!curl && !fingers && !spread) return false;
   if (sides == Sides::NotSaid && (hand == "hands" || fingers)) sides = Sides::Both;
+  if (spread) return spread_fingers(angles, sides, degrees), true;
   set_fingers(angles, sides, words[first + 1] == "extension" ? -degrees : degrees, curl);
   return true;
 }
@@ -247,11 +265,13 @@ std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& 
   if (motion == "extension") return finger_motions(finger, "flexion", -degrees);
   constexpr std::string_view kFinger[][2] = {{"mcp flexion", "knuckle flexion"},
                                              {"pip flexion", "middle joint flexion"},
-                                             {"dip flexion", "last joint flexion"}};
+                                             {"dip flexion", "last joint flexion"},
+                                             {"mcp abduction", "spread"}};
   constexpr std::string_view kThumb[][2] = {{"cmc flexion", "saddle joint flexion"},
                                             {"mcp flexion", "knuckle flexion"},
-                                            {"ip flexion", "last joint flexion"}};
-  for (std::size_t i = 0; i < 3; ++i)
+                                            {"ip flexion", "last joint flexion"},
+                                            {"cmc abduction", "abduction"}};
+  for (std::size_t i = 0; i < kMotionsOfJoint; ++i)
     for (const std::string_view word : finger == Thumb ? kThumb[i] : kFinger[i])
       if (motion == word) {
         JointMotions motions;
@@ -291,27 +311,18 @@ std::optional<FoundJoint> joint_at(const std::vector<std::string>& words, std::s
   return std::nullopt;
 }
 
-void merge(JointMotions& into, const JointMotions& from) {
-  for (std::size_t i = 0; i < from.size(); ++i)
-    if (from[i]) into[i] = from[i];
-}
-
-const UsualRange* usual_range(BodyJoint joint, std::size_t motion) {
-  if (joint == Thumb) return &kUsualThumb[motion];
-  if (is_finger(joint)) return &kUsualFinger[motion];
-  const auto found = std::find_if(std::begin(kUsual), std::end(kUsual), [&](const UsualRange& range) {
-    return range.joint == joint && range.motion == motion;
-  });
-  return found == std::end(kUsual) ? nullptr : found;
-}
-
 }  // namespace
 
 void add_joint_request(JointAngles& angles, const std::string& request, const std::string& where) {
   const std::size_t equals = request.rfind('=');
-  const double degrees = degrees_of(request, equals, where);
-  const std::vector<std::string> words = words_of(std::string_view(request).substr(0, equals));
-  const std::string here = where + " " + request_of(request);
+  add_joint_angle(angles, request.substr(0, equals), degrees_of(request, equals), where + " " + request_of(request));
+}
+
+void add_joint_angle(JointAngles& angles, const std::string& asked, double degrees, const std::string& where) {
+  if (!(std::abs(degrees) <= kMostDegrees))
+    throw Error("this is no angle of a joint", where,
+                "write JOINT MOTION=DEGREES, from -360 to 360, as in \"left hip flexion=90\"");
+  const std::vector<std::string> words = words_of(asked);
 
   Sides sides = Sides::NotSaid;
   std::size_t first = 0;
@@ -321,7 +332,7 @@ void add_joint_request(JointAngles& angles, const std::string& request, const st
   if (add_hand_request(angles, words, first, sides, degrees)) return;
 
   const auto found = joint_at(words, first);
-  if (!found) throw Error("this names no joint that is known", here, "write one of: " + known_joints());
+  if (!found) throw Error("this names no joint that is known", where, "write one of: " + known_joints());
   const auto& [joint, plural, next] = *found;
   const std::string motion = joined(words, next, words.size());
   const auto motions = motions_of(joint, motion, degrees);
@@ -329,9 +340,9 @@ void add_joint_request(JointAngles& angles, const std::string& request, const st
   if (!motions)
     throw Error(
         "the " + name + (motion.empty() ? " has several motions" : " has no motion \"" + motion.substr(0, 40) + "\""),
-        here, "write one of: " + known_motions(joint));
+        where, "write one of: " + known_motions(joint));
   if (!is_paired(joint) && sides != Sides::NotSaid)
-    throw Error("the body has one " + name + " only", here,
+    throw Error("the body has one " + name + " only", where,
                 "leave out the side; write \"" + name + " left bending\" for what goes to a side");
   if (plural && sides == Sides::NotSaid) sides = Sides::Both;
   for (const BodySide side : sides_of(sides)) merge(angles[{joint, side}], *motions);
@@ -345,12 +356,26 @@ std::string name_of(const SidedJoint& joint) {
 }
 
 std::string_view motion_name(BodyJoint joint, std::size_t motion) {
-  constexpr std::string_view kFinger[] = {"knuckle flexion", "middle joint flexion", "last joint flexion"};
-  constexpr std::string_view kThumb[] = {"saddle joint flexion", "knuckle flexion", "last joint flexion"};
+  constexpr std::string_view kFinger[] = {"knuckle flexion", "middle joint flexion", "last joint flexion", "spread"};
+  constexpr std::string_view kThumb[] = {"saddle joint flexion", "knuckle flexion", "last joint flexion", "abduction"};
   if (is_finger(joint)) return joint == Thumb ? kThumb[motion] : kFinger[motion];
   for (const MotionWord& word : kMotions)
     if (word.joint == joint && word.motion == motion) return word.word;
   return "";
+}
+
+std::string_view opposite_name(BodyJoint joint, std::size_t motion) {
+  for (const MotionWord& word : kMotions)
+    if (word.joint == joint && word.motion == motion && word.sign < 0) return word.word;
+  return "";
+}
+
+std::optional<AngleRange> usual_range(BodyJoint joint, std::size_t motion) {
+  if (motion >= kMotionsOfJoint) return std::nullopt;
+  if (is_finger(joint)) return joint == Thumb ? kUsualThumb[motion] : kUsualFinger[motion];
+  for (const UsualRange& usual : kUsual)
+    if (usual.joint == joint && usual.motion == motion) return usual.range;
+  return std::nullopt;
 }
 
 std::string known_joints() {
@@ -361,12 +386,12 @@ std::string known_joints() {
     last = known.joint;
     names += std::string(names.empty() ? "" : ", ") + std::string(known.name);
   }
-  return names + ", hand (curl)";
+  return names + ", hand (curl, spread)";
 }
 
 std::string known_motions(BodyJoint joint) {
-  if (joint == Thumb) return "flexion, saddle joint flexion, knuckle flexion, last joint flexion";
-  if (is_finger(joint)) return "flexion, knuckle flexion, middle joint flexion, last joint flexion";
+  if (joint == Thumb) return "flexion, saddle joint flexion, knuckle flexion, last joint flexion, abduction";
+  if (is_finger(joint)) return "flexion, knuckle flexion, middle joint flexion, last joint flexion, spread";
   std::string names;
   for (const MotionWord& word : kMotions)
     if (word.joint == joint) names += std::string(names.empty() ? "" : ", ") + std::string(word.word);
@@ -401,7 +426,7 @@ std::vector<std::string> beyond_usual(const JointAngles& angles) {
   std::vector<std::string> lines;
   for (const auto& [joint, motions] : angles)
     for (std::size_t i = 0; i < motions.size(); ++i) {
-      const UsualRange* range = motions[i] ? usual_range(joint.joint, i) : nullptr;
+      const std::optional<AngleRange> range = motions[i] ? usual_range(joint.joint, i) : std::nullopt;
       if (!range || (*motions[i] >= range->low && *motions[i] <= range->high)) continue;
       char text[200];
       std::snprintf(text, sizeof text, "%s %s of %g degrees is beyond the %g to %g that adults usually reach",

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
+#include "core/pose/anatomical_pose.h"
 
 namespace limber {
 
@@ -57,20 +58,47 @@ glm::dquat rotation_of(const Json& value, const std::string& where) {
   }
   throw Error("the bone has no rotation", where, "write {\"rotation_wxyz\": [4]} or {\"axis\": [3], \"degrees\": d}");
 }
+
+// Applies {"left hip": {"flexion": 90}} to a pose.
+Pose with_angles(const Json& table, const std::string& where, const Armature& armature, const Pose& pose) {
+  if (!table.is_object())
+    throw Error("\"angles\" is not a table of joints", where, "write {\"left hip\": {\"flexion\": 90}}");
+  const BodyFrames frames = body_frames(armature);
+  JointAngles angles;
+  for (const auto& [joint, motions] : table.items()) {
+    const std::string here = where + ", joint " + joint.substr(0, 60);
+    if (!motions.is_object()) throw Error("the joint has no table of angles", here, "write {\"flexion\": 90}");
+    JointAngles asked;
+    for (const auto& [motion, degrees] : motions.items())
+      add_joint_angle(asked, joint + " " + motion, numbers(degrees, 1, motion.c_str(), here)[0], here);
+    for (const auto& [one, given] : with_sides(frames, asked, here))
+      for (std::size_t i = 0; i < given.size(); ++i)
+        if (given[i]) angles[one][i] = given[i];
+  }
+  return with_joint_angles(armature, frames, pose, angles);
+}
+
+void set_bones(const Json& table, const std::string& where, const Armature& armature, Pose& pose) {
+  for (const auto& [name, value] : table.items()) {
+    const std::string here = where + ", bone " + name.substr(0, 60);
+    const auto bone = armature.find(name);
+    if (!bone) throw Error("the rig has no such bone", here, "use the rig's names (limber info RIG lists them)");
+    pose.rotation[*bone] = rotation_of(value, here);
+  }
+}
 }  // namespace
 
 Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature) {
   try {
     const Json json = Json::parse(checked_json(text, where));
-    if (!json.is_object() || !json.contains("bones") || !json["bones"].is_object())
-      throw Error("there is no table of bones", where, "give {\"bones\": {name: {\"axis\": [3], \"degrees\": d}}}");
+    const bool bones = json.is_object() && json.contains("bones"), angles = json.is_object() && json.contains("angles");
+    if ((!bones && !angles) || (bones && !json["bones"].is_object()))
+      throw Error(
+          "there is no table of bones", where,
+          "give {\"bones\": {name: {\"axis\": [3], \"degrees\": d}}} or {\"angles\": {joint: {motion: degrees}}}");
     Pose pose = rest_pose(armature);
-    for (const auto& [name, value] : json["bones"].items()) {
-      const std::string here = where + ", bone " + name.substr(0, 60);
-      const auto bone = armature.find(name);
-      if (!bone) throw Error("the rig has no such bone", here, "use the rig's names (limber info RIG lists them)");
-      pose.rotation[*bone] = rotation_of(value, here);
-    }
+    if (bones) set_bones(json["bones"], where, armature, pose);
+    if (angles) pose = with_angles(json["angles"], where, armature, pose);
     if (json.contains("root_translation")) {
       const auto t = numbers(json["root_translation"], 3, "root_translation", where);
       pose.root_translation = {t[0], t[1], t[2]};

@@ -6,6 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/pose/clinical_angles.h"
+#include "tests/support/body_rig.h"
 #include "tests/support/program.h"
 
 using namespace limber;
@@ -46,4 +48,30 @@ TEST_CASE("pose: unknown bones, zero axes and numbers that are none are refused"
   refused(R"({"bones": {"lower": {"rotation_wxyz": [1, 0, 0]}}})");
   refused(R"({"bones": {"lower": {"rotation_wxyz": [1, 0, 0, 1e999]}}})");
   refused(R"({"bones": {}, "root_translation": [1, 2]})");
+}
+
+TEST_CASE("pose: a file of clinical angles sets the joints that it names, over its bones, on any rig") {
+  const Armature rig = test::body_rig();
+  const Pose pose = parse_pose(R"({"angles": {"left hip": {"flexion": 80, "abduction": 5}, "knees": {"flexion": 90}},
+      "bones": {"Head": {"axis": [0, 0, 1], "degrees": 10}}})",
+                               "test", rig);
+  const JointAngles read = clinical_angles(rig, body_frames(rig), pose);
+  CHECK(*read.at({BodyJoint::Hip, BodySide::Left})[0] == doctest::Approx(80));
+  CHECK(*read.at({BodyJoint::Hip, BodySide::Left})[1] == doctest::Approx(5));
+  CHECK(*read.at({BodyJoint::Knee, BodySide::Right})[0] == doctest::Approx(90));
+  CHECK(*read.at({BodyJoint::Neck, BodySide::Middle})[2] == doctest::Approx(10));
+  const auto refusal = [&](const char* text) -> std::string {
+    try {
+      parse_pose(text, "test", rig);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(refusal(R"({"angles": {"left hip": {"flexion": "90"}}})").find("finite number") != std::string::npos);
+  CHECK(refusal(R"({"angles": {"left hip": {"bending": 9}}})").find("no motion") != std::string::npos);
+  CHECK(refusal(R"({"angles": {"left tail": {"flexion": 9}}})").find("no joint") != std::string::npos);
+  CHECK(refusal(R"({"angles": {"hip": {"flexion": 9}}})").find("left, right or both") != std::string::npos);
+  CHECK(refusal(R"({"angles": [3]})").find("table of joints") != std::string::npos);
+  CHECK(refusal(R"({"angles": {"left hip": {"flexion": 999}}})").find("no angle") != std::string::npos);
 }
