@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json]: prints the position of every joint.
+// limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json] [--angles]: prints the position of every joint,
+// or its clinical angles.
 //
 // For a BVH without a pose it prints, in the file's own axes and units, the joints' global rotations and the positions
 // of the End Sites too. For a rig (or a BVH with a pose) it prints posed heads and tails in world LPS mm, and each
@@ -14,6 +15,8 @@
 #include "core/cmd/command.h"
 #include "core/cmd/pose_options.h"
 #include "core/motion/bvh.h"
+#include "core/pose/clinical_angles.h"
+#include "core/pose/joint_turns.h"
 #include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
@@ -23,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct FkOptions {
   std::string file;
-  bool json = false, all_frames = false;
+  bool json = false, all_frames = false, angles = false;
   PoseOptions pose;
 };
 
@@ -75,39 +78,85 @@ void print_table(const Json& joints) {
   }
 }
 
+// Returns the frames by which angles are measured. Throws Error if no bone of the rig is known by its name.
+BodyFrames frames_for_angles(const Armature& armature, const std::string& file) {
+  BodyFrames frames = body_frames(armature);
+  if (joints_known_by_name(frames).empty())
+    throw Error("no bone of the rig is known by its name, so it has no joints with clinical angles", file,
+                "name its bones as in \"LeftThigh\", or leave --angles out");
+  return frames;
+}
+
+// Returns {"left hip": {"flexion": 90.0, ...}, ...}, which a pose file takes as its "angles".
+Json json_of(const JointAngles& angles) {
+  Json joints = Json::object();
+  for (const auto& [joint, motions] : angles)
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      if (motions[i]) joints[name_of(joint)][std::string(motion_name(joint.joint, i))] = *motions[i] + 0.0;  // no "-0"
+  return joints;
+}
+
+void print_angles(const Armature& armature, const BodyFrames& frames, const JointAngles& angles) {
+  print("%-22s %-22s %9s   %s\n", "joint", "motion", "degrees", "range");
+  for (const auto& [joint, motions] : angles) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (!motions[i]) continue;
+      const AngleRange range = range_of_motion(armature, frames, joint, i);
+      const double shown = std::abs(*motions[i]) < 0.05 ? 0 : *motions[i];  // not "-0.0"
+      const bool beyond = shown < range.low - 0.05 || shown > range.high + 0.05;
+      print("%-22s %-22s %9.1f   %.0f to %.0f%s\n", name_of(joint).c_str(),
+            std::string(motion_name(joint.joint, i)).c_str(), shown, std::round(range.low) + 0.0,
+            std::round(range.high) + 0.0, beyond ? ", beyond" : "");
+    }
+    if (at_gimbal_lock(joint.joint, motions))
+      print("%-22s at 90 degrees of the middle one, its first and its last angle are one motion\n", "");
+  }
+}
+
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+void print_joints(const FkOptions& options, const Json& joints) {
+  if (!options.json) return print_table(joints);
+  print_json(text_of({{"joints", joints}}) + "\n");
+}
+
 // Prints {"frames": [{"joints": [...]}, ...]}, one line for each frame.
-void print_frames(int count, const std::function<Json(int)>& joints_at) {
+void print_frames(int count, const std::function<Json(int)>& frame_at) {
   print("{\"frames\":[");
-  for (int frame = 0; frame < count; ++frame)
-    print_json(text_of({{"joints", joints_at(frame)}}) + (frame + 1 < count ? ",\n" : ""));
+  for (int frame = 0; frame < count; ++frame) print_json(text_of(frame_at(frame)) + (frame + 1 < count ? ",\n" : ""));
   print("]}\n");
+}
+
+void run_fk_of_motion(const FkOptions& options) {
+  const Motion motion = read_bvh(Path(options.file));
+  warn(motion.warnings);
+  if (options.all_frames)
+    return print_frames(motion.frame_count, [&](int frame) -> Json {
+      return {{"joints", fk_of_motion(motion, frame, options.file)}};
+    });
+  print_joints(options, fk_of_motion(motion, options.pose.frame, options.file));
 }
 
 void run_fk(const FkOptions& options) {
   const Path path = options.file;
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  Json joints;
-  if (extension == ".bvh" && !wants_pose(options.pose)) {
-    const Motion motion = read_bvh(path);
-    warn(motion.warnings);
-    if (options.all_frames)
-      return print_frames(motion.frame_count, [&](int frame) { return fk_of_motion(motion, frame, options.file); });
-    joints = fk_of_motion(motion, options.pose.frame, options.file);
-  } else {
-    const ArmatureFile rig = read_armature_file(path);
-    warn(rig.warnings);
-    if (options.all_frames) {
-      const auto poses = read_all_poses(options.pose, rig.armature);
-      return print_frames(static_cast<int>(poses.size()),
-                          [&](int frame) { return fk_of_rig(rig.armature, poses[frame]); });
-    }
-    joints = fk_of_rig(rig.armature, read_pose_options(options.pose, rig.armature));
+  if (extension == ".bvh" && !wants_pose(options.pose) && !options.angles) return run_fk_of_motion(options);
+  const ArmatureFile rig = read_armature_file(path);
+  warn(rig.warnings);
+  const BodyFrames frames = options.angles ? frames_for_angles(rig.armature, options.file) : BodyFrames();
+  const auto angles_in = [&](const Pose& pose) { return clinical_angles(rig.armature, frames, pose); };
+  if (options.all_frames) {
+    const auto poses = read_all_poses(options.pose, rig.armature);
+    return print_frames(static_cast<int>(poses.size()), [&](int frame) -> Json {
+      if (options.angles) return {{"angles", json_of(angles_in(poses[frame]))}};
+      return {{"joints", fk_of_rig(rig.armature, poses[frame])}};
+    });
   }
-  if (!options.json) return print_table(joints);
-  print_json(text_of({{"joints", joints}}) + "\n");
+  const Pose pose = read_pose_options(options.pose, rig.armature);
+  if (!options.angles) return print_joints(options, fk_of_rig(rig.armature, pose));
+  if (!options.json) return print_angles(rig.armature, frames, angles_in(pose));
+  print_json(text_of({{"angles", json_of(angles_in(pose))}}) + "\n");
 }
 }  // namespace
 
@@ -120,6 +169,9 @@ void add_fk(CLI::App& app) {
       ->required();
   auto* json =
       command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
+  command->add_flag("--angles", options->angles,
+                    "print the clinical angles of every joint, from the anatomical position; with --json "
+                    "{\"angles\": {joint: {motion: degrees}}}, which is a pose file");
   add_pose_options(*command, options->pose);
   command->add_flag("--all-frames", options->all_frames, "every frame of the motion: {\"frames\": [{\"joints\": ...}]}")
       ->needs(json)
