@@ -42,10 +42,21 @@ constexpr BodyPose kPoses[] = {
      "left shoulder abduction=8; left elbow flexion=5; left forearm pronation=90"},
     {"T", "Arms straight to the sides, palms down.", "shoulders abduction=90; forearms pronation=90"},
     {"A", "Arms straight and half way down, thumbs forward.", "shoulders abduction=45; forearms pronation=90"},
+    {"anatomical", "The anatomical position, from which clinical angles are counted: straight, palms forward.", ""},
+    {"kneel", "Kneeling upright, arms hanging.",
+     "knees flexion=90; ankles plantarflexion=40;"
+     "shoulders abduction=8; elbows flexion=5; forearms pronation=90"},
+    {"type", "Sitting at a keyboard, palms down.",
+     "hips flexion=90; hips abduction=5; knees flexion=90;"
+     "shoulders flexion=20; shoulders abduction=10; elbows flexion=80; forearms pronation=160; wrists extension=10;"
+     "hands curl=25"},
+    {"fists", "Both hands closed, thumbs over the fingers.", "hands curl=85; thumbs abduction=40", false},
+    {"open-hands", "Both hands flat, fingers and thumbs spread.", "hands curl=0; hands spread=18; thumbs abduction=45",
+     false},
 };
 
-// The joints that every named pose of the body sets. A pose that gives no angles for one of these joints puts it in the
-// anatomical position.
+// The joints that every named pose of the whole body sets. A pose that gives no angles for one of these joints puts it
+// in the anatomical position.
 constexpr BodyJoint kLimbs[] = {BodyJoint::Shoulder, BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist,
                                 BodyJoint::Hip,      BodyJoint::Knee,  BodyJoint::Ankle};
 
@@ -73,9 +84,9 @@ const BodyPose& require_body_pose(const std::string& name, const std::string& wh
 
 JointAngles angles_of(const BodyPose& pose) {
   JointAngles angles;
-  for (const BodyJoint joint : kLimbs)
-    for (const BodySide side : {BodySide::Left, BodySide::Right})
-      angles[{joint, side}] = {0.0, std::nullopt, std::nullopt};
+  if (pose.whole)
+    for (const BodyJoint joint : kLimbs)
+      for (const BodySide side : {BodySide::Left, BodySide::Right}) angles[{joint, side}] = {0.0};
   for (std::string_view rest = pose.joints; !rest.empty();) {
     const std::size_t end = std::min(rest.find(';'), rest.size());
     add_joint_request(angles, std::string(rest.substr(0, end)), std::string(pose.name));

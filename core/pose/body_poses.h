@@ -16,10 +16,11 @@ namespace limber {
 struct BodyPose {
   std::string_view name;         // "sit"
   std::string_view description;  // a full sentence for the user
-  // Joint requests such as "hips flexion=90" (joint_angles.h), separated by semicolons. Shoulders, elbows, forearms,
-  // wrists, hips, knees and ankles without a request take the anatomical position. Spine, neck, fingers and toes
-  // without a request do not move. Collarbones follow raised arms.
+  // Joint requests such as "hips flexion=90" (joint_angles.h), separated by semicolons. In a pose of the whole body,
+  // shoulders, elbows, forearms, wrists, hips, knees and ankles without a request take the anatomical position. Spine,
+  // neck, fingers and toes without a request do not move. Collarbones follow raised arms.
   std::string_view joints;
+  bool whole = true;  // false: a pose of the hands, which leaves the limbs as they are
 };
 
 std::span<const BodyPose> body_poses();

@@ -139,6 +139,22 @@ Pose with_clinical_angle(const Armature& armature, const BodyFrames& frames, con
   return with_joint_angles(armature, frames, pose, angles);
 }
 
+HandShape hand_shape(const JointAngles& angles, BodySide side) {
+  double curl = 0, spread = 0;
+  int bends = 0, spreads = 0;
+  for (const BodyJoint finger : {Index, Middle, Ring, Little}) {
+    const auto found = angles.find({finger, side});
+    if (found == angles.end()) continue;
+    for (const std::size_t joint : {0, 1})
+      if (found->second[joint]) curl += *found->second[joint], ++bends;
+    if (finger != Middle && found->second[kSpread]) spread += *found->second[kSpread], ++spreads;
+  }
+  HandShape shape;
+  if (bends) shape.curl = curl / bends;
+  if (spreads) shape.spread = spread / spreads;
+  return shape;
+}
+
 AngleRange range_of_motion(const Armature& armature, const BodyFrames& frames, const SidedJoint& joint,
                            std::size_t motion) {
   const AngleRange usual = usual_range(joint.joint, motion).value_or(AngleRange{-180, 180});
@@ -160,7 +176,8 @@ std::vector<SidedJoint> joints_of_bone(const BodyFrames& frames, int bone) {
   std::vector<SidedJoint> joints;
   for (const SidedJoint& joint : joints_known_by_name(frames)) {
     const std::vector<int> bones = bones_turned_by(frames, joint);
-    if (std::find(bones.begin(), bones.end(), bone) != bones.end()) joints.push_back(joint);
+    const bool pronates = joint.joint == Forearm && pronating_hand(frames, joint.side) == bone;
+    if (pronates || std::find(bones.begin(), bones.end(), bone) != bones.end()) joints.push_back(joint);
   }
   return joints;
 }

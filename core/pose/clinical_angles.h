@@ -36,12 +36,20 @@ JointMotions angles_of_joint(const Armature& armature, const BodyFrames& frames,
 Pose with_clinical_angle(const Armature& armature, const BodyFrames& frames, const Pose& pose, const SidedJoint& joint,
                          std::size_t motion, double degrees);
 
+// The fingers of a hand as a whole, degrees: the mean flexion of the knuckles and middle joints of its four fingers,
+// and the mean spread of all but the middle finger. Empty if no finger of the hand is known by its name.
+struct HandShape {
+  std::optional<double> curl, spread;
+};
+HandShape hand_shape(const JointAngles& angles, BodySide side);
+
 // Returns the range of a motion, degrees: that of the rig's limits if the joint is a hinge, else the range that adults
 // usually reach (usual_range()).
 AngleRange range_of_motion(const Armature& armature, const BodyFrames& frames, const SidedJoint& joint,
                            std::size_t motion);
 
-// Returns the joints that a bone takes part in, the joint at its head first: a forearm bone turns in elbow and forearm.
+// Returns the joints that a bone takes part in, in the order of BodyJoint: a forearm bone turns in elbow and forearm, a
+// hand bone in forearm and wrist.
 std::vector<SidedJoint> joints_of_bone(const BodyFrames& frames, int bone);
 
 }  // namespace limber

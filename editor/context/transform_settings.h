@@ -18,6 +18,7 @@ const char* name_of(Space space);  // "Global"
 
 enum class Snap { Steps, Voxel, Joint, BoneMiddle };
 
+struct KnownBodyFrames;
 struct KnownRigCheck;
 struct ProposedJoint;
 struct ViewProjection;
@@ -36,9 +37,10 @@ struct TransformSettings {
     glm::dvec3 place{0};
   } shown_pole;
 
-  std::shared_ptr<ProposedJoint> proposed_joint;  // declared in joint_axis_fit.h; null: no joint is proposed
-  std::shared_ptr<KnownRigCheck> rig_check;       // declared in rig_check.h; null: not checked yet
-  bool rig_check_marks = true;                    // true: the views mark the problems that rig_check found
+  std::shared_ptr<ProposedJoint> proposed_joint;       // declared in joint_axis_fit.h; null: no joint is proposed
+  std::shared_ptr<KnownRigCheck> rig_check;            // declared in rig_check.h; null: not checked yet
+  std::shared_ptr<const KnownBodyFrames> body_frames;  // declared in clinical_angle_edits.h; null: not found yet
+  bool rig_check_marks = true;                         // true: the views mark the problems that rig_check found
 
   struct {             // the bone whose row in the outliner is being dragged
     std::string bone;  // "" for none

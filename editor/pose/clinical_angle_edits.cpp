@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/pose/clinical_angle_edits.h"
+
+#include <algorithm>
+
+#include "editor/context/transform_settings.h"
+#include "editor/pose/pose_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+double within(const Editor& editor, double degrees, const AngleRange& range) {
+  return editor.posing.keep_limits ? std::clamp(degrees, range.low, range.high) : degrees;
+}
+
+// Returns the edited pose with X-mirror and the limits of the moved bones. Fingers keep to the ranges of their angles
+// instead: a hinge in the rig's limits would not let them spread.
+Pose finished(const Editor& editor, Pose pose, const JointAngles& moved) {
+  std::vector<int> bones;
+  for (const auto& [joint, motions] : moved)
+    if (!is_finger(joint.joint))
+      for (const int bone : bones_of_joints(body_frames_of_rig(editor), {{joint, motions}})) bones.push_back(bone);
+  const Pose before = pose_of(editor.document());
+  return mirrored_too(editor, before, limited(editor, std::move(pose), bones));
+}
+
+}  // namespace
+
+const BodyFrames& body_frames_of_rig(const Editor& editor) {
+  auto& known = editor.transform_settings->body_frames;
+  const std::shared_ptr<const Armature>& armature = editor.document().armature;
+  if (!known || known->armature != armature)
+    known = std::make_shared<const KnownBodyFrames>(KnownBodyFrames{armature, body_frames(*armature)});
+  return known->frames;
+}
+
+Pose pose_at_angle(const Editor& editor, const SidedJoint& joint, std::size_t motion, double degrees) {
+  const Armature& armature = *editor.document().armature;
+  const BodyFrames& frames = body_frames_of_rig(editor);
+  const double angle = within(editor, degrees, range_of_motion(armature, frames, joint, motion));
+  Pose pose = with_clinical_angle(armature, frames, pose_of(editor.document()), joint, motion, angle);
+  return finished(editor, std::move(pose), {{joint, {}}});
+}
+
+AngleRange range_of_hand(HandMotion motion) {
+  return motion == HandMotion::Curl ? AngleRange{-10, 95} : *usual_range(BodyJoint::Index, kSpread);
+}
+
+Pose pose_of_hand(const Editor& editor, BodySide side, HandMotion motion, double degrees) {
+  const Armature& armature = *editor.document().armature;
+  const BodyFrames& frames = body_frames_of_rig(editor);
+  JointAngles angles;
+  const std::string hand = side == BodySide::Left ? "left hand" : side == BodySide::Right ? "right hand" : "hand";
+  add_joint_angle(angles, hand + (motion == HandMotion::Curl ? " curl" : " spread"),
+                  within(editor, degrees, range_of_hand(motion)), "hand");
+  Pose pose = with_joint_angles(armature, frames, pose_of(editor.document()), angles);
+  return finished(editor, std::move(pose), angles);
+}
+
+}  // namespace limber::editor
