@@ -10,6 +10,7 @@
 #include "core/autorig/place_in_tissue.h"
 #include "core/base/error.h"
 #include "core/pose/body_poses.h"
+#include "core/pose/clinical_angles.h"
 #include "core/pose/pose_io.h"
 #include "core/python/arrays.h"
 #include "core/python/module.h"
@@ -114,6 +115,16 @@ void require_pose_of(const Armature& rig, const Pose& pose) {
                 "give a pose of this rig, which has " + std::to_string(rig.bones.size()));
 }
 
+// {"left hip flexion": 90.0, ...}
+std::map<std::string, double> angles_of_pose(const Armature& rig, const Pose& pose) {
+  require_pose_of(rig, pose);
+  std::map<std::string, double> angles;
+  for (const auto& [joint, motions] : clinical_angles(rig, body_frames(rig), pose))
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      if (motions[i]) angles[name_of(joint) + " " + std::string(motion_name(joint.joint, i))] = *motions[i];
+  return angles;
+}
+
 py::array_t<double> rotations_of(const Pose& pose) {
   py::array_t<double> array({py::ssize_t(pose.rotation.size()), py::ssize_t(4)});
   for (std::size_t b = 0; b < pose.rotation.size(); ++b) {
@@ -190,6 +201,11 @@ name       a pose of any body: sit, walk, squat, arms up ... (limber.pose_names)
 joints     degrees from the anatomical position: {"left elbow flexion": 90, "knees flexion": 60}
 flex       degrees about the hinges of bones, positive bends further: {"Forearm": 60}
 rotations  of single bones, in the world axes at rest: {"Hand": ((1, 0, 0), 30)} or {"Hand": (w, x, y, z)})")
+      .def(
+          "angles", &angles_of_pose, py::arg("pose"),
+          R"(Returns the clinical angles of a pose, degrees from the anatomical position: {"left elbow flexion": 90.0, ...}.
+
+pose(joints=angles) gives the pose again, except for turns that no angle names. Joints are known by the bones' names.)")
       .def(
           "read_pose", [](const Armature& rig, const Path& path) { return read_pose(path, rig); }, py::arg("path"),
           "Reads a pose (JSON) of this rig.")

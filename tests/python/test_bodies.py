@@ -45,6 +45,19 @@ class AsTheCommandLine(InFolder):
             with open("command.json", encoding="utf-8") as file:
                 self.assertEqual(without_times(posed.report), without_times(json.load(file)))
 
+    def test_clinical_angles_are_those_asked_for_and_pose_again(self):
+        pose = self.rig.pose(joints={"elbow flexion": 75, "forearm pronation": 40, "index knuckle flexion": 30})
+        angles = self.rig.angles(pose)
+        out = run_limber("fk", "arm/rig.json", "--joint", "elbow flexion=75", "--joint", "forearm pronation=40",
+                         "--joint", "index knuckle flexion=30", "--angles", "--json")
+        told = {f"{joint} {motion}": degrees for joint, motions in json.loads(out)["angles"].items()
+                for motion, degrees in motions.items()}
+        self.assertEqual(angles, told)
+        elbow = next(degrees for name, degrees in angles.items() if name.endswith("elbow flexion"))
+        self.assertAlmostEqual(elbow, 75, places=6)
+        again = self.rig.pose(joints=angles)
+        self.assertLess(np.abs(self.rig.transforms(again) - self.rig.transforms(pose)).max(), 1e-6)
+
     def test_finite_elements_are_the_same(self):
         run_limber("resample", *self.files, "--flex", "Forearm=30", "--method", "fem", "--quality", "draft", "-o",
                    "command.nrrd")
