@@ -32,6 +32,7 @@ void add_job(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_project(CLI::App& app);
+void add_repair_joint(CLI::App& app);
 void add_report(CLI::App& app);
 void add_resample(CLI::App& app);
 void add_skin_points(CLI::App& app);

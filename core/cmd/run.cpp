@@ -39,6 +39,7 @@ void add_commands(CLI::App& app, const std::string& commit) {
   add_phantom(app);
   add_prepare(app);
   add_project(app);
+  add_repair_joint(app);
   add_report(app);
   add_resample(app);
   add_skin_points(app);

@@ -50,6 +50,7 @@ const std::map<std::string, Element>& outputs() {
       {"prepare --output", kLabels},
       {"convert OUT", file_of("*")},
       {"weights --output", file_of(".nrrd")},
+      {"repair-joint --output", file_of(".nrrd")},
       {"fit-rig --output", file_of(".json")},
       {"fit-joint --output", file_of(".json")},
       {"phantom --output", {"directory", ""}},

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "core/base/parallel.h"
+#include "core/deform/cell_nodes.h"
 #include "core/deform/cell_pieces.h"
 
 namespace limber {
@@ -32,54 +33,6 @@ int step_for(const TissueVoxels& tissue, std::span<const std::int64_t> bricks) {
   int step = 2;
   while (step < TissueVoxels::kBrick && voxels > kMostCells * step * step * step) step *= 2;
   return step;
-}
-
-// Disjoint sets of pieces' corners; the corners in one set become one node (union-find).
-class Joined {
- public:
-  explicit Joined(std::size_t count) : first_(count) {
-    for (std::size_t i = 0; i < count; ++i) first_[i] = static_cast<std::int32_t>(i);
-  }
-  std::int32_t find(std::int32_t at) {
-    while (first_[at] != at) at = first_[at] = first_[first_[at]];
-    return at;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a), b = find(b);
-    first_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> first_;
-};
-
-// Numbers the nodes in the order of the cells that use them. Returns the number of nodes.
-std::int32_t number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3& grid_size, FleshCells& cells) {
-  const PiecesByCell by_cell(pieces, glm::ivec3(0), (grid_size + cells.step - 1) / cells.step);
-  Joined joined(8 * pieces.size());
-  for (std::size_t a = 0; a < pieces.size(); ++a)
-    for (int axis = 0; axis < 3; ++axis) {
-      glm::ivec3 next = pieces[a].cell;
-      ++next[axis];
-      for (const CellPiece& other : by_cell.of(next)) {
-        if (!touch(pieces[a], other, axis, cells.step)) continue;
-        const auto b = &other - pieces.data();
-        for (int corner = 0; corner < 8; ++corner)
-          if (corner >> axis & 1)
-            joined.join(static_cast<std::int32_t>(8 * a) + corner,
-                        static_cast<std::int32_t>(8 * b) + (corner ^ 1 << axis));
-      }
-    }
-  std::vector<std::int32_t> number(8 * pieces.size(), -1);
-  std::int32_t count = 0;
-  cells.nodes.resize(pieces.size());
-  for (std::size_t p = 0; p < pieces.size(); ++p)
-    for (int corner = 0; corner < 8; ++corner) {
-      std::int32_t& mine = number[joined.find(static_cast<std::int32_t>(8 * p) + corner)];
-      if (mine < 0) mine = count++;
-      cells.nodes[p][corner] = mine;
-    }
-  return count;
 }
 
 // Computes the blended position of each node, from the weights that all cells around the node give to it.
@@ -149,7 +102,9 @@ FleshCells flesh_cells(const LabelVolume& volume, const TissueVoxels& tissue, co
   for (std::size_t i = 0; i < bricks.size(); ++i) cells.bending[bricks[i]] = static_cast<std::int32_t>(512 * i);
 
   const std::vector<CellPiece> pieces = cell_pieces(tissue, weights, cells.step, volume.grid.spacing, bricks);
-  const std::int32_t count = number_nodes(pieces, volume.grid.size, cells);
+  const CellNodes numbered = number_nodes(pieces, volume.grid.size, cells.step);
+  const std::int32_t count = numbered.count;
+  cells.nodes = numbered.of_piece;
   cells.rest.resize(count);
   cells.blended.resize(count);
   cells.bone.resize(count);
