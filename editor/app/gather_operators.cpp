@@ -29,6 +29,7 @@ std::vector<Operator> skin_display_operators();
 std::vector<Operator> layer_operators();
 std::vector<Operator> test_pose_operators();
 std::vector<Operator> weight_problem_operators();
+std::vector<Operator> joint_repair_operators();
 std::vector<Operator> seam_operators();
 std::vector<Operator> bone_table_operators();
 std::vector<Operator> rig_operators();
@@ -46,8 +47,9 @@ std::vector<Operator> gather_operators() {
                     search_operators,       preferences_operators, prepare_operators,     rig_fit_operators,
                     skin_operators,         paint_operators,       weight_edit_operators, region_operators,
                     skin_display_operators, layer_operators,       test_pose_operators,   weight_problem_operators,
-                    seam_operators,         bone_table_operators,  rig_operators,         pose_operators,
-                    motion_operators,       motion_clip_operators, resample_operators,    help_operators})
+                    joint_repair_operators, seam_operators,        bone_table_operators,  rig_operators,
+                    pose_operators,         motion_operators,      motion_clip_operators, resample_operators,
+                    help_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }

@@ -211,7 +211,8 @@ Menu pointer_menu(const std::string& name, ViewId view) {
         "skin.layer_down", "skin.layer_merge", "-", "skin.layer_mask", "skin.layer_cover", "skin.layer_uncover",
         "-", "skin.layer_remove", "<",
         "> Test pose", "skin.posed", "skin.bend_more", "skin.bend_less", "skin.unbend", "<",
-        "> Problems", "skin.find_problems", "skin.next_problem", "skin.previous_problem", "skin.repair_problem", "<"}};
+        "> Problems", "skin.find_problems", "skin.next_problem", "skin.previous_problem", "skin.repair_problem", "<",
+        "skin.repair_joint"}};
   if (name == "Locks") return {name, {"skin.lock", "skin.lock_others", "-", "skin.lock_all", "skin.unlock_all",
         "skin.invert_locks"}};
   if (name == "Bone weights") return {"Bone", {"skin.lock", "skin.lock_others", "skin.unlock_all", "-",

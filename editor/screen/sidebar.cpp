@@ -6,6 +6,7 @@
 #include "editor/pose/pose_bone_panel.h"
 #include "editor/pose/pose_library.h"
 #include "editor/screen/steady.h"
+#include "editor/skin/joint_repair.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
@@ -51,6 +52,7 @@ void draw_sidebar(Editor& editor) {
     if (editor.workspace == Workspace::Skin && editor.document().weights) {
       draw_layers(editor, column);
       draw_brush_section(editor, column);
+      draw_joint_repair(editor, column);
       draw_weight_problems(editor, column);
     }
     if (editor.workspace == Workspace::Skin) draw_seam_section(editor, column);

@@ -22,6 +22,7 @@ struct PaintedRegion {
 };
 
 struct FoundProblems;
+struct RepairedJoint;
 
 // The tissues that a brush may change.
 enum class PaintedTissue { All, Soft, Chosen, Visible };
@@ -67,6 +68,7 @@ struct Painting {
 
   std::shared_ptr<const FoundProblems> problems;  // result of the search for weight problems; null: not searched yet
   int problem = -1;                               // index of the problem visited last; -1: none
+  std::shared_ptr<const RepairedJoint> repaired_joint;  // outcome of the last repair of a joint; null: none yet
 
   std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 

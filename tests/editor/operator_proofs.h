@@ -76,6 +76,7 @@ std::vector<Proof> proofs_of_regions();
 std::vector<Proof> proofs_of_layers();
 std::vector<Proof> proofs_of_test_poses();
 std::vector<Proof> proofs_of_weight_problems();
+std::vector<Proof> proofs_of_joint_repair();
 std::vector<Proof> proofs_of_seams();
 std::vector<Proof> proofs_of_bone_table();
 std::vector<Proof> proofs_of_images();
