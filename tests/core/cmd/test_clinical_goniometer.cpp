@@ -270,6 +270,23 @@ const BodyNames kAnatomist = {"@UpperArm", "@Forearm", "@Hand",          "@Thigh
 
 }  // namespace
 
+TEST_CASE("clinical goniometer: the elbow of the procedural arm, in short") {
+  const TemporaryFolder folder;
+  REQUIRE(run_limber({"phantom", "arm", "--spacing", "4", "-o", folder.path().string()}).exit_code == 0);
+  const GoniometerBody body{folder / "volume.nrrd",
+                            folder / "rig.json",
+                            folder / "tissues.json",
+                            read_armature(folder / "rig.json"),
+                            {"UpperArm", "Forearm", "Hand", "", "", "", "", ""},
+                            {},
+                            {}};
+  Goniometer goniometer(body);
+  for (const int degrees : {20, 100}) {
+    goniometer.pose({"elbow flexion=" + std::to_string(degrees)});
+    expect("elbow", goniometer.arm(1).bend, degrees);
+  }
+}
+
 TEST_SUITE("slow") {
   TEST_CASE("clinical goniometer: ten poses of the procedural body") {
     const TemporaryFolder folder;
