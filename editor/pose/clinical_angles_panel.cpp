@@ -72,6 +72,8 @@ void draw_slider(Editor& editor, const ShownAngle& angle, const Rect& rect, doub
   const bool released = ImGui::IsItemDeactivated();
   auto& edited = editor.edited_number;
   if (pressed.activated) edited = {angle.name, shown};
+  // A drag may end while the panel is folded or another workspace is shown: then nobody holds the number any more.
+  else if (edited.name == angle.name && !pressed.held && !released && !ImGui::IsAnyItemActive()) edited = {};
   if (edited.name == angle.name && pressed.held && editor.input.down(Key::Escape)) {
     edited = {};
     drop_shown_pose(editor);
