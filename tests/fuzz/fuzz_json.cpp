@@ -10,7 +10,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* bytes, std::size_t size) {
   using namespace limber;
-  static const Armature rig{{{"upper", -1, {0, 0, 0}, {0, 0, 10}}, {"lower", 0, {0, 0, 10}, {0, 3, 20}}}};
+  static const Armature rig{{{"upper", -1, {0, 0, 0}, {0, 0, 10}},
+                             {"lower", 0, {0, 0, 10}, {0, 3, 20}},
+                             {"LeftThigh", 0, {3, 0, 0}, {3, 0, -10}},
+                             {"LeftShank", 2, {3, 0, -10}, {3, 1, -20}}}};
   static const Motion motion =
       parse_bvh("HIERARCHY ROOT base { OFFSET 0 0 0 CHANNELS 0 JOINT tip { OFFSET 0 1 0 CHANNELS 0 } }", "motion");
   static const TissueTable bones = [] {

@@ -106,7 +106,7 @@ class Samples:
         self.limber("resample", "volume.nrrd", "--rig", "rig.json", "--flex", "Forearm=20", "--method", "lbs", "-o", "posed.nrrd", "--field", "field.nrrd")
         self.limber("project", "body.limber", "create", "volume.nrrd", "--rig", "rig.json", "--weights", "weights.nrrd", "--motion", "motion.bvh")
         self.write("image.dcm", dicom())
-        self.write("pose.json", '{"bones": {"Forearm": {"axis": [0, 0, 1], "degrees": 20}}, "root_translation": [0, 0, 1]}')
+        self.write("pose.json", '{"bones": {"Forearm": {"axis": [0, 0, 1], "degrees": 20}}, "root_translation": [0, 0, 1], "angles": {"elbow": {"flexion": 30}}}')
         self.write("map.json", '{"Forearm": "Forearm", "@rests": {"motion": "T", "rig": "anatomical"}}')
         self.write("bone_map.json", '{"cortical bone": "Forearm"}')
         self.write("points.csv", "name,x,y,z\nelbow,1,2,3\n")
