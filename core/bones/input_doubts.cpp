@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "core/base/parallel.h"
 #include "core/bones/bone_identity.h"
 #include "core/volume_io/grey_image.h"
 
@@ -80,15 +81,23 @@ std::map<Label, glm::dvec3> centres_of(const LabelVolume& volume, const std::set
     glm::dvec3 place{0};
     std::int64_t count = 0;
   };
-  std::vector<Sum> sums(65536);
+  constexpr std::int64_t kSlices = 64;
   std::vector<bool> is_asked(65536, false);
   for (const Label label : labels) is_asked[label] = true;
-  std::int64_t at = 0;
-  for (int z = 0; z < volume.grid.size.z; ++z)
-    for (int y = 0; y < volume.grid.size.y; ++y)
-      for (int x = 0; x < volume.grid.size.x; ++x, ++at)
-        if (const Label label = volume.voxels[at]; is_asked[label])
-          sums[label].place += glm::dvec3(x, y, z), ++sums[label].count;
+  std::vector<std::map<Label, Sum>> of_slices((volume.grid.size.z + kSlices - 1) / kSlices);
+  parallel_for(volume.grid.size.z, kSlices, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<Sum> sums(65536);
+    std::int64_t at = volume.grid.index({0, 0, static_cast<int>(begin)});
+    for (auto z = static_cast<int>(begin); z < end; ++z)
+      for (int y = 0; y < volume.grid.size.y; ++y)
+        for (int x = 0; x < volume.grid.size.x; ++x, ++at)
+          if (const Label label = volume.voxels[at]; is_asked[label])
+            sums[label].place += glm::dvec3(x, y, z), ++sums[label].count;
+    for (const Label label : labels) of_slices[begin / kSlices][label] = sums[label];
+  });
+  std::map<Label, Sum> sums;
+  for (const auto& some : of_slices)
+    for (const auto& [label, sum] : some) sums[label].place += sum.place, sums[label].count += sum.count;
   std::map<Label, glm::dvec3> centres;
   for (const Label label : labels)
     if (sums[label].count)
@@ -182,35 +191,54 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
 }
 
 // Returns a doubt about a label that should hold a single bone but of which a good part lies along another bone.
-std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues,
-                                              const Armature& armature) {
-  const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);
-  if (own.empty()) return std::nullopt;
+// The voxels of labels that hold a single bone of an arm or leg.
+struct LabelledVoxels {
+  std::map<Label, std::int64_t> count;
+  std::map<Label, std::map<int, std::int64_t>> elsewhere;  // those along the middle of another rig bone
+};
+
+LabelledVoxels count_elsewhere(const LabelVolume& volume, const std::map<Label, std::vector<int>>& own,
+                               const Armature& armature) {
   std::vector<const std::vector<int>*> asked(65536, nullptr);
   for (const auto& [label, bones] : own) asked[label] = &bones;
-  std::map<Label, std::map<int, std::int64_t>> elsewhere;
-  std::map<Label, std::int64_t> voxels;
   const AffineTransform to_world = world_from_voxel(volume.grid);
-  std::int64_t at = 0;
-  for (int z = 0; z < volume.grid.size.z; ++z)
+  std::vector<LabelledVoxels> of_slice(volume.grid.size.z);
+  parallel_for(volume.grid.size.z, 1, [&](std::int64_t z, std::int64_t) {
+    LabelledVoxels& found = of_slice[z];
+    std::int64_t at = volume.grid.index({0, 0, static_cast<int>(z)});
     for (int y = 0; y < volume.grid.size.y; ++y)
       for (int x = 0; x < volume.grid.size.x; ++x, ++at) {
         const Label label = volume.voxels[at];
         if (!asked[label]) continue;
-        ++voxels[label];
+        ++found.count[label];
         const glm::dvec3 p = to_world * glm::dvec3(x, y, z);
         for (int b = 0; b < std::ssize(armature.bones); ++b)
           if (is_along(armature.bones[b], p) &&
               std::find(asked[label]->begin(), asked[label]->end(), b) == asked[label]->end()) {
-            ++elsewhere[label][b];
+            ++found.elsewhere[label][b];
             break;
           }
       }
-  for (const auto& [label, bones] : elsewhere)
+  });
+  LabelledVoxels all;
+  for (const LabelledVoxels& some : of_slice) {
+    for (const auto& [label, count] : some.count) all.count[label] += count;
+    for (const auto& [label, bones] : some.elsewhere)
+      for (const auto& [bone, count] : bones) all.elsewhere[label][bone] += count;
+  }
+  return all;
+}
+
+std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues,
+                                              const Armature& armature) {
+  const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);
+  if (own.empty()) return std::nullopt;
+  const LabelledVoxels voxels = count_elsewhere(volume, own, armature);
+  for (const auto& [label, bones] : voxels.elsewhere)
     for (const auto& [bone, count] : bones)
-      if (double(count) > kMisplaced * double(voxels[label])) {
+      if (double(count) > kMisplaced * double(voxels.count.at(label))) {
         char share[16];
-        std::snprintf(share, sizeof share, "%.0f %%", 100 * double(count) / double(voxels[label]));
+        std::snprintf(share, sizeof share, "%.0f %%", 100 * double(count) / double(voxels.count.at(label)));
         return std::string(share) + " of the label \"" + tissues.find(label)->name.substr(0, 60) +
                "\" lie along the middle of " + armature.bones[bone].name +
                ", another bone: correct the labels, or say with --bone-map which bone it follows";

@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
+#include "core/base/parallel.h"
 #include "core/skin/top_four.h"
 #include "core/volume/seam_text.h"
 #include "core/volume_io/nrrd.h"
@@ -252,8 +253,21 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
   write_atomically(path, [&](const Path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(header.data(), std::ssize(header));
-    for (std::int64_t b = 0; b < weights.chunk_count(); ++b) {
-      const SkinWeights::Influences influences = weights.chunk(b);
+    // Chunks are unpacked on several threads, some thousand at a time.
+    constexpr std::int64_t kAtOnce = 4096, kGrain = 64;
+    std::vector<Influence> influences;
+    for (std::int64_t from = 0; from < weights.chunk_count(); from += kAtOnce) {
+      const std::int64_t to = std::min(from + kAtOnce, weights.chunk_count());
+      const auto place = [&](std::int64_t b) {
+        return (b < weights.chunk_count() ? tissue.bricks()[b].first : tissue.size()) - tissue.bricks()[from].first;
+      };
+      influences.resize(place(to));
+      parallel_for(to - from, kGrain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t b = from + begin; b < from + end; ++b) {
+          const SkinWeights::Influences of_brick = weights.chunk(b);
+          std::copy(of_brick.begin(), of_brick.end(), influences.begin() + place(b));
+        }
+      });
       out.write(reinterpret_cast<const char*>(influences.data()), std::ssize(influences) * sizeof(Influence));
     }
     out.flush();
