@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "core/binding/heat_diffusion.h"
+#include "core/binding/heat_settings.h"
 #include "core/rig/armature.h"
 #include "core/skin/top_four.h"
 #include "core/tissue/tissue_table.h"

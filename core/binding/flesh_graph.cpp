@@ -32,6 +32,18 @@ namespace {
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 }  // namespace
 
+HeatLaw::HeatLaw(const Grid& grid, const TissueTable& tissues, const std::map<Label, double>& stiffness)
+    : conductivity(1 << 16, 1.0f),
+      attraction(1 << 16, kAttraction) {
+  for (const auto& [label, stiff] : stiffness) attraction[label] = static_cast<float>(kAttraction * stiff * stiff);
+  for (const Tissue& t : tissues.tissues) conductivity[t.label] = limber::conductivity(t.kind);
+  const glm::dvec3 s = grid.spacing;
+  const glm::dvec3 area_over_distance(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
+  const double largest = std::max({area_over_distance.x, area_over_distance.y, area_over_distance.z});
+  for (int axis = 0; axis < 3; ++axis) face[axis] = static_cast<float>(area_over_distance[axis] / largest);
+  volume_of_voxel = static_cast<float>(grid.voxel_volume() / largest);
+}
+
 HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                      const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
                      const std::map<Label, double>& stiffness)
@@ -39,86 +51,27 @@ HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, cons
       tissue_(tissue),
       held_by_(held_by),
       nearest_(nearest),
-      conductivity_(1 << 16, 1.0f),
-      attraction_(1 << 16, kAttraction) {
-  for (const auto& [label, stiff] : stiffness) attraction_[label] = static_cast<float>(kAttraction * stiff * stiff);
-  for (const Tissue& t : tissues.tissues) conductivity_[t.label] = conductivity(t.kind);
-  const glm::dvec3 s = volume.grid.spacing;
-  const glm::dvec3 area_over_distance(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
-  const double largest = std::max({area_over_distance.x, area_over_distance.y, area_over_distance.z});
-  for (int axis = 0; axis < 3; ++axis) face_[axis] = static_cast<float>(area_over_distance[axis] / largest);
-  volume_of_voxel_ = static_cast<float>(volume.grid.voxel_volume() / largest);
-  bones_in_brick_ = bones_in_bricks();
-}
-
-// A brick (8^3 voxels) and one layer of voxels around it. For each voxel: its index in the list of tissue voxels (-1:
-// air), and its conductivity (0 for all voxels that are not soft).
-struct HeatGraph::Window {
-  static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
-  std::array<std::int32_t, 1000> place;
-  std::array<float, 1000> soft;
-  const Seams* seams = nullptr;  // null: no seam is near this brick
-
-  // Returns the index of voxel v in the arrays; v is relative to the brick's lowest corner.
-  static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }
-
-  bool is_cut(const glm::ivec3& voxel, int direction) const { return seams && seams->is_cut_towards(voxel, direction); }
-
-  void look(const HeatGraph& body, std::int64_t brick) {
-    const auto& here = body.tissue_.bricks()[brick];
-    seams = body.tissue_.seams();
-    if (seams && !seams->is_near_brick(here.corner)) seams = nullptr;
-    place.fill(-1);
-    soft.fill(0);
-    body.tissue_.for_each(brick, brick + 1,
-                          [&](std::int64_t p, const glm::ivec3& v) { set(body, v - here.corner, v, p); });
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int side : {-1, TissueVoxels::kBrick}) look_beside(body, here.corner, axis, side);
-  }
-  void set(const HeatGraph& body, const glm::ivec3& from_corner, const glm::ivec3& voxel, std::int64_t its_place) {
-    place[at(from_corner)] = static_cast<std::int32_t>(its_place);
-    if (body.held_by_[its_place] == kSoft) soft[at(from_corner)] = body.conductivity_[body.volume_.at(voxel)];
-  }
-
-  // Fills the layer of voxels that lies in the neighbouring brick along an axis.
-  //   side  position of the layer along the axis, relative to this brick's lowest corner: -1 or 8
-  void look_beside(const HeatGraph& body, const glm::ivec3& corner, int axis, int side) {
-    glm::ivec3 first = corner;
-    first[axis] += side;
-    if (!body.volume_.grid.contains(first)) return;
-    const int beside = body.tissue_.brick_at(first);
-    if (beside < 0) return;
-    const auto& there = body.tissue_.bricks()[beside];
-    glm::ivec3 v;
-    v[axis] = side;
-    int &a = v[(axis + 1) % 3], &b = v[(axis + 2) % 3];
-    for (a = 0; a < TissueVoxels::kBrick; ++a)
-      for (b = 0; b < TissueVoxels::kBrick; ++b)
-        if (const std::int64_t found = TissueVoxels::index_in(there, v & 7); found >= 0)
-          set(body, v, corner + v, found);
-  }
-};
+      law_(volume.grid, tissues, stiffness),
+      bones_in_brick_(bones_in_bricks()) {}
 
 // Returns the conductance of a face of a soft voxel. The voxel on the other side is soft, or a bone holds it at a fixed
 // temperature. Returns 0 if the other side is air or a seam cuts the face.
 float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
   const int there = here + Window::kTo[direction], axis = direction >> 1;
   if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
-  const float ka = window.soft[here], kb = window.soft[there];
-  if (kb == 0) return 2 * face_[axis] * ka;
-  return face_[axis] * (ka == kb ? ka : 2 * ka * kb / (ka + kb));
+  return law_.conductance(axis, window.soft[here], window.soft[there]);
 }
 
 float HeatGraph::attraction(std::int64_t place, const glm::ivec3& voxel) const {
   const float distance = nearest_.distance[place];
   // The result is 0 if the voxel has no nearest bone, since the distance is then infinite.
-  return attraction_[volume_.at(voxel)] * volume_of_voxel_ / (distance * distance);
+  return law_.attraction[volume_.at(voxel)] * law_.volume_of_voxel / (distance * distance);
 }
 
 // Calls body(voxel, index in the list of tissue voxels, index in the window) for every soft voxel of a brick.
 template <class Body>
 void HeatGraph::for_soft(std::int64_t brick, Window& window, const Body& body) const {
-  window.look(*this, brick);
+  window.look(source(), brick);
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
   tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
     if (const int here = Window::at(v - corner); window.soft[here] > 0) body(v, place, here);
@@ -209,6 +162,32 @@ void HeatGraph::add_sources(const std::vector<std::int32_t>& bricks, const HeatS
           if (const int there = here + Window::kTo[direction]; window.place[there] >= 0 && window.soft[there] == 0)
             add(held_by_[window.place[there]], conductance(window, v, here, direction));
         add(nearest_.bone[place], attraction(place, v));
+      });
+    }
+  });
+}
+
+void HeatGraph::add_outside(const std::vector<std::int32_t>& bricks, int lanes, const HeatSystem& system,
+                            const std::function<float(std::int64_t, std::int64_t, int)>& outside,
+                            HeatSolver& solver) const {
+  parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    Window window;
+    for (std::int64_t b = begin; b < end; ++b) {
+      const auto& beside = system.beside[b];
+      if (std::find(beside.begin(), beside.end(), system.brick_count()) == beside.end()) continue;
+      for_soft(bricks[b], window, [&](const glm::ivec3& v, std::int64_t, int here) {
+        const glm::ivec3 in = v - system.corners[b];
+        const int slot = HeatSystem::slot_of(in);
+        for (int direction = 0; direction < 6; ++direction) {
+          const int there = here + Window::kTo[direction], beyond = in[direction >> 1] + (direction & 1 ? 1 : -1);
+          if ((beyond >= 0 && beyond <= 7) || beside[direction] != system.brick_count()) continue;
+          if (window.place[there] < 0 || window.soft[there] == 0) continue;
+          const float g = conductance(window, v, here, direction);
+          for (int lane = 0; lane < lanes; ++lane)
+            (slot < HeatSystem::kColour ? solver.red_sources(b, lane)[slot]
+                                        : solver.black_sources(b, lane)[slot - HeatSystem::kColour]) +=
+                g * outside(window.beside[direction], window.place[there], lane);
+        }
       });
     }
   });

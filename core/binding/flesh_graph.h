@@ -16,9 +16,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <vector>
 
+#include "core/base/zeroed_vector.h"
+#include "core/binding/brick_window.h"
 #include "core/binding/heat_system.h"
 #include "core/bones/bone_parts.h"
 #include "core/rig/armature.h"
@@ -27,11 +30,29 @@
 
 namespace limber {
 
-// Stands in place of a bone index for a voxel whose temperature no bone fixes.
-constexpr std::uint16_t kSoft = 0xFFFF;
-
 // Returns the thermal conductivity of a tissue kind, relative to muscle.
 float conductivity(TissueKind kind);
+
+// The constants of heat flow in the tissue of a volume.
+struct HeatLaw {
+  HeatLaw(const Grid& grid, const TissueTable& tissues, const std::map<Label, double>& stiffness = {});
+
+  // Returns the conductance of a face perpendicular to `axis` between two voxels of these conductivities. If `there` is
+  // 0, a bone holds the voxel on the other side at a fixed temperature.
+  float conductance(int axis, float here, float there) const {
+    if (there == 0) return 2 * face[axis] * here;
+    return face[axis] * (here == there ? here : 2 * here * there / (here + there));
+  }
+
+  std::vector<float> conductivity;  // thermal conductivity of each label's tissue, relative to muscle
+  // Strength of the heat that the tissue of each label receives at a distance, times the square of the tissue's
+  // stiffness. With the square, stiffness divides the width of a blend: the width is proportional to
+  // sqrt(conductivity / strength).
+  std::vector<float> attraction;
+  // Area / distance of a voxel face perpendicular to each axis, divided by the largest of these three values.
+  std::array<float, 3> face;
+  float volume_of_voxel = 1;  // in mm3, divided by the largest area / distance (face)
+};
 
 // Returns the rig bone that holds each tissue voxel at a fixed temperature, kSoft for a voxel that no bone holds. A
 // bone holds the voxels of its parts (BoneParts). A bone without parts holds the soft voxels around its axis, and a
@@ -43,8 +64,8 @@ std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVox
 // bone across an air gap is not near. A voxel whose temperature a bone fixes has distance 0. A voxel that no path from
 // a bone reaches has kSoft and an infinite distance.
 struct NearestBone {
-  std::vector<std::uint16_t> bone;
-  std::vector<float> distance;  // mm, between voxel centres
+  ZeroedVector<std::uint16_t> bone;
+  ZeroedVector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by);
@@ -77,6 +98,11 @@ class HeatGraph {
   void add_sources(const std::vector<std::int32_t>& bricks, const HeatSystem& system,
                    const std::vector<int>& lane_of_bone, HeatSolver& solver) const;
 
+  // Adds the heat that soft voxels in other bricks give to the cells of a system from fill(), to each right-hand side.
+  //   outside  a function (brick, index of a tissue voxel, right-hand side) -> the temperature at that voxel
+  void add_outside(const std::vector<std::int32_t>& bricks, int lanes, const HeatSystem& system,
+                   const std::function<float(std::int64_t, std::int64_t, int)>& outside, HeatSolver& solver) const;
+
   // The whole body as a graph of coarse cells. A cell is a connected set of soft voxels in one octant of a brick, so it
   // has at most 4^3 voxels.
   struct Coarse {
@@ -89,7 +115,7 @@ class HeatGraph {
   Coarse coarse() const;
 
  private:
-  struct Window;
+  using Window = BrickWindow;
   struct CoarseCell {
     glm::i16vec3 octant;
     std::int32_t brick;
@@ -104,6 +130,7 @@ class HeatGraph {
                   std::vector<CoarseCell>& found) const;
   void link_cells(std::int64_t brick, Window& window, const std::vector<std::int32_t>& cell_of,
                   std::vector<float>& diagonal, std::vector<Link>& links, std::vector<HeldFace>& held) const;
+  BrickWindow::Source source() const { return {volume_, tissue_, held_by_, law_.conductivity}; }
   float conductance(const Window& window, const glm::ivec3& v, int here, int direction) const;
   float attraction(std::int64_t place, const glm::ivec3& voxel) const;
   std::vector<std::uint64_t> bones_in_bricks() const;
@@ -112,14 +139,7 @@ class HeatGraph {
   const TissueVoxels& tissue_;
   const std::vector<std::uint16_t>& held_by_;
   const NearestBone& nearest_;
-  std::vector<float> conductivity_;  // thermal conductivity of each label's tissue, relative to muscle
-  // Strength of the heat that the tissue of each label receives at a distance, times the square of the tissue's
-  // stiffness. With the square, stiffness divides the width of a blend: the width is proportional to
-  // sqrt(conductivity / strength).
-  std::vector<float> attraction_;
-  // Area / distance of a voxel face perpendicular to each axis, divided by the largest of these three values.
-  std::array<float, 3> face_;
-  float volume_of_voxel_ = 1;  // in mm3, divided by the largest area / distance (face_)
+  const HeatLaw law_;
   std::vector<std::uint64_t> bones_in_brick_;
 };
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -67,7 +68,7 @@ class TissueFront {
   //   take        a function (source, to, way) that stores such a path; the front goes on from there
   //   reached     #tissue voxels: the array that is_shorter reads. It is only prefetched into the cache.
   template <class IsShorter, class Take>
-  void spread(const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
+  void spread(std::span<const float> reached, const IsShorter& is_shorter, const Take& take) {
     const std::vector<bool> near_seam = bricks_near_seams();
     for (std::size_t bucket = 0; bucket < bucket_count(); ++bucket) {
       for (std::vector<Domain*> waiting = domains_waiting(bucket); !waiting.empty();
@@ -142,7 +143,7 @@ class TissueFront {
 
   template <class IsShorter, class Take>
   void advance(Domain& domain, std::size_t bucket, const std::vector<bool>& is_near_seam,
-               const std::vector<float>& reached, const IsShorter& is_shorter, const Take& take) {
+               std::span<const float> reached, const IsShorter& is_shorter, const Take& take) {
     const Seams* seams = tissue_.seams();
     for (; domain.done < domain.buckets[bucket].size(); ++domain.done) {
       if (const std::size_t ahead = domain.done + kAhead; ahead < domain.buckets[bucket].size())
@@ -187,7 +188,7 @@ class TissueFront {
   // Prefetches the memory that advancing from a voxel needs: its path and the values of its neighbours. The neighbours
   // above and below are about one slice of a full brick away in memory. The function is always inlined: as a separate
   // function it seems to have no effect, and compilers remove it.
-  [[gnu::always_inline]] void fetch(std::int32_t place, const std::vector<float>& reached) const {
+  [[gnu::always_inline]] void fetch(std::int32_t place, std::span<const float> reached) const {
     constexpr int kSlice = TissueVoxels::kBrick * TissueVoxels::kBrick;
     __builtin_prefetch(&ways_[place]);
     __builtin_prefetch(&reached[place]);

@@ -6,35 +6,20 @@
 // the blend at a joint as wide as the limb is thick. (flesh_graph.h says how strong this heat is, and from which bone
 // it comes near a joint or a collarbone.) A rig bone without bone tissue fixes the temperature of the flesh around its
 // axis.
+//
+// In volumes of very many voxels (HeatDiffusion::most_cells), temperatures are those of cells of several voxels
+// (heat_cells.h), interpolated to voxels (cell_interpolation.h). In the gaps between bones, cells are too coarse: there
+// every voxel is solved for (joint_heat.h).
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "core/base/progress.h"
+#include "core/binding/heat_settings.h"
 #include "core/bones/bone_parts.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
 #include "core/tissue/tissue_table.h"
 
 namespace limber {
-
-// The stiffness of tissues where bones blend, for each label, [0.1, 10]; 1 for labels that are not listed. Tissue of
-// stiffness 2 blends from one bone to the next within about half the distance.
-using BlendStiffness = std::map<Label, double>;
-
-struct HeatDiffusion {
-  double residual = 1e-5;  // relative residual (2-norm) at which the solve for a bone stops
-  int maximum_iterations = 200;
-  BlendStiffness stiffness;
-};
-
-struct WeightsReport {
-  double residual = 0;                // largest relative residual of any bone's solve
-  int iterations = 0;                 // largest number of iterations of any bone's solve
-  std::vector<std::string> warnings;  // "no bone reaches 213 voxels of label 3 near (..): given to Forearm"
-};
 
 // Computes the skin weights of a volume. Throws Error when the solve for a bone does not reach its residual.
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <type_traits>
 #include <utility>
 
 #include <Eigen/Dense>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace limber {
@@ -29,48 +31,78 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
 
 namespace {
 
-// Numbers the cells of the next level. Each of them is a connected set of cells within one block, which is 2 x 2 x 2
-// cells where cells are cubes. Returns the coarse cell of each cell; -1 for a cell without neighbours, since relaxation
-// solves it alone.
-std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse) {
-  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
-  coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
-  std::vector<std::int32_t> parent(fine.size(), -1);
-  std::vector<glm::i16vec3> position;
-  std::vector<std::int32_t> open;
-  for (std::int32_t seed = 0; seed < fine.size(); ++seed) {
-    if (parent[seed] >= 0 || fine.first[seed] == fine.first[seed + 1]) continue;
-    const glm::i16vec3 block = fine.position[seed] >> halved;
-    const auto aggregate_number = static_cast<std::int32_t>(position.size());
-    position.push_back(block);
-    parent[seed] = aggregate_number;
-    open.push_back(seed);
-    while (!open.empty()) {
-      const std::int32_t i = open.back();
-      open.pop_back();
-      for (std::int32_t k = fine.first[i]; k < fine.first[i + 1]; ++k) {
-        const std::int32_t j = fine.neighbour[k];
-        if (parent[j] >= 0 || (fine.position[j] >> halved) != block) continue;
-        parent[j] = aggregate_number;
-        open.push_back(j);
-      }
+// Calls body(cell) for each cell of the connected set of cells that contains `seed` and lies in one block.
+//   is_open  a function (cell) -> whether the search may enter this cell; body must close the cells that it gets
+template <class IsOpen, class Body>
+void search_block(const CellGraph& graph, const glm::i16vec3& halved, std::int32_t seed,
+                  std::vector<std::int32_t>& open, const IsOpen& is_open, const Body& body) {
+  const glm::i16vec3 block = graph.position[seed] >> halved;
+  open.assign(1, seed);
+  body(seed);
+  while (!open.empty()) {
+    const std::int32_t i = open.back();
+    open.pop_back();
+    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+      const std::int32_t j = graph.neighbour[k];
+      if ((graph.position[j] >> halved) != block || !is_open(j)) continue;
+      body(j);
+      open.push_back(j);
     }
   }
+}
 
-  // Cells of colour 0 come first. Otherwise they stay in the order in which they were found, which keeps neighbours
-  // close in memory.
-  std::vector<std::int32_t> number(position.size());
-  std::int32_t next = 0;
+// Returns the first cell of the connected set in one block that contains each cell; -1 for a cell that is left out.
+// A cell whose neighbours in the block all come later may be the first of its set. It searches the set, and sets the
+// result for all its cells if it is the first. So no two threads write to the same cell.
+std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16vec3& halved, LoneCells lone) {
+  std::vector<std::int32_t> first(graph.size(), -1);
+  const auto may_be_first = [&](std::int32_t i) {
+    for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k)
+      if (const std::int32_t j = graph.neighbour[k];
+          j < i && (graph.position[j] >> halved) == (graph.position[i] >> halved))
+        return false;
+    return lone == LoneCells::Keep || graph.first[i] < graph.first[i + 1];
+  };
+  parallel_for(graph.size(), 16 * kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::int32_t> set, open;
+    for (auto seed = static_cast<std::int32_t>(begin); seed < end; ++seed) {
+      if (!may_be_first(seed)) continue;
+      set.clear();
+      search_block(
+          graph, halved, seed, open, [&](std::int32_t j) { return std::find(set.begin(), set.end(), j) == set.end(); },
+          [&](std::int32_t j) { set.push_back(j); });
+      if (*std::min_element(set.begin(), set.end()) < seed) continue;
+      for (const std::int32_t j : set) first[j] = seed;
+    }
+  });
+  return first;
+}
+
+// Numbers the cells of the next level. Each of them is a connected set of cells within one block, which is 2 x 2 x 2
+// cells where cells are cubes. Returns the coarse cell of each cell; -1 for a cell that is left out.
+std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse, LoneCells lone) {
+  const glm::i16vec3 halved = coarsened_axes(fine.spacing);
+  coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
+  std::vector<std::int32_t> parent = first_of_sets(fine, halved, lone);
+  std::vector<std::int32_t> seeds;
+  for (std::int32_t i = 0; i < fine.size(); ++i)
+    if (parent[i] == i) seeds.push_back(i);
+
+  // Cells of colour 0 come first. Otherwise they stay in the order of their first cells, which keeps neighbours close
+  // in memory.
+  std::vector<std::int32_t> number(fine.size());
   for (int colour = 0; colour < 2; ++colour) {
-    for (size_t a = 0; a < position.size(); ++a)
-      if (colour_of(position[a]) == colour) {
-        number[a] = next++;
-        coarse.position.push_back(position[a]);
+    for (const std::int32_t seed : seeds)
+      if (const glm::i16vec3 block = fine.position[seed] >> halved; colour_of(block) == colour) {
+        number[seed] = static_cast<std::int32_t>(coarse.position.size());
+        coarse.position.push_back(block);
       }
-    if (colour == 0) coarse.red_count = next;
+    if (colour == 0) coarse.red_count = static_cast<std::int32_t>(coarse.position.size());
   }
-  for (std::int32_t& p : parent)
-    if (p >= 0) p = number[p];
+  parallel_for(fine.size(), 16 * kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (parent[i] >= 0) parent[i] = number[parent[i]];
+  });
   return parent;
 }
 
@@ -88,9 +120,11 @@ void list_children(const std::vector<std::int32_t>& parent, std::int64_t count, 
     if (parent[i] >= 0) child[place[parent[i]]++] = static_cast<std::int32_t>(i);
 }
 
-CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
+}  // namespace
+
+CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent, LoneCells lone) {
   CellGraph coarse;
-  parent = aggregate(fine, coarse);
+  parent = aggregate(fine, coarse, lone);
   const std::int64_t size = coarse.size();
   std::vector<std::int32_t> child_first, child;
   list_children(parent, fine.size(), size, child_first, child);
@@ -136,18 +170,31 @@ CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent) {
     for (std::int64_t c = begin; c < end; ++c) link(static_cast<std::int32_t>(c), blocks[begin / kGrain]);
   });
   for (std::int64_t c = 0; c < size; ++c) coarse.first[c + 1] += coarse.first[c];
-  for (Links& links : blocks) {
-    coarse.neighbour.insert(coarse.neighbour.end(), links.neighbour.begin(), links.neighbour.end());
-    coarse.conductance.insert(coarse.conductance.end(), links.conductance.begin(), links.conductance.end());
-    links = {};
-  }
+  coarse.neighbour.resize(coarse.first.back());
+  coarse.conductance.resize(coarse.first.back());
+  parallel_for(std::ssize(blocks), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t block = begin; block < end; ++block) {
+      const Links links = std::exchange(blocks[block], {});
+      const std::int32_t from = coarse.first[block * kGrain];
+      std::copy(links.neighbour.begin(), links.neighbour.end(), coarse.neighbour.begin() + from);
+      std::copy(links.conductance.begin(), links.conductance.end(), coarse.conductance.begin() + from);
+    }
+  });
   return coarse;
 }
-}  // namespace
+
+void require_residual(const MultigridReport& solved, double residual, const std::string& bone) {
+  if (solved.residual <= residual) return;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1e after %d iterations", solved.residual, solved.iterations);
+  throw Error("the heat solve stopped at a residual of " + std::string(text), bone,
+              "check that the volume's spacing is right, or use --method geodesic");
+}
 
 Multigrid::Multigrid(CellGraph finest) {
   levels_.push_back({std::move(finest), {}});
   while (levels_.back().graph.size() > kCoarsestSize && std::ssize(levels_) < kMostLevels) {
+    // Cells without neighbours stay on their level, since relaxation solves them alone.
     Level next;
     next.graph = coarsen(levels_.back().graph, levels_.back().parent);
     if (next.graph.size() == 0 || next.graph.size() == levels_.back().graph.size()) {

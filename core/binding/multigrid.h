@@ -17,11 +17,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "core/base/progress.h"
+#include "core/base/zeroed_vector.h"
 
 namespace limber {
 
@@ -32,8 +34,8 @@ struct CellGraph {
   std::vector<glm::i16vec3> position;  // position of each cell in units of `spacing`
   std::int32_t red_count = 0;          // number of cells of colour 0
   std::vector<std::int32_t> first;     // #cells + 1: index of each cell's first entry in `neighbour` and `conductance`
-  std::vector<std::int32_t> neighbour;
-  std::vector<float> conductance;
+  ZeroedVector<std::int32_t> neighbour;
+  ZeroedVector<float> conductance;
   std::vector<float> diagonal;  // sum of each cell's conductances to neighbours and to cells of fixed temperature
 
   std::int64_t size() const { return std::ssize(position); }
@@ -46,10 +48,21 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing);
 // centres doubles.
 constexpr float kCoarseConductance = 0.5f;
 
+// Returns the next coarser graph: sums the conductances between connected cells of the same block (2 x 2 x 2 cells
+// where cells are cubes). Losses to cells of fixed temperature are taken for conduction, so they are halved as well.
+//   parent  cell of the coarser graph that contains each cell; -1 for a cell that is left out
+//   lone    what happens to cells without neighbours
+enum class LoneCells { LeaveOut, Keep };
+CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent, LoneCells lone = LoneCells::LeaveOut);
+
 struct MultigridReport {
   int iterations = 0;
   double residual = 0;  // largest relative residual |b - A x| / |b| of any right-hand side
 };
+
+// Throws Error when a solve stopped above its residual.
+//   bone  name of the first bone that was solved for
+void require_residual(const MultigridReport& solved, double residual, const std::string& bone);
 
 class Multigrid {
  public:

@@ -6,24 +6,12 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/binding/bone_reach.h"
 #include "core/binding/geodesic_front.h"
 
 namespace limber {
 
 namespace {
-// The last bone of a chain also carries the flesh beyond its tail (four fingers, the toes, the jaw), and most of this
-// flesh is further from the bone than the bone is long. So the distance to this bone counts as less: its part beyond
-// kOwnReach times the bone's length is multiplied by kLastBone.
-constexpr float kOwnReach = 0.5f;
-constexpr float kLastBone = 0.65f;
-// A bone that only links a limb to the trunk (a collarbone) should get less flesh, since the chest below it belongs to
-// the trunk. So the distance to this bone is multiplied by kLink. A bone is a link if its child is so long that the
-// bone is shorter than kLinkShare of it, and if it turns aside from a parent with several children.
-constexpr float kLink = 1 / kLastBone;
-constexpr double kLinkShare = 0.75;
-// Lower limit on the ratio of the distance to the nearest bone to the distance to a joint. Flesh above it lies around
-// the joint itself, about equally near to the joint's two bones, so the plane through the joint divides it (Hinges).
-constexpr float kAtJoint = 0.75f;
 // Radius that a bone without bone tissue is assumed to have, as a share of the radius of the flesh around its axis. The
 // radius is at least half a voxel's diagonal.
 constexpr double kBoneShare = 0.5;
@@ -108,98 +96,11 @@ std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVox
 }
 
 namespace {
-glm::dvec3 along(const Bone& bone) { return bone.tail - bone.head; }
-
-bool is_link(const Armature& armature, size_t b) {
-  const Bone& bone = armature.bones[b];
-  if (bone.parent < 0) return false;
-  const double length = glm::length(along(bone));
-  const glm::dvec3 before = along(armature.bones[bone.parent]);
-  bool forks = false, leads_on = false;
-  for (size_t other = 0; other < armature.bones.size(); ++other) {
-    forks |= other != b && armature.bones[other].parent == bone.parent;
-    leads_on |= armature.bones[other].parent == static_cast<int>(b) &&
-                length < kLinkShare * glm::length(along(armature.bones[other]));
-  }
-  return forks && leads_on && glm::dot(along(bone), before) < 0.5 * length * glm::length(before);
-}
-
-// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance beyond
-// `reach` is multiplied by `share`.
-struct Count {
-  float reach = std::numeric_limits<float>::infinity();  // mm
-  float share = 1;
-  float operator()(float way) const { return way <= reach ? way : reach + share * (way - reach); }
-};
-
-std::vector<Count> counts_of_bones(const Armature& armature) {
-  std::vector<bool> last(armature.bones.size(), true);
-  for (const Bone& bone : armature.bones)
-    if (bone.parent >= 0) last[bone.parent] = false;
-  std::vector<Count> counts(armature.bones.size());
-  for (size_t b = 0; b < counts.size(); ++b) {
-    if (last[b]) counts[b] = {kOwnReach * static_cast<float>(glm::length(along(armature.bones[b]))), kLastBone};
-    if (is_link(armature, b)) counts[b] = {0, kLink};
-  }
-  return counts;
-}
-
-// Divides the flesh at joints where exactly two bones meet. Flesh around the joint itself is equally near to the two
-// bones. It belongs to the bone on its side of the plane that bisects the angle between the bones: the heel belongs to
-// the foot, not to the shin.
-class Hinges {
- public:
-  explicit Hinges(const Armature& armature) : ends_(armature.bones.size()) {
-    std::vector<bool> last(armature.bones.size(), true);
-    for (const Bone& bone : armature.bones)
-      if (bone.parent >= 0) last[bone.parent] = false;
-    for (size_t b = 0; b < ends_.size(); ++b)
-      for (int side = 0; side < 2 && !last[b]; ++side) ends_[b][side] = end_of(armature, b, side);
-  }
-
-  // Returns the bone that the flesh at `point` belongs to.
-  //   nearest, distance  the nearest bone, and its distance, mm
-  std::uint16_t bone_at(const glm::vec3& point, std::uint16_t nearest, float distance) const {
-    for (const End& end : ends_[nearest]) {
-      if (end.other < 0) continue;
-      const glm::vec3 from_joint = point - end.joint;
-      if (glm::dot(from_joint, end.inward) < 0 && glm::dot(from_joint, end.parting) > 0 &&
-          distance >= kAtJoint * glm::length(from_joint))
-        return static_cast<std::uint16_t>(end.other);
-    }
-    return nearest;
-  }
-
- private:
-  struct End {
-    int other = -1;  // the other bone at this end of the bone; -1: none or several
-    glm::vec3 joint, inward, parting;
-  };
-  static End end_of(const Armature& armature, size_t b, int side) {
-    auto joint = [](const Bone& bone, int at) { return at ? bone.tail : bone.head; };
-    auto inward = [](const Bone& bone, int at) { return glm::normalize(at ? -along(bone) : along(bone)); };
-    const Bone& bone = armature.bones[b];
-    const double length = glm::length(along(bone));
-    End end;
-    int met = 0;
-    for (size_t o = 0; o < armature.bones.size(); ++o)
-      for (int at = 0; at < 2; ++at) {
-        const Bone& other = armature.bones[o];
-        const double near = 0.05 * std::min(length, glm::length(along(other)));
-        if (o == b || !(near > 0) || glm::distance(joint(bone, side), joint(other, at)) > near) continue;
-        ++met;
-        end = {static_cast<int>(o), joint(bone, side), inward(bone, side), inward(other, at) - inward(bone, side)};
-      }
-    return met == 1 ? end : End();
-  }
-  std::vector<std::array<End, 2>> ends_;
-};
-}  // namespace
-
-namespace {
 NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tissue,
-                              const std::vector<std::uint16_t>& held_by, const std::vector<Count>& counts) {
-  NearestBone nearest{held_by, std::vector<float>(tissue.size(), std::numeric_limits<float>::infinity())};
+                              const std::vector<std::uint16_t>& held_by, const std::vector<BoneReach>& reaches) {
+  NearestBone nearest;
+  nearest.bone.assign(held_by.begin(), held_by.end());
+  nearest.distance.assign(tissue.size(), std::numeric_limits<float>::infinity());
   TissueFront front(volume, tissue);
   // Voxels whose temperature a bone fixes start with distance 0. No path is shorter, so these voxels keep their bone.
   front.start_all([&](std::int64_t place, const glm::ivec3&) {
@@ -207,10 +108,10 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
     return held_by[place];
   });
   front.spread(
-      nearest.distance,
-      [&](std::uint16_t bone, std::int64_t to, float way) { return counts[bone](way) < nearest.distance[to]; },
+      {nearest.distance.data(), nearest.distance.size()},
+      [&](std::uint16_t bone, std::int64_t to, float way) { return reaches[bone](way) < nearest.distance[to]; },
       [&](std::uint16_t bone, std::int64_t to, float way) {
-        nearest.distance[to] = counts[bone](way);
+        nearest.distance[to] = reaches[bone](way);
         nearest.bone[to] = bone;
       });
   return nearest;
@@ -219,12 +120,12 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
 
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const std::vector<std::uint16_t>& held_by) {
-  return spread_from_bones(volume, tissue, held_by, std::vector<Count>(armature.bones.size()));
+  return spread_from_bones(volume, tissue, held_by, std::vector<BoneReach>(armature.bones.size()));
 }
 
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const std::vector<std::uint16_t>& held_by) {
-  NearestBone nearest = spread_from_bones(volume, tissue, held_by, counts_of_bones(armature));
+  NearestBone nearest = spread_from_bones(volume, tissue, held_by, reaches_of_bones(armature));
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   parallel_for(std::ssize(tissue.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) {

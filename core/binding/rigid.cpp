@@ -13,7 +13,7 @@ SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, co
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
   progress.update("weights", 0.8);
   BestFour best(tissue);
-  best.hold_all(nearest.bone, kSoft);
+  best.hold_all({nearest.bone.data(), nearest.bone.size()}, kSoft);
   WeightsReport ignored;
   cover_islands(volume, tissue, armature, best, report ? *report : ignored);
   return best.weights(names_of_bones(armature));

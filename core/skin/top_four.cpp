@@ -53,12 +53,19 @@ void BestFour::offer(std::int64_t brick, std::int64_t place, int bone, float wei
   for (; k < 4 && moved.weight > 0; ++k) std::swap(moved, grow_to(brick, place, k));
 }
 
+float BestFour::weight(std::int64_t brick, std::int64_t place, int bone) const {
+  for (int k = 0; k < bricks_[brick].used; ++k)
+    if (const Slot slot = at(brick, place, k); slot.bone == bone && slot.weight > 0)
+      return static_cast<float>(slot.weight) / kFullWeight;
+  return 0;
+}
+
 void BestFour::hold(std::int64_t brick, std::int64_t place, int bone) {
   grow_to(brick, place, 0) = {static_cast<std::uint16_t>(bone), kFullWeight};
   for (int k = 1; k < bricks_[brick].used; ++k) grow_to(brick, place, k) = {};
 }
 
-void BestFour::hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t none) {
+void BestFour::hold_all(std::span<const std::uint16_t> bones, std::uint16_t none) {
   parallel_for(std::ssize(bricks_), 64, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t brick = begin; brick < end; ++brick) {
       const auto& here = tissue_.bricks()[brick];

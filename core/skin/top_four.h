@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/rig/armature.h"
@@ -28,7 +29,10 @@ class BestFour {
   void hold(std::int64_t brick, std::int64_t place, int bone);
   // Makes many voxels follow one bone each. `bones` (#tissue voxels) lists the bone of each voxel; a voxel with the
   // entry `none` does not change.
-  void hold_all(const std::vector<std::uint16_t>& bones, std::uint16_t none);
+  void hold_all(std::span<const std::uint16_t> bones, std::uint16_t none);
+  // Returns the weight [0, 1] that a bone was offered with, without normalization; 0 if it is not among the largest
+  // four.
+  float weight(std::int64_t brick, std::int64_t place, int bone) const;
   bool covered(std::int64_t brick, std::int64_t place) const { return at(brick, place, 0).weight > 0; }
 
   // Returns the normalized weights. Every voxel must have a weight. Call this only once, since it frees the collected

@@ -42,7 +42,8 @@ struct RandomBody {
     tissue = TissueVoxels(volume);
     Seams seams(size);
     held_by.assign(tissue.size(), kSoft);
-    nearest = {std::vector<std::uint16_t>(tissue.size()), std::vector<float>(tissue.size())};
+    nearest.bone.resize(tissue.size());
+    nearest.distance.resize(tissue.size());
     tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
       for (int axis = 0; axis < 3; ++axis)
         if (v[axis] + 1 < size[axis] && random() % 8 == 0) seams.cut(v, axis);

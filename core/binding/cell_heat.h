@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Solves steady heat on HeatCells, the cells of volumes of very many voxels, for all bones.
+//
+// The cells are coarsened twice. These scout cells (4 cells along each axis) are solved for every bone first: they tell
+// in which bricks a bone has weight at all, and give the first guess. Then bones are solved in blocks, each on the
+// cells of its bricks.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/binding/cell_paths.h"
+#include "core/binding/heat_cells.h"
+#include "core/binding/heat_settings.h"
+#include "core/binding/voxel_heat.h"
+
+namespace limber {
+
+constexpr int kScoutCoarsenings = 2;
+
+// Heat that a bone gives to a cell, through faces and at a distance.
+struct CellSource {
+  std::int32_t cell;
+  float conductance;
+  float on_scout;  // the part of this conductance in the conductance of the scout cell around the cell
+};
+
+// Returns the sources of each bone. Also adds the conductances at a distance to the diagonal of the cells' graph.
+//   paths  from paths_to_cells()
+std::vector<std::vector<CellSource>> sources_of_bones(const BrickWindow::Source& source, const HeatLaw& law,
+                                                      const Armature& armature, const std::vector<CellPath>& paths,
+                                                      const std::vector<BoneReach>& reaches, HeatCells& cells);
+
+// The temperatures of each cell, without negligible ones.
+struct CellTemperatures {
+  struct Entry {
+    std::uint16_t bone;
+    float value;
+  };
+  std::vector<std::int64_t> first;  // #cells + 1: index of each cell's first entry
+  std::vector<Entry> entries;
+};
+
+// Throws Error when the solve for a bone does not reach its residual, and Cancelled.
+//   most_bytes  memory limit of a block of several bones
+CellTemperatures solve_cells(const HeatCells& cells, const std::vector<std::vector<CellSource>>& sources,
+                             const Armature& armature, const HeatDiffusion& settings, double most_bytes,
+                             const ShareOfProgress& share, Progress& progress, WeightsReport& report);
+
+}  // namespace limber

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Solves for the temperatures of single voxels, block of bones by block of bones (heat_system.h solves one block).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/binding/bone_blocks.h"
+#include "core/binding/flesh_graph.h"
+#include "core/binding/heat_settings.h"
+#include "core/skin/top_four.h"
+
+namespace limber {
+
+// What heat flows through. The referred objects must outlive it.
+struct HeatBody {
+  const LabelVolume& volume;
+  const TissueVoxels& tissue;
+  const TissueTable& tissues;
+  const Armature& armature;
+  const std::vector<std::uint16_t>& held_by;  // from fixed_bone()
+};
+
+// What is known before the solve. `brick` and `place` are indices of a brick and of a soft voxel in it; `lane` is the
+// number of a bone in its block.
+struct KnownHeat {
+  std::function<void(const std::vector<int>& bones)> start_block;  // is called before the solve for a block of bones
+  // Returns whether heat from any bone reaches a voxel.
+  std::function<bool(std::int64_t brick, std::int64_t place)> is_reached;
+  // Returns a guess of a bone's temperature at a voxel.
+  std::function<float(std::int64_t brick, std::int64_t place, int lane)> first_guess;
+  // Returns a bone's temperature at a voxel of a brick that its block is not solved in. Empty: all are 0.
+  std::function<float(std::int64_t brick, std::int64_t place, int lane)> outside;
+};
+
+// A share of a longer task, as fractions of its progress.
+struct ShareOfProgress {
+  double begin, end;
+  double at(std::size_t done, std::size_t count) const {
+    return begin + (end - begin) * static_cast<double>(done) / static_cast<double>(count);
+  }
+};
+
+// Solves for the temperatures of the blocks' bones in their bricks, and offers them to `best`. Throws Error when the
+// solve for a bone does not reach its residual, and Cancelled.
+void solve_in_voxels(const HeatGraph& heat, const HeatBody& body, const std::vector<BoneBlock>& blocks,
+                     const KnownHeat& known, const HeatDiffusion& settings, const ShareOfProgress& share,
+                     Progress& progress, BestFour& best, WeightsReport& report);
+
+}  // namespace limber
