@@ -161,5 +161,5 @@ TEST_CASE("command files: every command that takes -o says that it is written") 
       CHECK_NOTHROW(option->get_validator("files"));
       ++outputs;
     }
-  CHECK(outputs == 11);
+  CHECK(outputs == 12);
 }
