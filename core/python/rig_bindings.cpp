@@ -201,11 +201,11 @@ name       a pose of any body: sit, walk, squat, arms up ... (limber.pose_names)
 joints     degrees from the anatomical position: {"left elbow flexion": 90, "knees flexion": 60}
 flex       degrees about the hinges of bones, positive bends further: {"Forearm": 60}
 rotations  of single bones, in the world axes at rest: {"Hand": ((1, 0, 0), 30)} or {"Hand": (w, x, y, z)})")
-      .def(
-          "angles", &angles_of_pose, py::arg("pose"),
-          R"(Returns the clinical angles of a pose, degrees from the anatomical position: {"left elbow flexion": 90.0, ...}.
+      .def("angles", &angles_of_pose, py::arg("pose"),
+           R"(Returns the clinical angles of a pose: {"left elbow flexion": 90.0, ...}.
 
-pose(joints=angles) gives the pose again, except for turns that no angle names. Joints are known by the bones' names.)")
+They are in degrees from the anatomical position. pose(joints=angles) gives the pose again, except for turns that no
+angle names. Joints are known by the bones' names.)")
       .def(
           "read_pose", [](const Armature& rig, const Path& path) { return read_pose(path, rig); }, py::arg("path"),
           "Reads a pose (JSON) of this rig.")

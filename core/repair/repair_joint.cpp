@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
-#include "core/base/parallel.h"
+#include "core/base/error.h"
 #include "core/deform/blend_rule.h"
 #include "core/repair/bounded_minimum.h"
 #include "core/report/metrics.h"
@@ -265,6 +265,10 @@ class Repairer {
 
 JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, int bone,
                          const JointRepairSettings& settings, Progress& progress) {
+  const std::vector<FleshClass> classes = flesh_classes(body.tissues);
+  if (std::all_of(classes.begin(), classes.end(), [](FleshClass c) { return c == FleshClass::Other; }))
+    throw Error("no tissue of this body is known to be skin, fat or muscle", body.armature.bones[bone].name,
+                "give their labels these kinds in a tissue table");
   return Repairer(body, weights, bone, settings, progress).run();
 }
 

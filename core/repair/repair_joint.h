@@ -54,7 +54,7 @@ struct JointRepair {
   std::vector<TurnFigures> before, after;  // in the turns of joint_motion(); equal where nothing was found
 };
 
-// Throws Error as joint_motion() does, and if no soft tissue moves at the joint.
+// Throws Error as joint_motion() does, if no soft tissue moves at the joint, and if no tissue is skin, fat or muscle.
 //   bone  the bone below the joint
 JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, int bone,
                          const JointRepairSettings& settings = {}, Progress& progress = no_progress());

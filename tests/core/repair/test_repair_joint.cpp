@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/binding/heat_diffusion.h"
 #include "core/bones/bone_parts.h"
@@ -166,6 +167,13 @@ TEST_CASE("repair joint: where nothing may change the weights come back as they 
   CHECK(repair.weights == arm.heat);
   CHECK(repair.before[0].overlap_voxels == repair.after[0].overlap_voxels);
   CHECK(describe(repair, arm.rig, arm.bone).find("stays as it is") != std::string::npos);
+}
+
+TEST_CASE("repair joint: a body whose tissues have no kinds is refused with what to do") {
+  Limb arm = phantom_arm(8);
+  for (Tissue& tissue : arm.tissues.tissues)
+    if (!is_bone(tissue.kind)) tissue.kind = TissueKind::Unknown;
+  CHECK_THROWS_WITH_AS(repair_joint(arm.body(), arm.heat, arm.bone), doctest::Contains("in a tissue table"), Error);
 }
 
 TEST_CASE("repair joint: a locked bone keeps every bit of its weights") {
