@@ -1,18 +1,54 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/keep_preferences.h"
 
+#include <set>
+
+#include <nlohmann/json.hpp>
+
 #include "core/base/error.h"
+#include "core/base/json_text.h"
 
 namespace limber::editor {
 
+namespace {
+
+constexpr char kUnbound[] = "unbound";  // member of an exported key map: operators without any key
+
+std::set<std::string> operators_of(const Keymap& keymap) {
+  std::set<std::string> ids;
+  for (const auto& [context, bindings] : keymap.contexts)
+    for (const Binding& binding : bindings) ids.insert(binding.operator_id);
+  return ids;
+}
+
+// Returns the operators that a key map's file knows: those with keys, and those that it lists as being without.
+std::set<std::string> operators_known_to(const Keymap& keymap, const Path& path) {
+  std::set<std::string> ids = operators_of(keymap);
+  const auto json = nlohmann::json::parse(checked_json(read_file(path), path.string()), nullptr, false);
+  if (const auto unbound = json.find(kUnbound); unbound != json.end() && unbound->is_array())
+    for (const auto& id : *unbound)
+      if (id.is_string()) ids.insert(id.get<std::string>());
+  return ids;
+}
+
+}  // namespace
+
 void export_keymap(Editor& editor, const Path& path) {
-  write_file_atomically(path, to_json(editor.keymap));
+  auto json = nlohmann::ordered_json::parse(to_json(editor.keymap));
+  const std::set<std::string> bound = operators_of(editor.keymap);
+  json[kUnbound] = nlohmann::ordered_json::array();
+  for (const std::string& id : operators_of(keymap_preset(editor.preferences.keymap)))
+    if (!bound.contains(id)) json[kUnbound].push_back(id);
+  write_file_atomically(path, json.dump(1) + "\n");
   editor.messages.ok("Keys exported", path.string());
 }
 
 void import_keymap(Editor& editor, const Path& path) {
-  editor.preferences.keys =
-      differences(keymap_preset(editor.preferences.keymap), read_keymap(path, TwoMeanings::LetIn));
+  const Keymap wanted = read_keymap(path, TwoMeanings::LetIn);
+  editor.preferences.keys = differences(keymap_preset(editor.preferences.keymap), wanted);
+  // Operators that are newer than the file keep their keys.
+  const std::set<std::string> known = operators_known_to(wanted, path);
+  std::erase_if(editor.preferences.keys, [&](const auto& change) { return !known.contains(change.first.second); });
   keep_preferences(editor);
   const auto count = clashes(editor.keymap).size();
   if (count > 0)

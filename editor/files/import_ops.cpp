@@ -92,7 +92,7 @@ std::vector<Operator> import_operators() {
                       nullptr),
       {"file.import_dicom", "DICOM folder...", icon::kImport, "File", "Open a folder of DICOM images as one volume.",
        import_dicom},
-      {"file.import_image", "Image (CT, MR)...", icon::kImport, "File",
+      {"file.import_image", "Image...", icon::kImport, "File",
        "Show a grey image with the open body, or by itself. Slices show it below the tissues; it moves with the pose.",
        import_image},
       import_operator({"file.import_rig",

@@ -85,6 +85,19 @@ TEST_CASE("kept: preferences, recent files and keys of version 0.1.0 act as they
   test.play("click Muscle/17/eye\n expect hidden 1\n key Ctrl+U\n expect hidden 0");
 }
 
+TEST_CASE("kept: an exported key map says which commands have no keys, and brings that back") {
+  const TemporaryFolder folder;
+  SmallEditor test({1024, 640}, {}, false);
+  const KeyChanges none = {{{"global", "edit.undo"}, {}}, {{"slice", "image.drag_window"}, {}}};
+  test.editor->preferences.keys = none;
+  apply_preferences(*test.editor);
+  export_keymap(*test.editor, folder / "mine.json");
+  test.editor->preferences.keys.clear();
+  apply_preferences(*test.editor);
+  import_keymap(*test.editor, folder / "mine.json");
+  CHECK(test.editor->preferences.keys == none);
+}
+
 TEST_CASE("kept: operators have the ids that key maps and recordings of version 0.1.0 name") {
   SmallEditor test({1024, 640}, {}, false);
   std::istringstream ids(read_file(kept("operators.txt")));

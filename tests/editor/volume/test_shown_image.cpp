@@ -80,8 +80,7 @@ std::vector<Proof> proofs_of_images() {
   const char* four = "key Ctrl+Alt+Q\n wait-idle";
   return {
       {.id = "file.import_image",
-       .deeds =
-           "click File/Import/\"Image (CT, MR)...\"\n wait-idle\n type ct.nrrd\n key Return\n wait-job\n wait-idle",
+       .deeds = "click File/Import/Image...\n wait-idle\n type ct.nrrd\n key Return\n wait-job\n wait-idle",
        .effect = [](Stage& s, const Seen&) { return s.editor().views->image.has_value(); },
        .shows = Shows::InSlice,
        .first = four,
@@ -90,28 +89,38 @@ std::vector<Proof> proofs_of_images() {
              write_grey_volume(scan(), s.home / "ct.nrrd");
              s.editor().project_path = s.home / "limb.limber";
            }},
-      {"image.window_bone", "click View/Image/\"Bone window\"", has_window(480, 2500), Shows::InSlice, four},
-      {"image.window_soft", "click View/Image/\"Soft tissue window\"", has_window(40, 400), Shows::InSlice, four},
-      {"image.window_lung", "click View/Image/\"Lung window\"", has_window(-600, 1500), Shows::InSlice, four},
-      {"image.window_brain", "click View/Image/\"Brain window\"", has_window(40, 80), Shows::InSlice, four},
-      {"image.window_all", "click View/Image/\"All values\"",
+      {"image.window_bone", "click View/Display/\"Image settings\"/\"Bone window\"", has_window(480, 2500),
+       Shows::InSlice, four},
+      {"image.window_soft", "click View/Display/\"Image settings\"/\"Soft tissue window\"", has_window(40, 400),
+       Shows::InSlice, four},
+      {"image.window_lung", "click View/Display/\"Image settings\"/\"Lung window\"", has_window(-600, 1500),
+       Shows::InSlice, four},
+      {"image.window_brain", "click View/Display/\"Image settings\"/\"Brain window\"", has_window(40, 80),
+       Shows::InSlice, four},
+      {"image.window_all", "click View/Display/\"Image settings\"/\"All values\"",
        [](Stage& s, const Seen&) { return image_of(s.editor()).width > 1000; }, Shows::InSlice, four},
       {"image.drag_window", "drag Axial/view 40 -20 RMB Ctrl",
        [](Stage& s, const Seen&) {
          const render::ShownGrey& image = image_of(s.editor());
          return image.width > 450 && image.level > 45;
        },
-       Shows::InSlice, "key Ctrl+Alt+Q\n wait-idle\n click View/Image/\"Soft tissue window\""},
+       Shows::InSlice, "key Ctrl+Alt+Q\n wait-idle\n click View/Display/\"Image settings\"/\"Soft tissue window\""},
       {"view.image_display", "click View/Display/Image",
        [](Stage& s, const Seen&) { return s.editor().views->display == render::Display::Image; }, Shows::InBody,
        "click View/Display/Solid"},
-      {"image.render_skin", "click View/Image/\"Skin in 3D\"", renders(GreyRendering::Skin), Shows::InBody},
-      {"image.render_muscle", "click View/Image/\"Muscle in 3D\"", renders(GreyRendering::Muscle), Shows::InBody},
-      {"image.render_bone", "click View/Image/\"Bone in 3D\"", renders(GreyRendering::Bone), Shows::InBody},
-      {"image.render_window", "click View/Image/\"Window in 3D\"", renders(GreyRendering::Window), Shows::InBody},
-      {"image.render_maximum", "click View/Image/\"Maximum in 3D\"", renders(GreyRendering::Maximum), Shows::InBody},
+      {"image.render_skin", "click View/Display/\"Image settings\"/\"Skin in 3D\"", renders(GreyRendering::Skin),
+       Shows::InBody},
+      {"image.render_muscle", "click View/Display/\"Image settings\"/\"Muscle in 3D\"", renders(GreyRendering::Muscle),
+       Shows::InBody},
+      {"image.render_bone", "click View/Display/\"Image settings\"/\"Bone in 3D\"", renders(GreyRendering::Bone),
+       Shows::InBody},
+      {"image.render_window", "click View/Display/\"Image settings\"/\"Window in 3D\"", renders(GreyRendering::Window),
+       Shows::InBody},
+      {"image.render_maximum", "click View/Display/\"Image settings\"/\"Maximum in 3D\"",
+       renders(GreyRendering::Maximum), Shows::InBody},
       {"image.labels",
-       "click View/Image/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n wait-idle",
+       "click View/Display/\"Image settings\"/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
+       "wait-idle",
        [](Stage& s, const Seen& b) {
          return s.document().volume != b.document.volume && s.document().tissues->find(6) &&
                 s.document().tissues->find(6)->name == "Bone";
@@ -123,7 +132,7 @@ std::vector<Proof> proofs_of_images() {
                 read_grey_volume(s.home / "ct-posed.nrrd").voxels == scan().voxels;
        },
        Shows::Nothing, "", add_posed_scan},
-      {"image.close", "click View/Image/\"Close image\"",
+      {"image.close", "click View/Display/\"Image settings\"/\"Close image\"",
        [](Stage& s, const Seen&) { return !s.editor().views->image; }, Shows::InSlice, four},
   };
 }
@@ -141,7 +150,9 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().views->display == render::Display::Image);
   CHECK(sitting.editor().document().tissues->tissues.empty());
   const Document bare = sitting.editor().document();
-  sitting.play("click View/Image/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n wait-idle");
+  sitting.play(
+      "click View/Display/\"Image settings\"/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
+      "wait-idle");
   sitting.play("expect error none\n expect unsaved yes");
   const Document labelled = sitting.editor().document();
   REQUIRE(labelled.tissues->find(6));
@@ -253,7 +264,7 @@ TEST_CASE("image: a project shows its image again, from beside the project too, 
     Sitting sitting(files.folder.path());
     sitting.open_ball();
     editor::open_image(sitting.editor(), files / "ct.nrrd");
-    sitting.play("wait-job\n wait-idle\n click View/Image/\"Bone window\"\n wait-idle");
+    sitting.play("wait-job\n wait-idle\n click View/Display/\"Image settings\"/\"Bone window\"\n wait-idle");
     sitting.editor().views->image->tissues = 0.7f;
     editor::save_project_as(sitting.editor(), project);
     sitting.play("wait-job\n wait-idle");
