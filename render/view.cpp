@@ -214,6 +214,8 @@ struct View3D::Impl {
 
   PassResources& resources;
   Target output, body, average;
+  // The grey image: the picture that is shown, and the one that is traced next, tile by tile.
+  Target image, next_image;
   using Layers = std::array<GBuffer, kMostLayers>;
   Layers shown;     // hits of the rays of the shown picture, the outermost layer first
   Layers jittered;  // hits of the rays of the picture that will be averaged next
@@ -304,14 +306,13 @@ struct View3D::Impl {
       pass.march(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer],
                  source.looks->texture(), static_cast<int>(layer), scene.clip, rays, buffers[layer], part);
   }
-  // Draws a rectangle of the grey image into the picture of the body, which has the size of the buffers.
+  // Draws a rectangle of the grey image into a target.
   //   step  length of a ray's steps, voxels of the image
-  void draw_image(const Source& source, const ViewRays& rays, const Layers& buffers, double step,
+  void draw_image(const Source& source, const ViewRays& rays, const Target& target, double step,
                   const PixelRect& part) {
-    body.resize(buffers[0].size(), GL_RGBA8);
-    body.bind();
+    target.bind();
     resources.image.draw(*source.body->volume, source.pose, *source.image, *scene.grey, scene.clip, rays, step, part,
-                         body.size());
+                         target.size());
     image_slices = source.image->uploaded();
   }
   ShadePass::Colours colours() const {
@@ -342,9 +343,9 @@ struct View3D::Impl {
     start(source, rays, shown, size, rect);
     march(source, rays, shown, rect);
     if (source.image) {
-      body.resize(size, GL_RGBA8);
-      body.clear();
-      draw_image(source, rays, shown, scale == 1 ? kFineStep : kCoarseStep, rect);
+      image.resize(size, GL_RGBA8);
+      image.clear();
+      draw_image(source, rays, image, scale == 1 ? kFineStep : kCoarseStep, rect);
     } else {
       shade(source, rays, shown, rect);
     }
@@ -358,8 +359,10 @@ struct View3D::Impl {
     const PixelRect part = covered_by(source, rays, key.size);
     if (next_tile == 0) {
       start(source, rays, jittered, key.size, part);
-      body.resize(key.size, GL_RGBA8);
-      if (source.image) body.clear();
+      if (source.image) {
+        next_image.resize(key.size, GL_RGBA8);
+        next_image.clear();
+      }
     }
     const int edge = source.image ? kImageTile : kTile;
     const glm::ivec2 tiles = (part.high - part.low + edge - 1) / edge;
@@ -369,7 +372,7 @@ struct View3D::Impl {
       const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * edge;
       const PixelRect tile = intersection(part, {low, low + edge});
       march(source, rays, jittered, tile);
-      if (source.image) draw_image(source, rays, jittered, kFineStep, tile);
+      if (source.image) draw_image(source, rays, next_image, kFineStep, tile);
       ++next_tile;
       glFinish();
     } while (seconds() - begin < kTileBudget);
@@ -379,7 +382,8 @@ struct View3D::Impl {
     average.resize(key.size, GL_RGBA16F);
     if (sample == 0) average.clear();
     average.bind();
-    resources.compose.accumulate(body.texture(), key.size, 1.0f / float(sample + 1), part);
+    const gl::Texture& picture = source.image ? next_image.texture() : body.texture();
+    resources.compose.accumulate(picture, key.size, 1.0f / float(sample + 1), part);
     if (sample == 0) {
       std::swap(shown, jittered);
       rect = part;
@@ -447,7 +451,8 @@ struct View3D::Impl {
       resources.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z,
                              std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
     const bool has_body = shown_scale > 0;
-    if (has_body) resources.compose.body(sample > 0 ? average.texture() : body.texture(), key.size, shown_rect());
+    const gl::Texture& first = shows_image(scene) ? image.texture() : body.texture();
+    if (has_body) resources.compose.body(sample > 0 ? average.texture() : first, key.size, shown_rect());
     if (has_body && scene.outlined)
       resources.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
     if (has_body && scene.mesh) draw_mesh();

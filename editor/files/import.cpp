@@ -144,31 +144,35 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   return read;
 }
 
-// Shows an image that was read from `path` with the open body. If no body is open, opens a project for the image.
+// Shows an image that was read from `path` with the open body. If no body is open, opens the project `opened` for the
+// image.
+//   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
 void take_image(Editor& editor, const std::shared_ptr<const GreyLevels>& image, const std::shared_ptr<Opened>& opened,
-                const Path& path) {
+                const Path& path, std::int64_t agreed) {
   if (const auto& tissues = editor.document().tissues; tissues && !tissues->tissues.empty()) {
     show_image(editor, image, path);
     editor.messages.ok(path.filename().string(), "The image is shown with the body. Sidebar > Image sets how.");
     return;
   }
-  opened->agreed = editor.history.revision();
   opened->then = [image, path](Editor& e) {
     show_image(e, image, path);
     e.views->display = render::Display::Image;
     e.messages.ok(path.filename().string(),
                   "A grey image. Edit > Prepare volume > Labels from CT makes tissues of it that can be rigged.");
   };
+  opened->agreed = agreed;
   add_recent(editor.recent_files, path, std::time(nullptr));
   replace_project(editor, opened);
 }
 
 // Opens a label volume by calling `take`. A grey image is shown with the body instead. If the file may be either, first
 // shows the image in a dialog, and calls `take` only if the user agrees to open the image as labels.
-void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take) {
+//   agreed  as in take_image()
+void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take,
+                  std::int64_t agreed) {
   if (!read.image) return take(editor);
-  const Finish show = [levels = read.levels, opened = read.as_project, path](Editor& e) {
-    take_image(e, levels, opened, path);
+  const Finish show = [levels = read.levels, opened = read.as_project, path, agreed](Editor& e) {
+    take_image(e, levels, opened, path, agreed);
   };
   if (read.is_image) return show(editor);
   show_grey_image(editor, {.image = read.image,
@@ -364,33 +368,34 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
 
 void open_volume(Editor& editor, const Path& path, Then then) {
   ask_about_unsaved(editor, [path, then](Editor& e) {
-    const int job = start_task(e, "Open " + path.filename().string(),
-                               [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
-                                 ReadVolume read = read_labels_or_image(path, progress);
-                                 if (!read.labels)
-                                   return [read, path](Editor& ed) { take_or_show(ed, read, path, "", {}); };
-                                 VolumeFile& file = *read.labels;
-                                 auto opened = std::make_shared<Opened>();
-                                 opened->document = with_volume(file);
-                                 opened->document.volume = shared(std::move(file.volume));
-                                 opened->extents = shared(extents_of(opened->document.volume));
-                                 opened->inputs = inputs_of(FileKind::Volume, path);
-                                 opened->name = path.stem().string();
-                                 opened->label = "Open " + path.filename().string();
-                                 opened->agreed = agreed;
-                                 opened->then = [path, then](Editor& ed) {
-                                   keep_thumbnail(ed, path);
-                                   if (then) then(ed);
-                                 };
-                                 const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
-                                   warn_of(ed, path, warnings);
-                                   add_recent(ed.recent_files, path, std::time(nullptr));
-                                   replace_project(ed, opened);
-                                 };
-                                 return [take, path, read = std::move(read)](Editor& ed) {
-                                   take_or_show(ed, read, path, "Open as labels", take);
-                                 };
-                               });
+    const int job =
+        start_task(e, "Open " + path.filename().string(),
+                   [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
+                     ReadVolume read = read_labels_or_image(path, progress);
+                     if (!read.labels)
+                       return [read, path, agreed](Editor& ed) { take_or_show(ed, read, path, "", {}, agreed); };
+                     VolumeFile& file = *read.labels;
+                     auto opened = std::make_shared<Opened>();
+                     opened->document = with_volume(file);
+                     opened->document.volume = shared(std::move(file.volume));
+                     opened->extents = shared(extents_of(opened->document.volume));
+                     opened->inputs = inputs_of(FileKind::Volume, path);
+                     opened->name = path.stem().string();
+                     opened->label = "Open " + path.filename().string();
+                     opened->agreed = agreed;
+                     opened->then = [path, then](Editor& ed) {
+                       keep_thumbnail(ed, path);
+                       if (then) then(ed);
+                     };
+                     const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
+                       warn_of(ed, path, warnings);
+                       add_recent(ed.recent_files, path, std::time(nullptr));
+                       replace_project(ed, opened);
+                     };
+                     return [take, path, agreed, read = std::move(read)](Editor& ed) {
+                       take_or_show(ed, read, path, "Open as labels", take, agreed);
+                     };
+                   });
     e.step_of_job[job] = StepOfWork::Prepare;
   });
 }
@@ -415,7 +420,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
           if (then) then(e);
           if (import->inside < kMisplaced) offer_fit(e, path.filename().string(), import->inside);
         };
-        return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take); };
+        return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take, -1); };
       });
   editor.step_of_job[job] = step_of(kind);
 }
@@ -423,8 +428,9 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
 void open_image(Editor& editor, const Path& path) {
   const int job = start_task(editor, "Open image " + path.filename().string(), [path](Progress& progress) -> Finish {
     const auto levels = levels_of(read_grey_volume(path, progress));
-    return
-        [levels, opened = project_for_image(*levels, path), path](Editor& e) { take_image(e, levels, opened, path); };
+    return [levels, opened = project_for_image(*levels, path), path](Editor& e) {
+      take_image(e, levels, opened, path, -1);
+    };
   });
   editor.step_of_job[job] = StepOfWork::Prepare;
 }

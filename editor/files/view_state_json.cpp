@@ -93,7 +93,7 @@ void restore_image(Editor& editor, const Json& json) {
   if (const Path beside = editor.project_path.parent_path() / file.filename();
       !std::filesystem::exists(file, error) && std::filesystem::exists(beside, error))
     file = beside;
-  reopen_image(editor, file, shown);
+  reopen_image(editor, file, json.contains("level") ? std::optional(shown) : std::nullopt);
 }
 
 }  // namespace
@@ -130,8 +130,10 @@ std::string editor_state(const Editor& editor) {
                      {"width", views.image->width},
                      {"tissues", views.image->tissues},
                      {"rendering", static_cast<int>(views.image->rendering)}};
+  else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};  // not there now
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
-  return json.dump();
+  // A file's name may hold bytes that are no text; the state is stored all the same.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 void restore_editor_state(Editor& editor, const std::string& text) {

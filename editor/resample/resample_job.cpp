@@ -68,7 +68,14 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
     job["steps"] = kSteps;
     if (request.contact) job["contact"] = true;
   }
-  write_file_atomically(folder / "job.json", job.dump(1) + "\n");
+  std::string text;
+  try {
+    text = job.dump(1);
+  } catch (const nlohmann::json::type_error&) {
+    throw Error("the name of the image's file is no text", request.image.string(),
+                "rename the file or its folder, or close the image");
+  }
+  write_file_atomically(folder / "job.json", text + "\n");
 }
 
 // Reads the posed volume and converts the values in the file to the document's labels.
@@ -142,6 +149,7 @@ PosedImage read_posed_image(const Request& request, const ScratchFolder& folder,
 struct Made {
   std::string name;  // of the result
   PosedImage image;
+  std::string image_problem;  // why the posed image is missing; "": it is there, or none was asked for
 };
 
 Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Progress& progress) {
@@ -154,10 +162,14 @@ Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Pro
   result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
   result->overlap = read_overlap(folder / "overlap.nrrd", progress);
   result->report = read_file(folder / "report.json");
-  if (!request.image.empty()) {
-    made->image = read_posed_image(request, folder, progress);
-    made->image.result = result->volume;
-  }
+  if (!request.image.empty()) try {
+      made->image = read_posed_image(request, folder, progress);
+      made->image.result = result->volume;
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const std::exception& error) {
+      made->image_problem = error.what();  // the result itself is not lost for it
+    }
   result->from_volume = request.from.volume;
   result->from_tissues = request.from.tissues;
   result->from_armature = request.from.armature;
@@ -236,6 +248,7 @@ void start_resampling(Editor& editor) {
     e.fem->solves.erase(job.id);
     if (was_watched) stop_watching(e);
     if (job.state != JobState::Done) return;
+    if (!made->image_problem.empty()) e.messages.warn("The posed image is not shown", made->image_problem);
     if (made->image.levels) keep_posed_image(*e.views, std::move(made->image));
     tell(e, made->name);
     if (was_watched && e.workspace == Workspace::Resample) show_result(e, made->name);

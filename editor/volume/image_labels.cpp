@@ -23,23 +23,32 @@ CtThresholds thresholds_of(const Fields& fields) {
   return thresholds;
 }
 
+// The image may have been closed since the form was opened.
+const GreyLevels& image_of(const Editor& editor) {
+  if (!editor.views->image) throw Error("the image was closed", "Labels from CT", "open it again");
+  return *editor.views->image->image;
+}
+
 std::string outcome(const Editor& editor, const Fields& fields) {
   const CtThresholds t = thresholds_of(fields);
   if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
     throw Error("the thresholds must rise", "from body over fat and soft tissue to bone", "raise the higher one");
-  return size_text(editor.views->image->image->grid.size) + " voxels." +
+  return size_text(image_of(editor).grid.size) + " voxels." +
          (editor.document().tissues && !editor.document().tissues->tissues.empty()
               ? " The labels, rig and weights of the open body are replaced; undo brings them back."
               : "");
 }
 
 void start_labels(Editor& editor, const CtThresholds& thresholds) {
+  image_of(editor);
   const auto image = editor.views->image->image;
-  const int id = editor.jobs.start("Labels from CT", [image, thresholds](Progress& progress) -> Edit {
+  const auto before = editor.document().volume;
+  const int id = editor.jobs.start("Labels from CT", [image, before, thresholds](Progress& progress) -> Edit {
     CtLabels labels = labels_of_ct(*image, thresholds, progress);
     const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
     const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
-    return [volume, tissues](const Document& now) {
+    return [volume, tissues, before](const Document& now) {
+      if (now.volume != before) throw Error("another volume was opened meanwhile", "Labels from CT", "start it again");
       Document next;
       next.volume = volume;
       next.tissues = tissues;

@@ -79,13 +79,16 @@ void close_image(Editor& editor) {
   editor.touch();
 }
 
-void reopen_image(Editor& editor, const Path& path, const render::ShownGrey& shown) {
+void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown) {
+  editor.views->image_path = path;  // so that a project saved meanwhile still names it
   start_task(
       editor, "Open image " + path.filename().string(),
       [path, shown](Progress& progress) -> Finish {
         auto image = levels_of(read_grey_volume(path, progress));
         return [image, path, shown](Editor& e) {
+          if (e.views->image || e.views->image_path != path) return;  // another image or project was opened meanwhile
           show_image(e, image, path);
+          if (!shown) return;
           e.views->image = shown;
           e.views->image->image = image;
         };
@@ -106,9 +109,7 @@ const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const
   return nullptr;
 }
 
-std::optional<double> image_value_at(const Views& views, const glm::dvec3& world) {
-  if (!views.image) return std::nullopt;
-  const GreyLevels& image = *views.image->image;
+std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& world) {
   const glm::ivec3 voxel(glm::floor(voxel_from_world(image.grid) * world + 0.5));
   if (!image.grid.contains(voxel)) return std::nullopt;
   return image.value_at(voxel);

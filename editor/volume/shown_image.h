@@ -35,17 +35,16 @@ void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const P
 Document document_for_image(const GreyLevels& image);
 void close_image(Editor& editor);
 
-// Reads the image again that a project was saved with, and shows it as it was shown then. If the file is gone, a
-// message says so.
-void reopen_image(Editor& editor, const Path& path, const render::ShownGrey& shown);
+// Reads the image again that a project was saved with, and shows it as it was shown then (`shown`; empty: unknown). If
+// the file is gone, a message says so, and the project goes on naming it.
+void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown);
 
 // Keeps the posed image of a result, and drops those of results that are gone.
 void keep_posed_image(Views& views, PosedImage image);
 // Returns the posed image of a result; null if it was made without one.
 const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const LabelVolume>& result);
 
-// Returns the value of the image at a world point; empty outside the image. Of a posed body, `world` is a point at
-// rest.
-std::optional<double> image_value_at(const Views& views, const glm::dvec3& world);
+// Returns the value of the image at a world point; empty outside the image.
+std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& world);
 
 }  // namespace limber::editor

@@ -125,14 +125,17 @@ void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>&
   }
 }
 
-// Draws the value of the grey image under the pointer, at the point's place at rest.
+// Draws the value of the grey image under the pointer: of the posed image of a result, else of the image at the point's
+// place at rest.
 void draw_image_value(Editor& editor, Column& column) {
   const Hover& hover = editor.views->hover;
-  const auto& volume = editor.document().volume;
+  const render::Scene& scene = editor.views->scene;
   std::optional<double> value;
-  if (hover.inside) value = image_value_at(*editor.views, world_from_voxel(volume->grid) * glm::dvec3(hover.voxel));
-  else if (hover.view && *hover.view != ViewId::Body && !editor.views->scene.pose)
-    value = image_value_at(*editor.views, hover.point);
+  if (scene.grey && hover.view && (hover.inside || (*hover.view != ViewId::Body && !scene.pose))) {
+    const bool at_rest = hover.inside && scene.pose;
+    value = image_value_at(*scene.grey->image,
+                           at_rest ? world_from_voxel(scene.volume->grid) * glm::dvec3(hover.voxel) : hover.point);
+  }
   char text[40] = "-";
   if (value)
     std::snprintf(text, sizeof text, "%.4g%s", *value, looks_like_ct(*editor.views->image->image) ? " HU" : "");

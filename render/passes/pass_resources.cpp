@@ -90,12 +90,17 @@ const PosedHull* PassResources::posed_hull(Body& body, size_t layer, const std::
 
 GreyTexture* PassResources::grey(const std::optional<ShownGrey>& shown, Extent extent) {
   if (!shown || !shown->image) return nullptr;
-  if (!grey_ || !same(grey_->original(), shown->image)) {
-    grey_.reset();  // frees its memory before the next image asks for some
-    grey_ = std::make_unique<GreyTexture>(shown->image, largest_texture);
+  constexpr std::size_t kMost = 2;
+  auto found = std::find_if(greys_.begin(), greys_.end(),
+                            [&](const auto& grey) { return same(grey->original(), shown->image); });
+  if (found == greys_.end()) {
+    // Frees memory before the next image asks for some.
+    std::erase_if(greys_, [](const auto& grey) { return grey->original().expired(); });
+    if (greys_.size() == kMost) greys_.erase(greys_.begin());
+    found = greys_.insert(greys_.end(), std::make_unique<GreyTexture>(shown->image, largest_texture));
   }
-  grey_->upload(extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
-  return grey_.get();
+  (*found)->upload(extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
+  return found->get();
 }
 
 VolumePass& PassResources::volume_pass(const VolumeTexture& volume, VolumePass::Space space) {

@@ -79,7 +79,8 @@ struct PassResources {
   };
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Looks> looks_;
-  std::unique_ptr<GreyTexture> grey_;  // the grey image that was shown last
+  // The grey images that were shown last, at most two: those of two compared results.
+  std::vector<std::unique_ptr<GreyTexture>> greys_;
   // One pass for each number of atlas textures and each space (at rest or posed) in which rays march.
   std::map<std::pair<int, VolumePass::Space>, std::unique_ptr<VolumePass>> volume_passes_;
 };

@@ -228,3 +228,54 @@ TEST_CASE("grey image: a posed body carries it along, as resampling with the ima
   CHECK(usual < 5);
   CHECK(most < 16);
 }
+
+TEST_CASE(
+    "grey image: a picture that is refined after others of the body is whole, and two images keep their textures") {
+  Studio studio;
+  const Grid grid = grid_of({64, 64, 64});
+  GreyVolume image;
+  image.grid = grid;
+  for (int i = 0; i < 64 * 64 * 64; ++i) {
+    const double r = glm::length(glm::dvec3(i % 64, i / 64 % 64, i / 4096) - 31.5);
+    image.voxels.push_back(r < 26 ? 900.0f : -1000.0f);
+  }
+  Scene scene =
+      scene_of(painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - 31.5) < 26 ? 1 : 0; }));
+  scene.grey = shown(image);
+  scene.grey->rendering = GreyRendering::Skin;
+  const glm::ivec2 size(160, 160);
+  const Camera camera = camera_of(grid, Projection::Orthographic);
+  scene.display = Display::Image;
+  const Image whole = picture_of(studio.renderer, scene, camera, size);
+  View3D view(studio.renderer);
+  double now = 0;
+  const auto refine = [&](Display display) {
+    scene.display = display;
+    for (int i = 0; i < 2000; ++i) {
+      studio.renderer.begin_frame(1);
+      view.draw(scene, camera, size, now += 0.06);
+      if (i > 0 && view.complete()) return;
+    }
+    FAIL("never complete");
+  };
+  scene.display = Display::Solid;
+  view.draw(scene, camera, size, now += 0.06, 4);  // a coarse picture of the body
+  refine(Display::Image);
+  CHECK(difference(view.read(), whole).share < 0.05);
+  refine(Display::Solid);
+  refine(Display::Image);
+  CHECK(difference(view.read(), whole).share < 0.05);
+
+  // Two images by turns, as when two results are compared.
+  SliceView a(studio.renderer), b(studio.renderer);
+  Scene other = scene;
+  other.grey = shown(image);
+  const SliceCamera slice{.axis = SliceAxis::Axial, .centre = {32, 32, 32}, .millimetres_per_pixel = 1};
+  for (int i = 0; i < 3; ++i) {
+    studio.renderer.begin_frame(0);
+    a.draw(scene, slice, SliceDisplay::Labels, kSize);
+    b.draw(other, slice, SliceDisplay::Labels, kSize);
+  }
+  CHECK(a.complete());
+  CHECK(b.complete());
+}

@@ -244,6 +244,39 @@ TEST_CASE("image: resampling poses it, to the voxel as the command line does, an
   CHECK_FALSE(e.views->scene.grey);
 }
 
+TEST_CASE("image: importing one asks before unsaved work on an empty body is replaced") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"});
+  sitting.play("wait-idle");
+  Document next = sitting.editor().document();
+  next.armature = small_limb().armature;
+  commit(sitting.editor(), "Rig", next);
+  editor::open_image(sitting.editor(), files / "ct.nrrd");
+  sitting.play("wait-job\n wait-idle\n expect dialog yes");
+  CHECK(sitting.editor().document() == next);
+  sitting.play("click Cancel\n wait-idle\n expect dialog no");
+  CHECK(sitting.editor().document() == next);
+}
+
+TEST_CASE("image: its form says so when the image is closed under it, and another body is not replaced by labels") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"});
+  const char* form = "click View/Display/\"Image settings\"/\"Labels from CT...\"\n wait-idle\n expect dialog yes";
+  sitting.play(form);
+  const auto image = sitting.editor().views->image;
+  editor::close_image(sitting.editor());
+  sitting.play("wait-idle\n expect dialog yes\n key Escape\n wait-idle");
+  sitting.editor().views->image = image;
+  sitting.play(form);
+  sitting.editor().jobs.set_at_once(0);  // the job waits until the other body is open
+  sitting.play("click \"Make labels\"");
+  const Document other = small_body();
+  sitting.editor().history.reset(other, "Open ball");
+  sitting.editor().jobs.set_at_once(2);
+  sitting.play("wait-job\n wait-idle");
+  CHECK(sitting.editor().document() == other);
+}
+
 TEST_CASE("image: the value under the pointer is that of the image") {
   const Scan files;
   Sitting sitting(files.folder.path(), {files / "ct.nrrd"});
@@ -251,10 +284,10 @@ TEST_CASE("image: the value under the pointer is that of the image") {
   const GreyVolume image = scan();
   const glm::ivec3 voxel(20, 21, 22);
   const auto value = editor::image_value_at(
-      *sitting.editor().views, world_from_voxel(image.grid) * (glm::dvec3(voxel) + glm::dvec3(0.3, -0.3, 0)));
+      *image_of(sitting.editor()).image, world_from_voxel(image.grid) * (glm::dvec3(voxel) + glm::dvec3(0.3, -0.3, 0)));
   REQUIRE(value);
   CHECK(std::abs(*value - double(image.voxels[static_cast<std::size_t>(image.grid.index(voxel))])) < 0.05);
-  CHECK_FALSE(editor::image_value_at(*sitting.editor().views, {500, 0, 0}));
+  CHECK_FALSE(editor::image_value_at(*image_of(sitting.editor()).image, {500, 0, 0}));
 }
 
 TEST_CASE("image: a project shows its image again, from beside the project too, and says when it is gone") {
@@ -293,6 +326,15 @@ TEST_CASE("image: a project shows its image again, from beside the project too, 
     sitting.play("wait-job\n wait-job\n wait-idle\n expect error none");
     CHECK_FALSE(sitting.editor().views->image);
     CHECK(sitting.test.fact("text:The image of this project is not shown: ct.nrrd") == "shown");
+    // Saved without its image, the project goes on naming it.
+    editor::save_project(sitting.editor());
+    sitting.play("wait-job\n wait-idle");
+  }
+  write_grey_volume(scan(), files / "moved/ct.nrrd");
+  {
+    Sitting sitting(files.folder.path(), {files / "moved/limb.limber"});
+    sitting.play("wait-job\n wait-job\n wait-idle\n expect error none");
+    CHECK(sitting.editor().views->image);
   }
 }
 
