@@ -11,7 +11,8 @@
 
 namespace limber {
 
-// Thresholds in Hounsfield units. [Ulzheimer & Flohr, Multislice CT, 2009: fat from -190 to -30, bone from about 200]
+// Thresholds in Hounsfield units. The values given here are chosen by Limber: air is -1000 and water 0 by definition,
+// and fat lies below water, muscle a little above it and bone far above it. A scan may need others.
 struct CtThresholds {
   double body = -300;  // from here on, voxels belong to a body
   double fat = -190;   // from here to `soft`: fat

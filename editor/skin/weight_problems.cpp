@@ -34,6 +34,17 @@ EditScope scope_of(const Editor& editor) {
 
 }  // namespace
 
+std::string why_not_these_weights(const Editor& editor) {
+  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
+  if (!seen_weights(editor)) return "Compute the weights first";
+  const auto& bones = editor.document().armature->bones;
+  const auto& names = editor.document().weights->bones();
+  if (!std::equal(bones.begin(), bones.end(), names.begin(), names.end(),
+                  [](const Bone& bone, const std::string& name) { return bone.name == name; }))
+    return "The weights belong to another rig: compute them again";
+  return "";
+}
+
 void start_finding_problems(Editor& editor) {
   const Document of = editor.document();
   start_task(editor, kFinding, [of, tissue = tissue_voxels(*editor.views, of)](Progress& progress) -> Finish {

@@ -19,6 +19,9 @@ struct FoundProblems {
   std::vector<bool> repaired;  // for each problem, true if the user has repaired it with its button in the list
 };
 
+// Returns why the weights cannot be searched or repaired: they are not shown, or belong to another rig. "": they can.
+std::string why_not_these_weights(const Editor& editor);
+
 // Starts a job that searches the weights for problems, which the sidebar then lists. The weights must belong to the
 // rig.
 void start_finding_problems(Editor& editor);

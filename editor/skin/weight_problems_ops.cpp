@@ -2,8 +2,6 @@
 // Operators that find weight problems, step through them and repair them.
 #include "editor/skin/weight_problems.h"
 
-#include <algorithm>
-
 #include "editor/context/operator.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
@@ -14,13 +12,7 @@ namespace limber::editor {
 namespace {
 
 std::string needs_weights(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
-  if (!seen_weights(editor)) return "Compute the weights first";
-  const auto& bones = editor.document().armature->bones;
-  const auto& names = editor.document().weights->bones();
-  if (!std::equal(bones.begin(), bones.end(), names.begin(), names.end(),
-                  [](const Bone& bone, const std::string& name) { return bone.name == name; }))
-    return "The weights belong to another rig: compute them again";
+  if (std::string why = why_not_these_weights(editor); !why.empty()) return why;
   return finds_problems(editor) ? "The search for problems is running" : "";
 }
 
