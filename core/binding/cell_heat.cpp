@@ -82,7 +82,7 @@ Scout solve_scout(const CellGraph& cells, const Sources& sources, const Progress
     if (bone < sources.size() && !sources[bone].empty()) block.push_back(static_cast<int>(bone));
     if (block.empty() || (bone < sources.size() && std::ssize(block) < Multigrid::kMostLanes)) continue;
     const auto lanes = std::ssize(block);
-    std::vector<float> b(size * lanes, 0.0f), x(size * lanes, 0.0f);
+    ZeroedVector<float> b(size * lanes), x(size * lanes);
     for (std::int64_t lane = 0; lane < lanes; ++lane)
       for (const CellSource& source : sources[block[lane]])
         b[scout.of_cell[source.cell] * lanes + lane] += source.on_scout;
@@ -202,7 +202,7 @@ class BrickCells {
 struct BlockTemperatures {
   std::vector<int> bones;
   std::vector<std::int32_t> cell;
-  std::vector<float> value;  // #cells x #bones
+  ZeroedVector<float> value;  // #cells x #bones
 };
 
 BlockTemperatures solve_block(const BoneBlock& block, BrickCells& chosen, const Scout& scout, const Sources& sources,
@@ -210,7 +210,7 @@ BlockTemperatures solve_block(const BoneBlock& block, BrickCells& chosen, const 
                               WeightsReport& report) {
   chosen.choose(block.bricks);
   const auto lanes = std::ssize(block.bones), size = std::ssize(chosen.whole());
-  std::vector<float> b(size * lanes, 0.0f), x(size * lanes, 0.0f);
+  ZeroedVector<float> b(size * lanes), x(size * lanes);
   chosen.for_cells([&](std::int64_t k) {
     for (std::int64_t lane = 0; lane < lanes; ++lane)
       x[k * lanes + lane] = scout.by_bone[block.bones[lane]][scout.of_cell[chosen.whole()[k]]];

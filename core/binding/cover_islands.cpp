@@ -6,7 +6,29 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/parallel.h"
+
 namespace limber {
+
+namespace {
+constexpr std::int64_t kGrain = 256;  // bricks per block
+
+// Returns the blocks of bricks in which a voxel has no bone, in ascending order.
+std::vector<std::int64_t> blocks_with_uncovered(const TissueVoxels& tissue, const BestFour& best) {
+  const auto bricks = std::ssize(tissue.bricks());
+  std::vector<std::uint8_t> has_uncovered((bricks + kGrain - 1) / kGrain);
+  parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::uint8_t& found = has_uncovered[begin / kGrain];
+    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
+      found |= !best.covered(tissue.brick_at(v), place);
+    });
+  });
+  std::vector<std::int64_t> blocks;
+  for (std::int64_t block = 0; block < std::ssize(has_uncovered); ++block)
+    if (has_uncovered[block]) blocks.push_back(block);
+  return blocks;
+}
+}  // namespace
 
 void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
                    WeightsReport& report, const TissueTable* tissues) {
@@ -19,7 +41,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   std::vector<Island> islands;
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   std::vector<std::pair<std::int64_t, glm::ivec3>> piece;
-  tissue.for_each([&](std::int64_t seed, const glm::ivec3& seed_voxel) {
+  const auto cover_from = [&](std::int64_t seed, const glm::ivec3& seed_voxel) {
     if (best.covered(tissue.brick_at(seed_voxel), seed)) return;
     // Gives each voxel of this connected component to bone 0 at first. This marks the voxel as visited until the bone
     // nearest to the whole component is known.
@@ -49,7 +71,9 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
         nearest = d, island.bone = static_cast<int>(b);
     for (const auto& [place, voxel] : piece) best.hold(tissue.brick_at(voxel), place, island.bone);
     islands.push_back(island);
-  });
+  };
+  for (const std::int64_t block : blocks_with_uncovered(tissue, best))
+    tissue.for_each(block * kGrain, std::min((block + 1) * kGrain, std::ssize(tissue.bricks())), cover_from);
 
   std::stable_sort(islands.begin(), islands.end(),
                    [](const Island& a, const Island& b) { return a.voxels > b.voxels; });

@@ -35,7 +35,7 @@ struct CoarseTemperatures {
 };
 
 void fill_sources(const std::vector<HeldFace>& held, const std::vector<int>& lane_of_bone, int lanes,
-                  std::vector<float>& b) {
+                  ZeroedVector<float>& b) {
   for (const HeldFace& face : held)
     if (const int lane = lane_of_bone[face.bone]; lane >= 0)
       b[std::int64_t{face.cell} * lanes + lane] += face.conductance;
@@ -79,7 +79,7 @@ CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vect
     }
     if (block.empty() || (bone < bone_count && std::ssize(block) < Multigrid::kMostLanes)) continue;
     const int lanes = static_cast<int>(block.size());
-    std::vector<float> b(size * lanes, 0.0f), x(size * lanes, 0.0f);
+    ZeroedVector<float> b(size * lanes), x(size * lanes);
     fill_sources(coarse.held, lane_of_bone, lanes, b);
     multigrid.solve(std::move(b), x, lanes, kCoarseResidual, 100);
     for (int lane = 0; lane < lanes; ++lane) {

@@ -187,7 +187,7 @@ HeatSolver::Sums HeatSolver::precondition() {
           cycle_->b[std::int64_t{to} * lanes_ + lane] += flow[k];
     });
   });
-  const std::vector<float>& correction = cycle_->run();
+  const ZeroedVector<float>& correction = cycle_->run();
   for_bricks([&](std::int64_t brick) {
     const std::int32_t* parent = &coarse_.parent_of_black[brick * HeatSystem::kColour];
     for (int slot = 0; slot < HeatSystem::kColour; ++slot)

@@ -229,14 +229,14 @@ class Multigrid::Solver {
     }
   }
 
-  MultigridReport solve(std::vector<float> b, std::vector<float>& x, double residual, int most_iterations,
+  MultigridReport solve(ZeroedVector<float> b, ZeroedVector<float>& x, double residual, int most_iterations,
                         const Progress& progress) {
     const CellGraph& graph = grid_.finest();
-    std::vector<float> p(b.size()), q(b.size());
+    ZeroedVector<float> p(b.size()), q(b.size());
     const Sums bb = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       for (int l = 0; l < Lanes; ++l) sums[l] += double(b[i * Lanes + l]) * b[i * Lanes + l];
     });
-    std::vector<float>& r = b;  // from here on, b is the residual
+    ZeroedVector<float>& r = b;  // from here on, b is the residual
     Sums rr = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
       float acc[Lanes];
       gather(graph, x.data(), i, acc);
@@ -262,7 +262,7 @@ class Multigrid::Solver {
     };
     Sums rz_before{};
     while (check() && report.iterations < most_iterations && !progress.cancelled()) {
-      std::vector<float>& z = at_[0].x;
+      ZeroedVector<float>& z = at_[0].x;
       cycle(0, r, false);
       const Sums rz = sum_over(graph.size(), [&](std::int64_t i, Sums& sums) {
         for (int l = 0; l < Lanes; ++l) sums[l] += double(r[i * Lanes + l]) * z[i * Lanes + l];
@@ -298,10 +298,10 @@ class Multigrid::Solver {
 
   // Computes x = M^-1 b on a level by relaxation sweeps, with one or two visits to the coarser levels between them. The
   // sweeps after a visit mirror those before it, so that M is symmetric.
-  void cycle(size_t level, const std::vector<float>& b, bool twice = true) {
+  void cycle(size_t level, const ZeroedVector<float>& b, bool twice = true) {
     const Level& here = grid_.levels_[level];
     const CellGraph& graph = here.graph;
-    std::vector<float>& x = at_[level].x;
+    ZeroedVector<float>& x = at_[level].x;
     if (here.parent.empty()) return solve_coarsest(graph, b, x);
 
     // Relaxes the red cells. Since x starts at 0, this needs no values of neighbours.
@@ -320,11 +320,11 @@ class Multigrid::Solver {
     relax(graph, 0, graph.red_count, b, x);
   }
 
-  const std::vector<float>& solution() const { return at_[0].x; }
+  const ZeroedVector<float>& solution() const { return at_[0].x; }
 
  private:
   struct Vectors {
-    std::vector<float> x, b;
+    ZeroedVector<float> x, b;
   };
 
   template <class Body>
@@ -361,8 +361,8 @@ class Multigrid::Solver {
     }
   }
 
-  void relax(const CellGraph& graph, std::int64_t begin, std::int64_t end, const std::vector<float>& b,
-             std::vector<float>& x) {
+  void relax(const CellGraph& graph, std::int64_t begin, std::int64_t end, const ZeroedVector<float>& b,
+             ZeroedVector<float>& x) {
     for_cells(begin, end, [&](std::int64_t i) {
       float acc[Lanes];
       gather(graph, x.data(), i, acc);
@@ -373,10 +373,10 @@ class Multigrid::Solver {
 
   // Adds the correction from the next coarser level. It must be called right after a half sweep over the black cells,
   // so that only red cells have a residual.
-  void visit_coarser(size_t level, const std::vector<float>& b) {
+  void visit_coarser(size_t level, const ZeroedVector<float>& b) {
     const Level& here = grid_.levels_[level];
-    std::vector<float>& x = at_[level].x;
-    std::vector<float>& coarse_b = at_[level + 1].b;
+    ZeroedVector<float>& x = at_[level].x;
+    ZeroedVector<float>& coarse_b = at_[level + 1].b;
     for_cells(std::ssize(here.first_red) - 1, [&](std::int64_t c) {
       float sum[Lanes] = {};
       for (std::int32_t k = here.first_red[c]; k < here.first_red[c + 1]; ++k) {
@@ -388,14 +388,14 @@ class Multigrid::Solver {
       for (int l = 0; l < Lanes; ++l) coarse_b[c * Lanes + l] = sum[l];
     });
     cycle(level + 1, coarse_b);
-    const std::vector<float>& correction = at_[level + 1].x;
+    const ZeroedVector<float>& correction = at_[level + 1].x;
     for_cells(here.graph.size(), [&](std::int64_t i) {
       if (here.parent[i] < 0) return;
       for (int l = 0; l < Lanes; ++l) x[i * Lanes + l] += correction[std::int64_t{here.parent[i]} * Lanes + l];
     });
   }
 
-  void solve_coarsest(const CellGraph& graph, const std::vector<float>& b, std::vector<float>& x) {
+  void solve_coarsest(const CellGraph& graph, const ZeroedVector<float>& b, ZeroedVector<float>& x) {
     if (grid_.coarsest_inverse_.empty()) {
       std::fill(x.begin(), x.end(), 0.0f);
       for (int sweep = 0; sweep < 8; ++sweep) {
@@ -425,7 +425,7 @@ template <int Lanes>
 class Multigrid::LanesCycle : public Multigrid::Cycle {
  public:
   explicit LanesCycle(const Multigrid& grid) : solver_(grid) { b.resize(grid.finest().size() * Lanes); }
-  const std::vector<float>& run() override {
+  const ZeroedVector<float>& run() override {
     solver_.cycle(0, b);
     return solver_.solution();
   }
@@ -451,7 +451,7 @@ auto with_lanes(int lanes, const Body& body) {
 }
 }  // namespace
 
-MultigridReport Multigrid::solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual,
+MultigridReport Multigrid::solve(ZeroedVector<float> b, ZeroedVector<float>& x, int lanes, double residual,
                                  int most_iterations, const Progress& progress) const {
   return with_lanes(lanes, [&](auto count) {
     return Solver<count>(*this).solve(std::move(b), x, residual, most_iterations, progress);

@@ -30,10 +30,10 @@ namespace limber {
 // A graph of cells and the faces between them. Neighbours always differ in colour, (x + y + z) mod 2; cells of colour 0
 // (red) come first.
 struct CellGraph {
-  glm::dvec3 spacing{1};               // size of a cell, mm; only the axes of small spacing are coarsened
-  std::vector<glm::i16vec3> position;  // position of each cell in units of `spacing`
-  std::int32_t red_count = 0;          // number of cells of colour 0
-  std::vector<std::int32_t> first;     // #cells + 1: index of each cell's first entry in `neighbour` and `conductance`
+  glm::dvec3 spacing{1};                // size of a cell, mm; only the axes of small spacing are coarsened
+  ZeroedVector<glm::i16vec3> position;  // position of each cell in units of `spacing`
+  std::int32_t red_count = 0;           // number of cells of colour 0
+  std::vector<std::int32_t> first;      // #cells + 1: index of each cell's first entry in `neighbour` and `conductance`
   ZeroedVector<std::int32_t> neighbour;
   ZeroedVector<float> conductance;
   std::vector<float> diagonal;  // sum of each cell's conductances to neighbours and to cells of fixed temperature
@@ -78,8 +78,8 @@ class Multigrid {
   struct Cycle {
     virtual ~Cycle() = default;
     // Returns x, which is valid until the next run.
-    virtual const std::vector<float>& run() = 0;
-    std::vector<float> b;  // right-hand sides, #cells x lanes
+    virtual const ZeroedVector<float>& run() = 0;
+    ZeroedVector<float> b;  // right-hand sides, #cells x lanes
   };
   // Makes a cycle that keeps a reference to this multigrid.
   std::unique_ptr<Cycle> cycle(int lanes) const;
@@ -88,7 +88,7 @@ class Multigrid {
   //   b, x       #cells x lanes; x contains the first guess
   //   lanes      number of right-hand sides, 1 to kMostLanes
   //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
-  MultigridReport solve(std::vector<float> b, std::vector<float>& x, int lanes, double residual, int most_iterations,
+  MultigridReport solve(ZeroedVector<float> b, ZeroedVector<float>& x, int lanes, double residual, int most_iterations,
                         const Progress& progress = no_progress()) const;
 
  private:

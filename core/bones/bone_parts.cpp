@@ -520,7 +520,7 @@ std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const Lab
 BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                       const Armature& armature, Progress& progress, const BoneMap& map) {
   BoneParts result;
-  result.part_of.assign(tissue.size(), 0);
+  result.part_of.resize(tissue.size());
   progress.update("bones", 0);
   const std::vector<TissueKind> kinds = tissues.kinds();
   const auto labels = bones_of_labels(tissues, armature, map);

@@ -30,7 +30,7 @@ struct BoneParts {
     glm::dvec3 centre;  // centre of the part's voxels; world, mm
   };
   std::vector<Part> parts;
-  std::vector<std::uint16_t> part_of;  // for each tissue voxel: 1 + index in `parts`; 0: not bone
+  ZeroedVector<std::uint16_t> part_of;  // for each tissue voxel: 1 + index in `parts`; 0: not bone
 
   // A rig bone that voxels of a label follow, and how this assignment was found.
   struct Identity {

@@ -16,8 +16,8 @@ namespace limber {
 
 // The bone voxels, each with those of its 26 neighbours that are bone and connected to it.
 struct BoneGraph {
-  std::vector<std::int64_t> place;  // index in the list of tissue voxels
-  std::vector<glm::ivec3> voxel;
+  ZeroedVector<std::int64_t> place;  // index in the list of tissue voxels
+  ZeroedVector<glm::ivec3> voxel;
   ZeroedVector<std::array<std::int32_t, 26>> neighbour;  // index in the graph; kNotBone or kOutside: no neighbour
   std::int64_t size() const { return std::ssize(place); }
   // Allocates `count` voxels, which the caller's threads then fill.

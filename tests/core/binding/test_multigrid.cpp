@@ -53,7 +53,7 @@ CellGraph box_graph(const glm::ivec3& size, const glm::dvec3& spacing, double sh
   return graph;
 }
 
-double relative_residual(const CellGraph& graph, const std::vector<float>& b, const std::vector<float>& x, int lanes,
+double relative_residual(const CellGraph& graph, const ZeroedVector<float>& b, const ZeroedVector<float>& x, int lanes,
                          int lane) {
   double rr = 0, bb = 0;
   for (std::int64_t i = 0; i < graph.size(); ++i) {
@@ -66,9 +66,9 @@ double relative_residual(const CellGraph& graph, const std::vector<float>& b, co
   return std::sqrt(rr / bb);
 }
 
-std::vector<float> random_sources(std::int64_t count) {
+ZeroedVector<float> random_sources(std::int64_t count) {
   std::mt19937 random(5);
-  std::vector<float> b(count);
+  ZeroedVector<float> b(count);
   for (float& value : b) value = random() % 16 == 0 ? 1.0f : 0.0f;
   return b;
 }
@@ -77,8 +77,8 @@ std::vector<float> random_sources(std::int64_t count) {
 TEST_CASE("multigrid: the residual it states is the residual, for any number of right sides") {
   for (int lanes = 1; lanes <= Multigrid::kMostLanes; ++lanes) {
     const CellGraph graph = box_graph({21, 18, 25}, glm::dvec3(1), 0.2, lanes);
-    const std::vector<float> b = random_sources(graph.size() * lanes);
-    std::vector<float> x(b.size());
+    const ZeroedVector<float> b = random_sources(graph.size() * lanes);
+    ZeroedVector<float> x(b.size());
     const MultigridReport report = Multigrid(graph).solve(b, x, lanes, 1e-5, 100);
     CHECK(report.residual <= 1e-5);
     double worst = 0;
@@ -93,8 +93,8 @@ TEST_CASE("multigrid: iterations stay few when the body grows and when voxels ar
                                                                                     {{40, 40, 40}, {0.5, 3, 20}},
                                                                                     {{60, 60, 20}, {0.28, 0.28, 1}}}) {
     const CellGraph graph = box_graph(size, spacing, 0.05, 3);
-    const std::vector<float> b = random_sources(graph.size());
-    std::vector<float> x(b.size());
+    const ZeroedVector<float> b = random_sources(graph.size());
+    ZeroedVector<float> x(b.size());
     const MultigridReport report = Multigrid(graph).solve(b, x, 1, 1e-5, 100);
     CHECK(report.residual <= 1e-5);
     CHECK(report.iterations <= 16);
@@ -103,11 +103,11 @@ TEST_CASE("multigrid: iterations stay few when the body grows and when voxels ar
 
 TEST_CASE("multigrid: 1, 2 and 4 threads give the same bits") {
   const CellGraph graph = box_graph({40, 30, 35}, glm::dvec3(1), 0.3, 9);
-  const std::vector<float> b = random_sources(graph.size() * 3);
-  std::vector<std::vector<float>> results;
+  const ZeroedVector<float> b = random_sources(graph.size() * 3);
+  std::vector<ZeroedVector<float>> results;
   for (int threads : {1, 2, 4}) {
     const ThreadCount limit(threads);
-    std::vector<float> x(b.size());
+    ZeroedVector<float> x(b.size());
     Multigrid(graph).solve(b, x, 3, 1e-6, 100);
     results.push_back(x);
   }
