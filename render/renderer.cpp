@@ -10,6 +10,18 @@
 
 namespace limber::render {
 
+std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
+                                            Display display, int largest_texture, Progress& progress) {
+  auto prepared = std::make_shared<PreparedBody>(PreparedBody{volume, drawn_volume(volume, largest_texture), {}});
+  const std::shared_ptr<const LabelVolume> drawn = prepared->volume.drawn();
+  const std::vector<LabelSet> layers = layers_of(looks, display, prepared->volume.exposure);
+  for (const LabelSet& set : layers) {
+    progress.update("picture", double(prepared->layers.size()) / double(layers.size()));
+    prepared->layers.push_back(prepared_field(*drawn, prepared->volume.layout, set));
+  }
+  return prepared;
+}
+
 Renderer::Renderer(int largest_texture) : resources_(std::make_unique<PassResources>(largest_texture)) {}
 Renderer::~Renderer() = default;
 void Renderer::begin_frame(double upload_seconds) {
@@ -17,6 +29,8 @@ void Renderer::begin_frame(double upload_seconds) {
       UploadTime{std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                         std::chrono::duration<double>(upload_seconds))};
 }
+bool Renderer::upload(PreparedBody& prepared) { return resources_->upload(prepared); }
+int Renderer::largest_texture() const { return resources_->largest_texture; }
 void Renderer::average_at_rest(int pictures) { resources_->pictures_at_rest = std::max(0, pictures); }
 void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return resources_->note; }

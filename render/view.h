@@ -11,6 +11,7 @@
 
 #include <glm/glm.hpp>
 
+#include "core/base/progress.h"
 #include "core/volume/label_volume.h"
 #include "render/image_io.h"
 #include "render/scene/camera.h"
@@ -20,6 +21,15 @@
 namespace limber::render {
 
 struct PassResources;
+struct PreparedBody;
+
+// Computes all that is uploaded of a label volume before it can be drawn. It needs no OpenGL, so any thread may do it
+// while others draw; Renderer::upload() then uploads the result over several frames. Throws Cancelled, and Error when
+// the volume does not fit in textures.
+//   looks, display   with which the volume will be drawn; with others, some of it is computed again
+//   largest_texture  Renderer::largest_texture()
+std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
+                                            Display display, int largest_texture, Progress& progress);
 
 // The resources of one OpenGL context: textures of the volumes in use, and shader programs.
 class Renderer {
@@ -39,6 +49,11 @@ class Renderer {
   // weights. While changes wait for their upload, views are not complete. If this function is never called, each draw
   // uploads everything.
   void begin_frame(double upload_seconds);
+
+  // Uploads a prepared body: as much as the frame's time limit allows. Returns true when the body can be drawn without
+  // a delay. Throws Error when the driver has no memory for it.
+  bool upload(PreparedBody& prepared);
+  int largest_texture() const;  // largest number of texels per axis of a 3D texture
 
   // Sets how many pictures are averaged when nothing moves; the default is six. Fewer pictures are complete sooner, but
   // less smooth. With 0 the picture stays at every third pixel, for tests that need no good picture.

@@ -279,6 +279,7 @@ void Editor::draw_views() {
   ended(*this, "pose");
   const Document shown = shown_document(*this);
   views->renderer.begin_frame(kUploadTime);
+  if (views->arriving->upload(views->renderer)) touch();
   for (const ViewPlace& place : layout.view_places) {
     draw_view_picture(*views, shown, layout, place, now);
     ended(*this, place.id == ViewId::Body ? "body" : "slice");

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/project/document.h"
 #include "core/volume/tissue_voxels.h"
+#include "editor/context/arriving_body.h"
 #include "editor/context/layout.h"
 #include "editor/context/tissue_bounds.h"
 #include "render/scene/scene.h"
@@ -87,6 +88,7 @@ struct Views {
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;
+  std::shared_ptr<ArrivingBodies> arriving = std::make_shared<ArrivingBodies>();
   BodyView body;
   std::array<SliceState, 3> slices;  // indexed by render::SliceAxis
   glm::dvec3 cross_hair{0};          // world, mm

@@ -10,14 +10,23 @@ namespace limber::editor {
 
 namespace fs = std::filesystem;
 
-std::string thumbnail_png(Editor& editor) {
-  Views& views = *editor.views;
-  if (!editor.document().volume) return "";
-  update_scene(views, editor.document(), editor.selection, true);
-  render::Scene scene = views.scene;
+namespace {
+
+render::Scene thumbnail_scene(Editor& editor) {
+  update_scene(*editor.views, editor.document(), editor.selection, true);
+  render::Scene scene = editor.views->scene;
   scene.grid = false;
   scene.outlined.reset();
   scene.dark_background = true;
+  return scene;
+}
+
+}  // namespace
+
+std::string thumbnail_png(Editor& editor) {
+  Views& views = *editor.views;
+  if (!editor.document().volume) return "";
+  const render::Scene scene = thumbnail_scene(editor);
   render::View3D picture(views.renderer);
   // Advance the time given to the renderer by a second per call. The renderer refines the picture of a view that has
   // not changed for a while; so it draws full detail without a real wait.
@@ -34,14 +43,27 @@ Path cached_thumbnail(const Path& cache, const Path& path) {
 }
 
 void keep_thumbnail(Editor& editor, const Path& path) {
-  if (editor.folders.cache.empty()) return;
-  try {
-    const Path file = cached_thumbnail(editor.folders.cache, path);
-    fs::create_directories(file.parent_path());
-    write_file_atomically(file, thumbnail_png(editor));
-  } catch (const Error&) {
-  } catch (const fs::filesystem_error&) {
-  }
+  if (editor.folders.cache.empty() || !editor.document().volume) return;
+  const auto picture = std::make_shared<render::View3D>(editor.views->renderer);
+  const Path file = cached_thumbnail(editor.folders.cache, path);
+  // One step of the picture in each frame, after the views have shown their own pictures.
+  editor.each_frame.push_back([picture, file, time = 0.0, scene = thumbnail_scene(editor),
+                               camera = editor.views->body.camera](Editor& e) mutable {
+    e.touch();
+    if (e.layout.place_of(ViewId::Body) && !e.views->body.picture->complete()) return true;
+    picture->draw(scene, camera, kThumbnailSize, time += 1, 1);
+    if (!picture->complete()) return true;
+    start_task(e, "", [file, image = picture->read()](Progress&) -> Finish {
+      try {
+        fs::create_directories(file.parent_path());
+        write_file_atomically(file, render::png_of(image));
+      } catch (const Error&) {
+      } catch (const fs::filesystem_error&) {
+      }
+      return {};
+    });
+    return false;
+  });
 }
 
 void look_at_recents(Editor& editor) {

@@ -16,8 +16,8 @@ inline constexpr glm::ivec2 kThumbnailSize{240, 160};  // pixels
 
 // Renders the body as the 3D view shows it now. Returns the picture as the bytes of a PNG file; "" without a volume.
 std::string thumbnail_png(Editor& editor);
-// Renders the body and stores the picture in the cache folder, as the picture of the volume file at `path`. (A project
-// file contains its own picture.) Failures are ignored.
+// Renders the body in the next frames and stores the picture in the cache folder, as the picture of the volume file at
+// `path`. (A project file contains its own picture.) Failures are ignored.
 void keep_thumbnail(Editor& editor, const Path& path);
 // Returns the path of a picture in the cache folder: the picture of the volume file at `path`. The path depends on the
 // time of the file's last change, so that no outdated picture is found.

@@ -368,34 +368,34 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
 
 void open_volume(Editor& editor, const Path& path, Then then) {
   ask_about_unsaved(editor, [path, then](Editor& e) {
-    const int job =
-        start_task(e, "Open " + path.filename().string(),
-                   [path, then, agreed = e.history.revision()](Progress& progress) -> Finish {
-                     ReadVolume read = read_labels_or_image(path, progress);
-                     if (!read.labels)
-                       return [read, path, agreed](Editor& ed) { take_or_show(ed, read, path, "", {}, agreed); };
-                     VolumeFile& file = *read.labels;
-                     auto opened = std::make_shared<Opened>();
-                     opened->document = with_volume(file);
-                     opened->document.volume = shared(std::move(file.volume));
-                     opened->extents = shared(extents_of(opened->document.volume));
-                     opened->inputs = inputs_of(FileKind::Volume, path);
-                     opened->name = path.stem().string();
-                     opened->label = "Open " + path.filename().string();
-                     opened->agreed = agreed;
-                     opened->then = [path, then](Editor& ed) {
-                       keep_thumbnail(ed, path);
-                       if (then) then(ed);
-                     };
-                     const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
-                       warn_of(ed, path, warnings);
-                       add_recent(ed.recent_files, path, std::time(nullptr));
-                       replace_project(ed, opened);
-                     };
-                     return [take, path, agreed, read = std::move(read)](Editor& ed) {
-                       take_or_show(ed, read, path, "Open as labels", take, agreed);
-                     };
-                   });
+    const int job = start_task(
+        e, "Open " + path.filename().string(),
+        [path, then, agreed = e.history.revision(), make_ready = body_maker(*e.views)](Progress& progress) -> Finish {
+          ReadVolume read = read_labels_or_image(path, progress);
+          if (!read.labels) return [read, path, agreed](Editor& ed) { take_or_show(ed, read, path, "", {}, agreed); };
+          VolumeFile& file = *read.labels;
+          auto opened = std::make_shared<Opened>();
+          opened->document = with_volume(file);
+          opened->document.volume = shared(std::move(file.volume));
+          opened->extents = shared(extents_of(opened->document.volume));
+          if (read.doubt.empty()) make_ready(opened->document, progress);
+          opened->inputs = inputs_of(FileKind::Volume, path);
+          opened->name = path.stem().string();
+          opened->label = "Open " + path.filename().string();
+          opened->agreed = agreed;
+          opened->then = [path, then](Editor& ed) {
+            keep_thumbnail(ed, path);
+            if (then) then(ed);
+          };
+          const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
+            warn_of(ed, path, warnings);
+            add_recent(ed.recent_files, path, std::time(nullptr));
+            replace_project(ed, opened);
+          };
+          return [take, path, agreed, read = std::move(read)](Editor& ed) {
+            take_or_show(ed, read, path, "Open as labels", take, agreed);
+          };
+        });
     e.step_of_job[job] = StepOfWork::Prepare;
   });
 }
@@ -447,7 +447,8 @@ void open_sample(Editor& editor, Sample sample, Then then) {
   ask_about_unsaved(editor, [sample, then](Editor& e) {
     const SampleFacts& facts = facts_of(sample);
     const int job = start_task(e, "Make sample: " + std::string(facts.name),
-                               [sample, then, &facts, agreed = e.history.revision()](Progress& progress) -> Finish {
+                               [sample, then, &facts, agreed = e.history.revision(),
+                                make_ready = body_maker(*e.views)](Progress& progress) -> Finish {
                                  const bool arm = sample == Sample::Arm || sample == Sample::ArmXray;
                                  Phantom phantom = arm ? make_arm_phantom(2, progress) : make_body_phantom(4, progress);
                                  auto opened = std::make_shared<Opened>();
@@ -463,6 +464,7 @@ void open_sample(Editor& editor, Sample sample, Then then) {
                                  document.volume = shared(std::move(phantom.volume));
                                  opened->extents = shared(extents_of(document.volume));
                                  document.tissues = shared(std::move(phantom.tissues));
+                                 make_ready(document, progress);
                                  document.volume_type = shared(FileType{"NRRD", "uint8", true});
                                  document.armature = shared(std::move(phantom.armature));
                                  add_clip(document, clip_of(shared(std::move(phantom.motion)), "Motion"));

@@ -198,7 +198,8 @@ void open_project(Editor& editor, const Path& path, Then then, Leftover leftover
   ask_about_unsaved(editor, [file, then, leftover](Editor& e) {
     start_task(
         e, "Open " + file.filename().string(),
-        [file, then, leftover, settings = settings_of(e), agreed = e.history.revision()](Progress& progress) -> Finish {
+        [file, then, leftover, settings = settings_of(e), agreed = e.history.revision(),
+         make_ready = body_maker(*e.views)](Progress& progress) -> Finish {
           auto opened = std::make_shared<Opened>();
           Project project;
           opened->session = Session::open(file, project, progress, settings);
@@ -206,6 +207,7 @@ void open_project(Editor& editor, const Path& path, Then then, Leftover leftover
           opened->editor = std::move(project.editor);
           if (opened->document.volume)
             opened->extents = std::make_shared<const Extents>(extents_of(opened->document.volume));
+          make_ready(opened->document, progress);
           opened->name = file.filename().string();
           opened->label = "Open " + file.filename().string();
           opened->agreed = agreed;

@@ -43,22 +43,26 @@ void start_labels(Editor& editor, const CtThresholds& thresholds) {
   image_of(editor);
   const auto image = editor.views->image->image;
   const auto before = editor.document().volume;
-  const int id = editor.jobs.start("Labels from CT", [image, before, thresholds](Progress& progress) -> Edit {
-    CtLabels labels = labels_of_ct(*image, thresholds, progress);
-    const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
-    const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
-    return [volume, tissues, before](const Document& now) {
-      if (now.volume != before) throw Error("another volume was opened meanwhile", "Labels from CT", "start it again");
-      Document next;
-      next.volume = volume;
-      next.tissues = tissues;
-      next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
-      next.clips = now.clips;
-      next.clip = now.clip;
-      next.frame = now.frame;
-      return next;
-    };
-  });
+  const int id = editor.jobs.start(
+      "Labels from CT",
+      [image, before, thresholds, make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
+        CtLabels labels = labels_of_ct(*image, thresholds, progress);
+        const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
+        const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
+        make_ready({.volume = volume, .tissues = tissues}, progress);
+        return [volume, tissues, before](const Document& now) {
+          if (now.volume != before)
+            throw Error("another volume was opened meanwhile", "Labels from CT", "start it again");
+          Document next;
+          next.volume = volume;
+          next.tissues = tissues;
+          next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
+          next.clips = now.clips;
+          next.clip = now.clip;
+          next.frame = now.frame;
+          return next;
+        };
+      });
   editor.step_of_job[id] = StepOfWork::Prepare;
   editor.after_job[id] = [](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;

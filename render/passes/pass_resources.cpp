@@ -2,6 +2,7 @@
 #include "render/passes/pass_resources.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -34,11 +35,43 @@ PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume
   for (const auto& body : bodies_)
     if (same(body->key, volume)) return *body;
   std::erase_if(bodies_, [](const auto& body) { return body->key.expired(); });
+  if (arriving_ && same(arriving_->key, volume)) {  // the rest of its uploads cannot wait any longer
+    arriving_->volume->upload(nullptr);
+    for (const auto& layer : arriving_->layers) layer->upload(*arriving_->volume, nullptr);
+    note = arriving_->volume->note();
+    return *bodies_.emplace_back(std::move(arriving_));
+  }
   auto fresh = std::make_unique<Body>();
   fresh->key = volume;
   fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
   note = fresh->volume->note();
   return *bodies_.emplace_back(std::move(fresh));
+}
+
+bool PassResources::has(const std::shared_ptr<const LabelVolume>& volume) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return same(body->key, volume); });
+}
+
+bool PassResources::upload(PreparedBody& prepared) {
+  if (has(prepared.original)) return true;
+  UploadTime* time = upload_time ? &*upload_time : nullptr;
+  if (!arriving_ || !same(arriving_->key, prepared.original)) {
+    arriving_ = std::make_unique<Body>();
+    arriving_->key = prepared.original;
+    arriving_->volume = std::make_unique<VolumeTexture>(std::move(prepared.volume));
+  }
+  Body& body = *arriving_;
+  body.volume->upload(time);
+  if (!body.volume->complete()) return false;
+  for (PreparedField& field : std::exchange(prepared.layers, {}))
+    body.layers.push_back(std::make_unique<VisibleField>(*body.volume, std::move(field)));
+  for (const auto& layer : body.layers) {
+    layer->upload(*body.volume, time);
+    if (!layer->complete()) return false;
+  }
+  note = body.volume->note();
+  bodies_.push_back(std::move(arriving_));
+  return true;
 }
 
 const LooksTexture& PassResources::looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks,

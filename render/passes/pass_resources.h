@@ -22,11 +22,18 @@
 #include "render/textures/appearance_texture.h"
 #include "render/textures/grey_texture.h"
 #include "render/textures/inverse_map_texture.h"
-#include "render/textures/surface_field.h"
+#include "render/textures/visible_field.h"
 #include "render/textures/volume_texture.h"
 #include "render/textures/weight_texture.h"
 
 namespace limber::render {
+
+// A label volume and the fields of its layers, ready for upload (prepared_body()).
+struct PreparedBody {
+  std::shared_ptr<const LabelVolume> original;
+  DrawnVolume volume;
+  std::vector<PreparedField> layers;
+};
 
 struct PassResources {
   //   largest  largest number of texels per axis of a 3D texture; 0: as many as the driver allows
@@ -43,6 +50,10 @@ struct PassResources {
     std::unique_ptr<WeightTexture> weights;  // the weights that were shown last
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
+  bool has(const std::shared_ptr<const LabelVolume>& volume) const;  // true if body() need not upload anything
+  // Uploads a prepared body: as much as the frame's time limit allows. Returns true once body() has it. Later calls
+  // must pass the same body until then. Throws Error when the driver has no memory for it.
+  bool upload(PreparedBody& prepared);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
   // Returns the field of a layer, and first computes it if it is missing or out of date.
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
@@ -78,6 +89,7 @@ struct PassResources {
     std::unique_ptr<LooksTexture> texture;
   };
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::unique_ptr<Body> arriving_;  // the prepared body that is being uploaded
   std::vector<Looks> looks_;
   // The grey images that were shown last, at most two: those of two compared results.
   std::vector<std::unique_ptr<GreyTexture>> greys_;

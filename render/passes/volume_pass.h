@@ -22,7 +22,7 @@
 #include "render/passes/view_rays.h"
 #include "render/scene/scene.h"
 #include "render/textures/inverse_map_texture.h"
-#include "render/textures/surface_field.h"
+#include "render/textures/visible_field.h"
 #include "render/textures/volume_texture.h"
 
 namespace limber::render {

@@ -51,23 +51,30 @@ std::vector<int> last_layers(const LabelLooks& looks, Display display, const std
 
 }  // namespace
 
-LooksTexture::LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure)
-    : texture_(gl::Texture::create()) {
+std::vector<LabelSet> layers_of(const LabelLooks& looks, Display display, const std::vector<float>& exposure) {
   const std::vector<int> last = last_layers(looks, display, exposure);
-  layers_.assign(1, LabelSet(kLabels));
+  std::vector<LabelSet> layers(display == Display::XRay ? 2 : 1, LabelSet(kLabels));
+  for (size_t label = 1; label < std::min(looks.size(), kLabels); ++label) {
+    if (!is_seen(looks[label], display)) continue;
+    const auto count = static_cast<size_t>(last[label]) + 1;
+    if (layers.size() < count) layers.resize(count, LabelSet(kLabels));
+    for (size_t layer = 0; layer < count; ++layer) layers[layer][label] = 1;
+  }
+  return layers;
+}
+
+LooksTexture::LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure)
+    : texture_(gl::Texture::create()),
+      layers_(layers_of(looks, display, exposure)) {
+  const std::vector<int> last = last_layers(looks, display, exposure);
   std::vector<glm::u16vec4> texels(kLabels, glm::u16vec4(0));
   for (size_t label = 1; label < std::min(looks.size(), kLabels); ++label) {
     const LabelLook& look = looks[label];
     if (!is_seen(look, display)) continue;
-    if (layers_.size() <= static_cast<size_t>(last[label]))
-      layers_.resize(static_cast<size_t>(last[label]) + 1, LabelSet(kLabels));
     const int opacity = display == Display::Tissue ? in_255(look.opacity) : 255;
     texels[label] = {in_255(look.colour.r), in_255(look.colour.g), in_255(look.colour.b),
                      static_cast<std::uint16_t>((last[label] + 1) | opacity << 3)};
   }
-  for (size_t label = 1; label < std::min(looks.size(), kLabels); ++label)
-    for (int layer = 0; layer < (texels[label].a & 7); ++layer) layers_[static_cast<size_t>(layer)][label] = 1;
-  if (display == Display::XRay) layers_.resize(2, LabelSet(kLabels));
 
   glBindTexture(GL_TEXTURE_2D, texture_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -17,6 +17,11 @@ namespace limber::render {
 
 inline constexpr int kMostLayers = 5;
 
+// Returns the layers of a body: for each the set of its labels. Layer 0 has all visible labels, and each next one has
+// those that lie behind the layer before it.
+//   exposure  see LooksTexture
+std::vector<LabelSet> layers_of(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
+
 class LooksTexture {
  public:
   //   exposure  for each of the 65536 labels: the share of its voxels that touch air, which distinguishes outer from

@@ -2,7 +2,6 @@
 #include "render/textures/grey_texture.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
 #include <epoxy/gl.h>
@@ -54,7 +53,7 @@ void GreyTexture::upload(UploadTime* time) {
   const std::int64_t slice = std::int64_t{grid_.size.x} * grid_.size.y;
   const int lot = static_cast<int>(std::max<std::int64_t>(1, kAtOnce / std::max<std::int64_t>(1, slice)));
   while (!complete()) {
-    if (time && time->used && std::chrono::steady_clock::now() >= time->until) return;
+    if (time && time->is_over()) return;
     const int count = std::min(lot, grid_.size.z - next_slice_);
     glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, next_slice_, grid_.size.x, grid_.size.y, count, kLevels.pixels,
                     kLevels.type, &drawn->levels[static_cast<std::size_t>(slice * next_slice_)]);

@@ -8,8 +8,8 @@
 #include "core/volume/grey_levels.h"
 #include "render/gl/object.h"
 #include "render/gl/program.h"
+#include "render/textures/upload_time.h"
 #include "render/textures/volume_texture.h"
-#include "render/textures/weight_texture.h"
 
 namespace limber::render {
 

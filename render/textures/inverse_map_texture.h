@@ -14,7 +14,7 @@
 #include "render/gl/object.h"
 #include "render/gl/program.h"
 #include "render/textures/brick_hull.h"
-#include "render/textures/surface_field.h"
+#include "render/textures/visible_field.h"
 #include "render/textures/volume_texture.h"
 
 namespace limber::render {

@@ -6,16 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include <epoxy/gl.h>
-
-#include "core/base/error.h"
 #include "core/base/parallel.h"
 
 namespace limber::render {
 
 namespace {
-
-constexpr Format3D kField = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, true};
 
 constexpr int kReach = 2;                  // farthest neighbour that the blur of a voxel reads, voxels
 constexpr int kRead = kSlot + 2 * kReach;  // edge length of the region on which the field of a slot depends, voxels
@@ -214,27 +209,16 @@ bool changes_any(const std::vector<Label>& labels, const LabelSet& before, const
 
 }  // namespace
 
-VisibleField::VisibleField(const VolumeTexture& volume, LabelSet set) : set_(std::move(set)) {
-  const BlockLayout& layout = volume.layout();
-  for (int a = 0; a < layout.atlases; ++a) {
-    atlases_.push_back(gl::Texture::create());
-    if (!allocate(atlases_.back(), layout.slots * kSlot, kField))
-      throw Error("the volume cannot be shown: the graphics driver has no room for it", "its smooth surface",
-                  "re-grid it with a larger spacing");
-  }
-  index_ = gl::Texture::create();
-  occupancy_texture_ = gl::Texture::create();
-  const LabelSet wanted = std::exchange(set_, LabelSet{});
-  update(volume, wanted);
-}
-
-void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
-  const BlockLayout& layout = volume.layout();
+SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set) {
   const size_t slots = layout.block_of_slot.size();
   const glm::ivec3 bricks = layout.bricks();
   const auto brick_count = static_cast<size_t>(bricks.x) * bricks.y * bricks.z;
   const bool first = set_.empty();
-  const std::shared_ptr<const LabelVolume> labels = volume.drawn();
+  bricks_ = bricks;
+  if (slots == 0) {  // an empty volume, such as that of a grey image
+    set_ = set;
+    return {};
+  }
   if (first) {
     labels_of_slot_.resize(slots);
     slot_present_.assign(slots, 0);
@@ -254,7 +238,7 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
     std::vector<std::uint8_t> along_x;
     std::vector<std::uint16_t> along_y;
     const glm::ivec3 block = layout.block_of_slot[s];
-    const int members = gather(*labels, block, set, member, first ? &labels_of_slot_[s] : nullptr);
+    const int members = gather(drawn, block, set, member, first ? &labels_of_slot_[s] : nullptr);
     if (members == 0) fields[s].assign(kSlotTexels, 0);
     else if (members == kRead * kRead * kRead) fields[s].assign(kSlotTexels, 255);
     else blur(member, fields[s], along_x, along_y);
@@ -302,38 +286,29 @@ void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
   distance_ = std::move(distance);
   set_ = set;
 
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  blocks_computed_ = 0;
-  for (size_t s = 0; s < slots; ++s) {
-    if (fields[s].empty()) continue;
-    ++blocks_computed_;
-    write_distances(fields[s], layout, layout.block_of_slot[s], distance_);
-    const glm::ivec3 at = layout.place_of(static_cast<int>(s)) * kSlot;
-    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout.atlas_of(static_cast<int>(s)))].name());
-    glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kField.pixels, kField.type,
-                    fields[s].data());
-  }
-
-  upload_index(index_, layout, slot_present_);
-  bricks_ = bricks;
-  ++revision_;
-  build_hull(layout);
-  build_upward();
-  build_occupancy(volume);
-  gl::check_gl("the upload of a visible set");
+  parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto s = static_cast<size_t>(begin); s < static_cast<size_t>(end); ++s)
+      if (!fields[s].empty()) write_distances(fields[s], layout, layout.block_of_slot[s], distance_);
+  });
+  find_upward();
+  return fields;
 }
 
-void VisibleField::build_hull(const BlockLayout& layout) {
-  const glm::ivec3 size = layout.bricks();
+Hull::Faces SurfaceField::hull() const {
+  const glm::ivec3& size = bricks_;
+  const auto index = [&](const glm::ivec3& b) {
+    return static_cast<size_t>(b.x + std::int64_t{size.x} * (b.y + std::int64_t{size.y} * b.z));
+  };
+  Hull::Faces faces;
+  if (std::find(in_hull_.begin(), in_hull_.end(), 1) == in_hull_.end()) return faces;
   const std::vector<std::uint8_t> outside = outside_of(in_hull_, size);
   const auto is_outside = [&](const glm::ivec3& b) {
     if (glm::any(glm::lessThan(b, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(b, size))) return true;
-    return outside[static_cast<size_t>(layout.brick_index(b))] != 0;
+    return outside[index(b)] != 0;
   };
 
   // Neighbouring faces share their corners, so that no gaps open between them. To find shared corners, only two layers
   // of the lattice of corners are kept in memory.
-  Hull::Faces faces;
   const auto lattice_layer = static_cast<size_t>(size.x + 1) * (size.y + 1);
   constexpr std::uint32_t kNone = ~0u;
   std::vector<std::uint32_t> below(lattice_layer, kNone), above(lattice_layer, kNone);
@@ -350,7 +325,7 @@ void VisibleField::build_hull(const BlockLayout& layout) {
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
         const glm::ivec3 brick(x, y, z);
-        if (!in_hull_[static_cast<size_t>(layout.brick_index(brick))]) continue;
+        if (!in_hull_[index(brick)]) continue;
         for (int side = 0; side < 6; ++side) {
           const int axis = side / 2, up = side % 2;
           glm::ivec3 neighbour = brick;
@@ -368,20 +343,12 @@ void VisibleField::build_hull(const BlockLayout& layout) {
     std::swap(below, above);
     std::fill(above.begin(), above.end(), kNone);
   }
-
-  hull_.upload(faces, kBrick, glm::dvec3(0));
+  return faces;
 }
 
-// Builds the occupancy texture: for each brick the share of its voxels whose labels are visible, blurred over the
-// bricks around it. It tells how enclosed a position is, from which the soft shadows in creases are computed.
-void VisibleField::build_occupancy(const VolumeTexture& volume) {
-  const BlockLayout& layout = volume.layout();
-  const glm::ivec3 size = layout.bricks();
-  if (glm::any(glm::greaterThan(size, glm::ivec3(volume.largest_texture())))) {
-    const std::uint8_t nothing = 0;
-    allocate(occupancy_texture_, glm::ivec3(1), kField, &nothing);
-    return;
-  }
+std::vector<std::uint8_t> SurfaceField::occupancy() const {
+  const glm::ivec3& size = bricks_;
+  if (occupancy_.empty()) return std::vector<std::uint8_t>(static_cast<size_t>(size.x) * size.y * size.z);
   std::vector<std::uint8_t> blurred = occupancy_, line(static_cast<size_t>(std::max({size.x, size.y, size.z})));
   const std::array<std::ptrdiff_t, 3> stride = {1, size.x, std::ptrdiff_t{size.x} * size.y};
   for (int axis = 0; axis < 3; ++axis) {
@@ -398,18 +365,13 @@ void VisibleField::build_occupancy(const VolumeTexture& volume) {
         }
       }
   }
-  allocate(occupancy_texture_, size, kField, blurred.data());
+  return blurred;
 }
 
-int VisibleField::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
-  first = bind_atlases(program, "u_field", atlases_, first);
-  program.set_texture("u_index", first++, GL_TEXTURE_3D, index_.name());
-  program.set("u_texel", 1.0f / glm::vec3(volume.layout().slots * kSlot));
-  return first;
-}
-
-void VisibleField::build_upward() {
+void SurfaceField::find_upward() {
   const glm::ivec3 size = bricks_ * 2;
+  upward_.clear();
+  if (std::find(met_.begin(), met_.end(), 1) == met_.end()) return;
   const std::int64_t row = size.x, layer = row * size.y;
   upward_.resize(met_.size());
   for (std::int64_t at = std::ssize(met_) - 1; at >= 0; --at) {
@@ -422,7 +384,8 @@ void VisibleField::build_upward() {
   }
 }
 
-bool VisibleField::may_be_met(const glm::vec3& low, const glm::vec3& high) const {
+bool SurfaceField::may_be_met(const glm::vec3& low, const glm::vec3& high) const {
+  if (upward_.empty()) return false;
   const glm::ivec3 size = bricks_ * 2,
                    first = glm::clamp(glm::ivec3(glm::floor(low / float(kHalf))), glm::ivec3(0), size - 1);
   const glm::ivec3 wide = glm::ivec3(glm::floor(high / float(kHalf))) - first;

@@ -14,10 +14,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/gl/object.h"
-#include "render/gl/program.h"
+#include "core/volume/label_volume.h"
+#include "render/textures/brick_atlas.h"
 #include "render/textures/brick_hull.h"
-#include "render/textures/volume_texture.h"
 
 namespace limber::render {
 
@@ -28,49 +27,44 @@ inline constexpr int kSurface = 98;
 
 using LabelSet = std::vector<std::uint8_t>;  // for each of the 65536 labels: 1 if the label is in the set
 
-class VisibleField {
+// The field of a set in the main memory. It needs no OpenGL, so any thread may compute it.
+class SurfaceField {
  public:
-  VisibleField(const VolumeTexture& volume, LabelSet set);
+  // For each slot its texels, as they are uploaded; empty for a slot that need not be uploaded.
+  using Texels = std::vector<std::vector<std::uint8_t>>;
 
   // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
-  // label.
-  void update(const VolumeTexture& volume, const LabelSet& set);
+  // label. Returns the slots that were computed.
+  //   drawn, layout  the same in every call
+  Texels update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set);
   const LabelSet& set() const { return set_; }
-  // Returns a 3D texture with one texel per brick: the share of the brick that belongs to the set, blurred.
-  const gl::Texture& occupancy() const { return occupancy_texture_; }
 
-  const Hull& hull() const { return hull_; }
+  // Returns the faces of the hull; their corners are counted in bricks.
+  Hull::Faces hull() const;
+  // Returns for each brick the share of its voxels that belong to the set, blurred over the bricks around it. It tells
+  // how enclosed a position is, from which the soft shadows in creases are computed.
+  std::vector<std::uint8_t> occupancy() const;
+  const glm::ivec3& bricks() const { return bricks_; }  // number of bricks per axis
+  // For each slot: whether the set has voxels in or near it.
+  const std::vector<std::uint8_t>& slot_present() const { return slot_present_; }
   // Returns false if no ray can hit the body in this box of padded coordinates.
   bool may_be_met(const glm::vec3& low, const glm::vec3& high) const;
-  int revision() const { return revision_; }  // increases with every update
-
-  // Sets the samplers u_field0 .. and u_index, on the texture units from `first` on, and the uniform u_texel. Returns
-  // the next free unit.
-  int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
-
-  std::int64_t blocks_computed() const { return blocks_computed_; }  // number of blocks that the last update computed
 
  private:
-  void build_hull(const BlockLayout& layout);
-  void build_upward();
-  void build_occupancy(const VolumeTexture& volume);
+  void find_upward();
 
   LabelSet set_;
   // For each brick: the distance in bricks to the nearest brick that has part of the blurred set, at most 7.
   std::vector<std::uint8_t> distance_;
   std::vector<std::uint8_t> in_hull_, occupancy_;
   // For each octant of each brick (2^3 voxels): whether a ray can hit the body there, and the distance to the nearest
-  // octant towards higher x, y and z where a ray can hit it, in octants (the largest of the three axes).
+  // octant towards higher x, y and z where a ray can hit it, in octants (the largest of the three axes). `upward_`
+  // is empty if no ray can hit the body anywhere.
   std::vector<std::uint8_t> met_, upward_;
   glm::ivec3 bricks_{0};
-  std::vector<gl::Texture> atlases_;
-  gl::Texture index_, occupancy_texture_;
-  Hull hull_;
-  int revision_ = 0;
-  std::int64_t blocks_computed_ = 0;
   // For each slot: the labels in the voxels on which its field depends.
   std::vector<std::vector<Label>> labels_of_slot_;
-  std::vector<std::uint8_t> slot_present_;  // for each slot: whether the set has voxels in or near it
+  std::vector<std::uint8_t> slot_present_;
 };
 
 }  // namespace limber::render

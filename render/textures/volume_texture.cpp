@@ -2,10 +2,13 @@
 #include "render/textures/volume_texture.h"
 
 #include <algorithm>
+#include <mutex>
+#include <utility>
 
 #include <epoxy/gl.h>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace limber::render {
 
@@ -33,6 +36,12 @@ void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Labe
 // examined.
 class Exposure {
  public:
+  void add(const Exposure& other) {
+    for (size_t label = 0; label < voxels_.size(); ++label) {
+      voxels_[label] += other.voxels_[label];
+      touching_[label] += other.touching_[label];
+    }
+  }
   void count(const std::vector<Label>& slot) {
     for (size_t i = 0; i + 2 < slot.size(); i += 2) {
       ++voxels_[slot[i + 1]];
@@ -50,8 +59,30 @@ class Exposure {
   std::vector<std::uint32_t> voxels_ = std::vector<std::uint32_t>(65536), touching_ = std::vector<std::uint32_t>(65536);
 };
 
+std::vector<float> exposure_of(const LabelVolume& volume, const BlockLayout& layout) {
+  constexpr std::int64_t kSlots = 256;  // slots that are counted together
+  Exposure all;
+  std::mutex adding;
+  parallel_for(std::ssize(layout.block_of_slot), kSlots, [&](std::int64_t begin, std::int64_t end) {
+    Exposure some;
+    std::vector<Label> slot;
+    for (std::int64_t s = begin; s < end; ++s) {
+      gather(volume, layout.block_of_slot[static_cast<size_t>(s)], slot);
+      some.count(slot);
+    }
+    const std::lock_guard lock(adding);
+    all.add(some);
+  });
+  return all.shares();
+}
+
 std::string describe(const glm::ivec3& size) {
   return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z) + " voxels";
+}
+
+[[noreturn]] void refuse(const LabelVolume& volume) {
+  throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(volume.grid.size),
+              "re-grid it with a larger spacing");
 }
 
 }  // namespace
@@ -91,45 +122,66 @@ int bind_atlases(gl::Program& program, const std::string& name, const std::vecto
   return first;
 }
 
-VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture)
-    : original_(volume),
-      largest_texture_(largest_texture) {
+DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, int largest_texture, int least_halvings) {
+  DrawnVolume result;
+  result.original = volume;
+  result.largest_texture = largest_texture;
   for (;;) {
-    const LabelVolume& drawn = coarse_ ? *coarse_ : *volume;
-    layout_ = block_layout(drawn);
-    if (place_slots(layout_, largest_texture) && upload(drawn)) break;
-    atlases_.clear();
-    if (halvings_ == kMostHalvings)
-      throw Error("the volume cannot be shown: the graphics driver has no room for it", describe(volume->grid.size),
-                  "re-grid it with a larger spacing");
-    coarse_ = std::make_shared<const LabelVolume>(halved(drawn));
-    ++halvings_;
+    const LabelVolume& drawn = result.coarse ? *result.coarse : *volume;
+    result.layout = block_layout(drawn);
+    if (result.halvings >= least_halvings && place_slots(result.layout, largest_texture)) break;
+    if (result.halvings == kMostHalvings) refuse(*volume);
+    result.coarse = std::make_shared<const LabelVolume>(halved(drawn));
+    ++result.halvings;
   }
-  grid_ = coarse_ ? coarse_->grid : volume->grid;
-  if (halvings_ > 0)
-    note_ = "Shown at 1/" + std::to_string(1 << halvings_) +
-            " of its resolution: the graphics driver has no room for " + describe(volume->grid.size);
+  const LabelVolume& drawn = result.coarse ? *result.coarse : *volume;
+  result.grid = drawn.grid;
+  result.exposure = exposure_of(drawn, result.layout);
+  return result;
 }
 
-bool VolumeTexture::upload(const LabelVolume& volume) {
-  const glm::ivec3 size = layout_.slots * kSlot;
-  for (int a = 0; a < layout_.atlases; ++a) {
+VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture)
+    : volume_(drawn_volume(volume, largest_texture)) {
+  while (!allocate_atlases()) {
+    if (halvings() == kMostHalvings) refuse(*volume);
+    volume_ = drawn_volume(volume, largest_texture, halvings() + 1);
+  }
+  upload(nullptr);
+}
+
+VolumeTexture::VolumeTexture(DrawnVolume volume) : volume_(std::move(volume)) {
+  if (!allocate_atlases()) refuse(*drawn());
+}
+
+bool VolumeTexture::allocate_atlases() {
+  atlases_.clear();
+  for (int a = 0; a < layout().atlases; ++a) {
     atlases_.push_back(gl::Texture::create());
-    if (!allocate(atlases_.back(), size, kLabels)) return false;
+    if (!allocate(atlases_.back(), layout().slots * kSlot, kLabels)) return false;
   }
+  index_ = gl::Texture::create();
+  if (!upload_index(index_, layout(), std::vector<std::uint8_t>(layout().block_of_slot.size(), 1))) return false;
+  note_.clear();
+  if (const auto whole = volume_.original.lock(); whole && halvings() > 0)
+    note_ = "Shown at 1/" + std::to_string(1 << halvings()) +
+            " of its resolution: the graphics driver has no room for " + describe(whole->grid.size);
+  return true;
+}
+
+void VolumeTexture::upload(UploadTime* time) {
+  const std::shared_ptr<const LabelVolume> labels = drawn();
+  if (complete() || !labels) return;
   std::vector<Label> slot;
-  Exposure exposure;
-  for (size_t s = 0; s < layout_.block_of_slot.size(); ++s) {
-    gather(volume, layout_.block_of_slot[s], slot);
-    exposure.count(slot);
-    const glm::ivec3 at = layout_.place_of(static_cast<int>(s)) * kSlot;
-    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout_.atlas_of(static_cast<int>(s)))].name());
+  for (; next_slot_ < std::ssize(layout().block_of_slot); ++next_slot_) {
+    if (time && time->is_over()) return;
+    gather(*labels, layout().block_of_slot[static_cast<size_t>(next_slot_)], slot);
+    const glm::ivec3 at = layout().place_of(next_slot_) * kSlot;
+    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout().atlas_of(next_slot_))].name());
     glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, slot.data());
+    if (time) time->used = true;
   }
-  exposure_ = exposure.shares();
-  if (!index_) index_ = gl::Texture::create();
-  return glGetError() == GL_NO_ERROR &&
-         upload_index(index_, layout_, std::vector<std::uint8_t>(layout_.block_of_slot.size(), 1));
+  next_slot_ = -1;
+  gl::check_gl("the upload of a volume");
 }
 
 int VolumeTexture::bind(gl::Program& program, int first) const {

@@ -10,26 +10,49 @@
 #include "render/gl/object.h"
 #include "render/gl/program.h"
 #include "render/textures/brick_atlas.h"
+#include "render/textures/upload_time.h"
 
 namespace limber::render {
 
+// A label volume as it is drawn, before it is uploaded. Making it needs no OpenGL.
+struct DrawnVolume {
+  // The document owns the original volume; this object does not keep it alive.
+  std::weak_ptr<const LabelVolume> original;
+  std::shared_ptr<const LabelVolume> coarse;  // the volume at the resolution at which it is drawn; null: the original
+  Grid grid;                                  // grid of the volume that is drawn
+  BlockLayout layout;
+  int halvings = 0;  // how often the resolution was halved
+  int largest_texture = 0;
+  std::vector<float> exposure;  // for each label: the share of its voxels that have air beside them along x
+
+  std::shared_ptr<const LabelVolume> drawn() const { return coarse ? coarse : original.lock(); }
+};
+
+// Arranges the volume in textures with at most largest_texture texels per axis. If it does not fit, its resolution is
+// halved until it fits. Throws Error when even an eighth of the resolution does not fit.
+//   least_halvings  how often the resolution is halved in any case
+DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, int largest_texture, int least_halvings = 0);
+
 class VolumeTexture {
  public:
-  // Uploads the volume. If the volume does not fit in textures with largest_texture texels per axis, or the driver has
-  // no memory for it, its resolution is halved until it fits. Throws Error when even an eighth of the resolution does
-  // not fit.
+  // Uploads the volume, at half its resolution or less if it does not fit (drawn_volume()) or the driver has no memory
+  // for it. Throws Error when even an eighth of the resolution does not fit.
   VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture);
+  // Takes a volume that upload() uploads. Throws Error when the driver has no memory for it at this resolution.
+  explicit VolumeTexture(DrawnVolume volume);
 
-  // The document owns the original volume; this object does not keep it alive.
-  const std::weak_ptr<const LabelVolume>& original() const { return original_; }
-  std::shared_ptr<const LabelVolume> drawn() const { return coarse_ ? coarse_ : original_.lock(); }
-  const Grid& grid() const { return grid_; }  // grid of the drawn volume: the original, or a coarser one
-  int halvings() const { return halvings_; }
-  const BlockLayout& layout() const { return layout_; }
-  int largest_texture() const { return largest_texture_; }
-  // For each label: the share of its voxels that have air beside them along x.
-  const std::vector<float>& exposure() const { return exposure_; }
-  const std::string& note() const { return note_; }  // a note for the user, or empty
+  // Uploads the volume: as much as `time` allows, or all if `time` is null.
+  void upload(UploadTime* time);
+  bool complete() const { return next_slot_ < 0; }
+
+  const std::weak_ptr<const LabelVolume>& original() const { return volume_.original; }
+  std::shared_ptr<const LabelVolume> drawn() const { return volume_.drawn(); }
+  const Grid& grid() const { return volume_.grid; }  // grid of the drawn volume: the original, or a coarser one
+  int halvings() const { return volume_.halvings; }
+  const BlockLayout& layout() const { return volume_.layout; }
+  int largest_texture() const { return volume_.largest_texture; }
+  const std::vector<float>& exposure() const { return volume_.exposure; }  // see DrawnVolume
+  const std::string& note() const { return note_; }                        // a note for the user, or empty
 
   // Returns the index texture: 3D, RGBA8UI, one texel per block. A texel has the position of the block's slot, then the
   // atlas, counted from 1 (0: no tissue).
@@ -39,17 +62,13 @@ class VolumeTexture {
   int bind(gl::Program& program, int first) const;
 
  private:
-  bool upload(const LabelVolume& volume);
+  bool allocate_atlases();
 
-  std::weak_ptr<const LabelVolume> original_;
-  std::shared_ptr<const LabelVolume> coarse_;
-  Grid grid_;
-  BlockLayout layout_;
+  DrawnVolume volume_;
   std::vector<gl::Texture> atlases_;
   gl::Texture index_;
-  std::vector<float> exposure_;
   std::string note_;
-  int halvings_ = 0, largest_texture_ = 0;
+  int next_slot_ = 0;  // the next slot to upload; -1: everything was uploaded
 };
 
 // The format of a 3D texture: a sized internal format of one or four channels, the matching pixel format and type, and

@@ -22,7 +22,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <future>
@@ -33,6 +32,7 @@
 #include "render/gl/object.h"
 #include "render/gl/program.h"
 #include "render/scene/scene.h"
+#include "render/textures/upload_time.h"
 #include "render/textures/volume_texture.h"
 
 namespace limber::render {
@@ -49,13 +49,6 @@ struct TexelBox {
   void add(const TexelBox& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
   glm::ivec3 size() const { return high - low; }
   std::int64_t texels() const { return empty() ? 0 : std::int64_t{size().x} * size().y * size().z; }
-};
-
-// The time limit for all uploads of a frame together. At least one lot (a group of slots) is uploaded, however long its
-// upload takes.
-struct UploadTime {
-  std::chrono::steady_clock::time_point until;
-  bool used = false;  // true: a group of slots has been uploaded in this frame
 };
 
 class WeightTexture {

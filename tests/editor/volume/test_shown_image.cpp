@@ -52,12 +52,6 @@ std::function<bool(Stage&, const Seen&)> renders(render::GreyRendering rendering
   };
 }
 
-void show_scan(Stage& stage) {
-  write_grey_volume(scan(), stage.home / "ct.nrrd");
-  editor::open_image(stage.editor(), stage.home / "ct.nrrd");
-  stage.play("wait-job\n wait-idle");
-}
-
 // A result that stands for one made together with the image.
 void add_posed_scan(Stage& stage) {
   Document next = stage.document();

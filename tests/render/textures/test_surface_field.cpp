@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "render/textures/surface_field.h"
+#include "render/textures/visible_field.h"
 
 #include "tests/render/studio.h"
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "render/passes/pass_resources.h"
+
+#include "tests/render/studio.h"
+
+using namespace limber;
+using namespace limber::render;
+using namespace limber::test;
+
+namespace {
+
+constexpr glm::ivec2 kSize{160, 160};
+
+// A ball with a core, in so many blocks that their upload takes several frames.
+std::shared_ptr<const LabelVolume> ball() {
+  return painted(grid_of({120, 120, 120}), [](const glm::dvec3& p) -> Label {
+    const double r = glm::length(p - glm::dvec3(60));
+    return r < 30 ? 2 : r < 55 ? 1 : 0;
+  });
+}
+
+bool same_pixels(const Image& a, const Image& b) { return a.size == b.size && a.rgba == b.rgba; }
+
+}  // namespace
+
+TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that is uploaded at once") {
+  for (const Display display : {Display::Solid, Display::XRay, Display::Tissue}) {
+    CAPTURE(static_cast<int>(display));
+    const auto volume = ball();
+    Scene scene = scene_of(volume);
+    scene.display = display;
+    const Camera camera = camera_of(volume->grid);
+    Studio at_once;
+    const Image expected = picture_of(at_once.renderer, scene, camera, kSize);
+    Studio studio;
+    const auto body = prepared_body(volume, *scene.looks, display, studio.renderer.largest_texture(), no_progress());
+    int frames = 0;
+    bool is_done = false;
+    for (; !is_done && frames < 10'000; ++frames) {
+      studio.renderer.begin_frame(0);  // no time: one slot a frame
+      is_done = studio.renderer.upload(*body);
+    }
+    CHECK(is_done);
+    CHECK(frames > 20);
+    const auto& resident = studio.renderer.resources().body(volume);
+    REQUIRE(resident.layers.size() >= 1);
+    const int revision = resident.layers[0]->revision();
+    CHECK(same_pixels(picture_of(studio.renderer, scene, camera, kSize), expected));
+    CHECK(resident.layers[0]->revision() == revision);  // nothing was computed or uploaded again
+    studio.renderer.begin_frame(0);
+    CHECK(studio.renderer.upload(*body));
+  }
+}
+
+TEST_CASE("prepared body: drawn before its upload is complete, it is complete") {
+  const auto volume = ball();
+  const Scene scene = scene_of(volume);
+  const Camera camera = camera_of(volume->grid);
+  Studio at_once;
+  const Image expected = picture_of(at_once.renderer, scene, camera, kSize);
+  for (const int frames : {1, 20, 40}) {  // in the first slots of the labels, later in those of the field
+    CAPTURE(frames);
+    Studio studio;
+    const auto body =
+        prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+    for (int frame = 0; frame < frames; ++frame) {
+      studio.renderer.begin_frame(0);
+      CHECK_FALSE(studio.renderer.upload(*body));
+    }
+    CHECK(same_pixels(picture_of(studio.renderer, scene, camera, kSize), expected));
+    studio.renderer.begin_frame(0);
+    CHECK(studio.renderer.upload(*body));
+  }
+}
+
+TEST_CASE("prepared body: a volume too large for the textures is prepared at half its resolution") {
+  const auto volume = ball();
+  const Scene scene = scene_of(volume);
+  Studio studio(2 * kSlot);
+  const auto body =
+      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  CHECK(body->volume.halvings > 0);
+  bool is_done = false;
+  while (!is_done) {
+    studio.renderer.begin_frame(0);
+    is_done = studio.renderer.upload(*body);
+  }
+  CHECK(studio.renderer.note().starts_with("Shown at 1/2 of its resolution"));
+}
+
+TEST_CASE("prepared body: an empty volume, and a cancelled one") {
+  const auto volume = painted(grid_of({64, 64, 64}), [](const glm::dvec3&) -> Label { return 0; });
+  const Scene scene = scene_of(volume);
+  Studio studio;
+  const auto body =
+      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  studio.renderer.begin_frame(0);
+  CHECK(studio.renderer.upload(*body));
+  CHECK(studio.renderer.resources().body(volume).layers[0]->hull().empty());
+  picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
+
+  class Stopped : public Progress {
+   public:
+    Stopped() { cancel(); }
+  } stopped;
+  CHECK_THROWS_AS(prepared_body(ball(), *scene.looks, scene.display, 2048, stopped), Cancelled);
+}
