@@ -22,17 +22,22 @@ bool ArrivingBodies::has_frames() const {
 }
 
 void ArrivingBodies::await(const std::shared_ptr<render::PreparedBody>& body, Progress& progress) {
+  const auto is_waiting = [&] { return std::find(waiting_.begin(), waiting_.end(), body) != waiting_.end(); };
   std::unique_lock lock(mutex_);
   waiting_.push_back(body);
-  const auto is_waiting = [&] { return std::find(waiting_.begin(), waiting_.end(), body) != waiting_.end(); };
-  while (is_waiting() && has_frames_locked() && !progress.cancelled()) {
-    lock.unlock();
-    progress.update("picture", 1);  // wakes the editor, so that it draws a frame
+  try {
+    while (is_waiting() && has_frames_locked()) {
+      lock.unlock();
+      progress.update("picture", 1);  // wakes the editor, so that it draws a frame
+      lock.lock();
+      uploaded_.wait_for(lock, kTurn, [&] { return !is_waiting(); });
+    }
+  } catch (const Cancelled&) {
     lock.lock();
-    uploaded_.wait_for(lock, kTurn, [&] { return !is_waiting(); });
+    std::erase(waiting_, body);
+    throw;
   }
   std::erase(waiting_, body);
-  if (progress.cancelled()) throw Cancelled();
 }
 
 bool ArrivingBodies::upload(render::Renderer& renderer) {
@@ -44,7 +49,7 @@ bool ArrivingBodies::upload(render::Renderer& renderer) {
   bool is_done = true;
   try {
     is_done = renderer.upload(*body);
-  } catch (const Error&) {  // ignored: the views meet the same error when they draw the body, and show it
+  } catch (const Error&) {  // ignored: when the views draw the body, they try it at a coarser resolution
   }
   lock.lock();
   if (is_done) std::erase(waiting_, body);
@@ -63,7 +68,7 @@ MakeReady body_maker(const Views& views) {
     const render::Display shown = display == render::Display::Image ? render::Display::Solid : display;
     try {
       arriving->await(render::prepared_body(document.volume, looks, shown, largest, progress), progress);
-    } catch (const Error&) {  // ignored: the views meet the same error when they draw the body, and show it
+    } catch (const Error&) {  // ignored: the views meet the same error when they draw the body
     }
   };
 }

@@ -2,6 +2,7 @@
 #include "editor/file_browser/thumbnails.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "render/image_io.h"
@@ -46,24 +47,36 @@ void keep_thumbnail(Editor& editor, const Path& path) {
   if (editor.folders.cache.empty() || !editor.document().volume) return;
   const auto picture = std::make_shared<render::View3D>(editor.views->renderer);
   const Path file = cached_thumbnail(editor.folders.cache, path);
-  // One step of the picture in each frame, after the views have shown their own pictures.
-  editor.each_frame.push_back([picture, file, time = 0.0, scene = thumbnail_scene(editor),
-                               camera = editor.views->body.camera](Editor& e) mutable {
-    e.touch();
-    if (e.layout.place_of(ViewId::Body) && !e.views->body.picture->complete()) return true;
-    picture->draw(scene, camera, kThumbnailSize, time += 1, 1);
-    if (!picture->complete()) return true;
-    start_task(e, "", [file, image = picture->read()](Progress&) -> Finish {
-      try {
-        fs::create_directories(file.parent_path());
-        write_file_atomically(file, render::png_of(image));
-      } catch (const Error&) {
-      } catch (const fs::filesystem_error&) {
-      }
-      return {};
-    });
-    return false;
-  });
+  render::Scene scene = thumbnail_scene(editor);
+  // These may still belong to the body that was shown before.
+  scene.pose.reset();
+  scene.posed_from_rest.clear();
+  scene.weights.reset();
+  scene.mesh.reset();
+  scene.grey.reset();
+  // One step of the picture in each frame, after the views have shown their own pictures of this body.
+  editor.each_frame.push_back(
+      [picture, file, time = 0.0, is_shown = false, scene, camera = editor.views->body.camera](Editor& e) mutable {
+        e.touch();
+        if (!std::exchange(is_shown, true)) return true;
+        if (e.layout.place_of(ViewId::Body) && !e.views->body.picture->complete()) return true;
+        try {
+          picture->draw(scene, camera, kThumbnailSize, time += 1, 1);
+        } catch (const Error&) {
+          return false;
+        }
+        if (!picture->complete()) return true;
+        start_task(e, "", [file, image = picture->read()](Progress&) -> Finish {
+          try {
+            fs::create_directories(file.parent_path());
+            write_file_atomically(file, render::png_of(image));
+          } catch (const Error&) {
+          } catch (const fs::filesystem_error&) {
+          }
+          return {};
+        });
+        return false;
+      });
 }
 
 void look_at_recents(Editor& editor) {

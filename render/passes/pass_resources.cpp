@@ -32,20 +32,28 @@ bool same(const std::weak_ptr<T>& key, const Owner& owner) {
 PassResources::PassResources(int largest) : largest_texture(texture_limit(largest)) {}
 
 PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume>& volume) {
-  for (const auto& body : bodies_)
-    if (same(body->key, volume)) return *body;
-  std::erase_if(bodies_, [](const auto& body) { return body->key.expired(); });
-  if (arriving_ && same(arriving_->key, volume)) {  // the rest of its uploads cannot wait any longer
-    arriving_->volume->upload(nullptr);
-    for (const auto& layer : arriving_->layers) layer->upload(*arriving_->volume, nullptr);
-    note = arriving_->volume->note();
-    return *bodies_.emplace_back(std::move(arriving_));
+  auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& body) { return same(body->key, volume); });
+  if (found == bodies_.end()) {
+    forget_expired();
+    std::unique_ptr<Body> fresh;
+    if (arriving_ && same(arriving_->key, volume)) {  // the rest of its uploads cannot wait any longer
+      fresh = std::move(arriving_);
+      fresh->volume->upload(nullptr);
+      for (const auto& layer : fresh->layers) layer->upload(*fresh->volume, nullptr);
+    } else {
+      fresh = std::make_unique<Body>();
+      fresh->key = volume;
+      fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
+    }
+    found = bodies_.insert(bodies_.end(), std::move(fresh));
   }
-  auto fresh = std::make_unique<Body>();
-  fresh->key = volume;
-  fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
-  note = fresh->volume->note();
-  return *bodies_.emplace_back(std::move(fresh));
+  note = (*found)->volume->note();
+  return **found;
+}
+
+void PassResources::forget_expired() {
+  std::erase_if(bodies_, [](const auto& body) { return body->key.expired(); });
+  if (arriving_ && arriving_->key.expired()) arriving_.reset();
 }
 
 bool PassResources::has(const std::shared_ptr<const LabelVolume>& volume) const {
@@ -54,13 +62,26 @@ bool PassResources::has(const std::shared_ptr<const LabelVolume>& volume) const 
 
 bool PassResources::upload(PreparedBody& prepared) {
   if (has(prepared.original)) return true;
-  UploadTime* time = upload_time ? &*upload_time : nullptr;
   if (!arriving_ || !same(arriving_->key, prepared.original)) {
-    arriving_ = std::make_unique<Body>();
-    arriving_->key = prepared.original;
-    arriving_->volume = std::make_unique<VolumeTexture>(std::move(prepared.volume));
+    forget_expired();
+    arriving_.reset();
+    auto fresh = std::make_unique<Body>();
+    fresh->key = prepared.original;
+    fresh->volume = std::make_unique<VolumeTexture>(std::move(prepared.volume));
+    arriving_ = std::move(fresh);
   }
-  Body& body = *arriving_;
+  try {
+    if (!upload_part(*arriving_, prepared)) return false;
+  } catch (...) {
+    arriving_.reset();
+    throw;
+  }
+  bodies_.push_back(std::move(arriving_));
+  return true;
+}
+
+bool PassResources::upload_part(Body& body, PreparedBody& prepared) {
+  UploadTime* time = upload_time ? &*upload_time : nullptr;
   body.volume->upload(time);
   if (!body.volume->complete()) return false;
   for (PreparedField& field : std::exchange(prepared.layers, {}))
@@ -69,8 +90,6 @@ bool PassResources::upload(PreparedBody& prepared) {
     layer->upload(*body.volume, time);
     if (!layer->complete()) return false;
   }
-  note = body.volume->note();
-  bodies_.push_back(std::move(arriving_));
   return true;
 }
 

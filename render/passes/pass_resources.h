@@ -51,6 +51,7 @@ struct PassResources {
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   bool has(const std::shared_ptr<const LabelVolume>& volume) const;  // true if body() need not upload anything
+  std::size_t body_count() const { return bodies_.size(); }          // number of volumes on the graphics card
   // Uploads a prepared body: as much as the frame's time limit allows. Returns true once body() has it. Later calls
   // must pass the same body until then. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
@@ -78,10 +79,14 @@ struct PassResources {
   ImagePass image;
   WeightPass weigh;
   LinePass lines;
-  std::string note;
+  std::string note;                       // of the body that body() returned last
   std::optional<UploadTime> upload_time;  // time limit of all uploads in this frame; empty: no limit
 
  private:
+  void forget_expired();  // frees the textures of volumes that are gone
+  // Uploads a part of a body. Returns true when all of it was uploaded.
+  bool upload_part(Body& body, PreparedBody& prepared);
+
   struct Looks {
     std::weak_ptr<const LabelLooks> key;
     std::weak_ptr<const LabelVolume> volume;

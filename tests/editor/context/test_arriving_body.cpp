@@ -5,7 +5,7 @@
 
 #include "editor/files/import.h"
 #include "render/passes/pass_resources.h"
-#include "tests/editor/sitting.h"
+#include "tests/editor/operator_proofs.h"
 
 using namespace limber;
 using namespace limber::test;
@@ -54,4 +54,37 @@ TEST_CASE("arriving body: without frames a job goes on at once, and a cancelled 
   progress.cancel();
   job.join();
   CHECK(is_cancelled);
+}
+
+TEST_CASE("arriving body: over a posed body with its weights shown, a volume of another grid is opened") {
+  Stage stage;
+  stage.play("key Ctrl+2\n wait-idle\n click \"Heat diffusion\"\n wait-job\n wait-idle");
+  Document posed = stage.document();
+  REQUIRE(posed.weights);
+  Pose pose = rest_pose(*posed.armature);
+  pose.rotation.back() = glm::angleAxis(0.5, glm::dvec3(1, 0, 0));
+  posed.pose = std::make_shared<const Pose>(pose);
+  const Path other = stage.home / "cube.nrrd";
+  write_volume(*cube(), other);
+  for (const char* workspace : {"key Ctrl+2", "key Ctrl+3"}) {  // weights are shown; the body is shown posed
+    CAPTURE(workspace);
+    stage.editor().history.reset(posed, "Posed limb");
+    stage.play(std::string(workspace) + "\n wait-idle");
+    editor::open_volume(stage.editor(), other);
+    stage.play("wait-job\n wait-idle");
+    REQUIRE(stage.document().volume);
+    CHECK_FALSE(stage.document().volume->grid == posed.volume->grid);
+    CHECK(stage.is("error", "none"));
+  }
+}
+
+TEST_CASE("arriving body: the textures of closed bodies are freed") {
+  const Home home;
+  Sitting sitting(home.folder.path());
+  const auto bodies = [&] { return sitting.editor().views->renderer.resources().body_count(); };
+  for (int time = 0; time < 4; ++time) {
+    editor::open_volume(sitting.editor(), home / "scans/ball.nrrd");
+    sitting.play("wait-job\n wait-idle");
+  }
+  CHECK(bodies() <= 2);
 }

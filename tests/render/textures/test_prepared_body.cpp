@@ -85,7 +85,31 @@ TEST_CASE("prepared body: a volume too large for the textures is prepared at hal
     studio.renderer.begin_frame(0);
     is_done = studio.renderer.upload(*body);
   }
+  CHECK(studio.renderer.note().empty());  // it is not shown yet
+  picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
   CHECK(studio.renderer.note().starts_with("Shown at 1/2 of its resolution"));
+}
+
+TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that nobody wants any more is freed") {
+  Studio studio;
+  auto volume = ball();
+  const Scene scene = scene_of(volume);
+  const auto body =
+      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  body->volume.layout.slots = glm::ivec3(1000);  // more than drivers take
+  studio.renderer.begin_frame(0);
+  CHECK_THROWS_AS(studio.renderer.upload(*body), Error);
+  const Image shown = picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
+  Studio at_once;
+  CHECK(same_pixels(shown, picture_of(at_once.renderer, scene, camera_of(volume->grid), kSize)));
+
+  auto unwanted = ball();
+  const auto never =
+      prepared_body(unwanted, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  studio.renderer.begin_frame(0);
+  CHECK_FALSE(studio.renderer.upload(*never));
+  CHECK(studio.renderer.note().empty());
+  CHECK(studio.renderer.resources().body_count() == 1);
 }
 
 TEST_CASE("prepared body: an empty volume, and a cancelled one") {
