@@ -22,6 +22,7 @@ struct Report;
 namespace limber::cmd {
 
 void add_batch(CLI::App& app);
+void add_clean_motion(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_export_gltf(CLI::App& app);
 void add_fit_joint(CLI::App& app);

@@ -29,6 +29,7 @@ void add_commands(CLI::App& app, const std::string& commit) {
   app.footer(std::string(kExitCodes) + "\n\nlimber COMMAND --xml describes a command for 3D Slicer and its like.");
   app.set_version_flag("--version", LIMBER_VERSION + (commit.empty() ? "" : ", commit " + commit));
   add_batch(app);
+  add_clean_motion(app);
   add_convert(app);
   add_export_gltf(app);
   add_fit_joint(app);

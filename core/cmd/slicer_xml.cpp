@@ -51,6 +51,7 @@ const std::map<std::string, Element>& outputs() {
       {"convert OUT", file_of("*")},
       {"weights --output", file_of(".nrrd")},
       {"repair-joint --output", file_of(".nrrd")},
+      {"clean-motion --output", file_of(".bvh")},
       {"fit-rig --output", file_of(".json")},
       {"fit-joint --output", file_of(".json")},
       {"phantom --output", {"directory", ""}},

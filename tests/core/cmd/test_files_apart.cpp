@@ -99,6 +99,7 @@ TEST_CASE("command files: an output that is also an input is refused by every co
            Words{"fit-joint", "@volume.nrrd", "--rig", "@rig.json", "--bone", "Forearm", "-o", "@rig.json"},
            Words{"repair-joint", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "--bone",
                  "Forearm", "-o", "@weights.nrrd"},
+           Words{"clean-motion", "@rig.json", "--motion", "@motion.bvh", "-o", "@motion.bvh"},
            Words{"fit-rig", "@volume.nrrd", "--template", "@rig.json", "-o", "@rig.json"},
            Words{"export-gltf", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "-o",
                  "@weights.nrrd"},
@@ -161,5 +162,5 @@ TEST_CASE("command files: every command that takes -o says that it is written") 
       CHECK_NOTHROW(option->get_validator("files"));
       ++outputs;
     }
-  CHECK(outputs == 12);
+  CHECK(outputs == 13);
 }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber clean-motion RIG --motion F.bvh [--smooth HZ] [--plant-feet] [--hold "LIMB[=X,Y,Z]@FIRST-LAST"]... -o OUT.bvh:
+// a motion on a rig without tremble and sliding feet, and with hands where they should be.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text_parse.h"
+#include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
+#include "core/cmd/pose_options.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/plants.h"
+#include "core/motion/pose_filter.h"
+#include "core/rig_io/rig_io.h"
+
+namespace limber::cmd {
+
+namespace {
+struct Options {
+  std::string rig, output;
+  PoseOptions motion;
+  double smooth = 0, ease = 0.15;
+  bool plant_feet = false;
+  std::vector<std::string> holds;
+};
+
+constexpr const char* kHoldForm =
+    "write it as \"left hand=X,Y,Z@FIRST-LAST\", or \"left hand@FIRST-LAST\" to hold it where it is at FIRST";
+
+std::vector<double> numbers_in(std::string_view text, char between, const std::string& where) {
+  std::vector<double> numbers;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(between, from), text.size());
+    const auto number = number_of<double>(text.substr(from, to - from));
+    if (!number || !std::isfinite(*number)) throw Error("a hold is not understood", where, kHoldForm);
+    numbers.push_back(*number);
+    from = to + 1;
+  }
+  return numbers;
+}
+
+// Reads a value of --hold. The point that is held is the limb's tip.
+Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, const Armature& rig,
+              const std::vector<Pose>& poses) {
+  const std::string where = "--hold \"" + value + "\"";
+  const std::size_t at = value.rfind('@'), equals = value.find('=');
+  if (at == std::string::npos) throw Error("a hold is not understood", where, kHoldForm);
+  const std::string name = value.substr(0, std::min(at, equals));
+  Plant hold;
+  const auto found = std::find_if(limbs.begin(), limbs.end(), [&](const PlantedLimb& l) { return l.name == name; });
+  if (found == limbs.end()) {
+    std::string names;
+    for (const PlantedLimb& limb : limbs) names += (names.empty() ? "" : ", ") + limb.name;
+    throw Error("the rig has no limb of this name", where, "name one of: " + names);
+  }
+  hold.limb = static_cast<int>(found - limbs.begin());
+  const std::vector<double> frames = numbers_in(std::string_view(value).substr(at + 1), '-', where);
+  const double last = static_cast<double>(poses.size()) - 1;
+  if (frames.size() != 2 || frames[0] != std::floor(frames[0]) || frames[1] != std::floor(frames[1]))
+    throw Error("a hold is not understood", where, kHoldForm);
+  if (frames[0] < 0 || frames[1] < frames[0] || frames[1] > last)
+    throw Error("the motion does not have these frames", where,
+                "choose frames from 0 to " + std::to_string(static_cast<int>(last)));
+  hold.first = static_cast<int>(frames[0]);
+  hold.last = static_cast<int>(frames[1]);
+  if (equals > at) {
+    hold.place = place_of(*found, hold.point, rig, poses[hold.first]);
+    return hold;
+  }
+  const std::vector<double> place = numbers_in(std::string_view(value).substr(equals + 1, at - equals - 1), ',', where);
+  if (place.size() != 3) throw Error("a hold is not understood", where, kHoldForm);
+  hold.place = {place[0], place[1], place[2]};
+  return hold;
+}
+
+void print_plants(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
+                  const std::vector<Pose>& before, const std::vector<Pose>& after) {
+  if (plants.empty()) return;
+  print("%-12s %-6s %12s %14s %14s %14s\n", "limb", "point", "frames", "slid before", "slides now", "off its place");
+  for (const Plant& plant : plants) {
+    const PlantError was = error_of(plant, rig, limbs, before), is = error_of(plant, rig, limbs, after);
+    const std::string frames = std::to_string(plant.first) + "-" + std::to_string(plant.last);
+    print("%-12s %-6s %12s %11.1f mm %11.1f mm %11.1f mm\n", limbs[plant.limb].name.c_str(),
+          plant.point == PlantPoint::Tip ? "tip" : "joint", frames.c_str(), was.slide, is.slide, is.from_place);
+  }
+}
+
+// A warning for each plant that its limb does not reach.
+void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
+                         const std::vector<Pose>& poses) {
+  constexpr double kOff = 3;  // mm
+  for (const Plant& plant : plants)
+    if (const PlantError error = error_of(plant, rig, limbs, poses); error.from_place > kOff)
+      warn(limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last) +
+           ": the limb stays " + std::to_string(std::lround(error.from_place)) + " mm off its place");
+}
+
+void clean(const Options& options) {
+  if (options.smooth <= 0 && !options.plant_feet && options.holds.empty())
+    throw Error("there is nothing to clean", "clean-motion", "add --smooth HZ, --plant-feet or --hold");
+  const ArmatureFile file = read_armature_file(options.rig);
+  warn(file.warnings);
+  const Armature& rig = file.armature;
+  const double rate = 1 / read_motion(options.motion.motion, options.motion.up).frame_time;
+  const std::vector<Pose> recorded = read_all_poses(options.motion, rig);
+  const std::vector<Pose> smooth = options.smooth > 0 ? smoothed(recorded, rate, options.smooth) : recorded;
+
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
+  if (limbs.empty() && !options.holds.empty())
+    throw Error("no arm or leg of the rig is known by its name", options.rig, "name its bones as in \"LeftForearm\"");
+  if (options.plant_feet && !has_legs)
+    throw Error("no leg of the rig is known by its name", options.rig, "name its bones as in \"LeftThigh\"");
+  std::vector<Plant> plants;
+  if (options.plant_feet) plants = plants_of_feet(rig, limbs, smooth, rate);
+  for (const std::string& hold : options.holds) plants.push_back(hold_of(hold, limbs, rig, smooth));
+  const std::vector<Pose> cleaned =
+      planted(rig, limbs, smooth, plants, static_cast<int>(std::lround(options.ease * rate)));
+  write_bvh(motion_of_poses(rig, static_cast<int>(cleaned.size()), rate, [&](int frame) { return cleaned[frame]; }),
+            options.output);
+  print_plants(plants, rig, limbs, recorded, cleaned);
+  warn_of_short_limbs(plants, rig, limbs, cleaned);
+  print("%zu frames cleaned.\n", cleaned.size());
+}
+}  // namespace
+
+void add_clean_motion(CLI::App& app) {
+  auto* command =
+      app.add_subcommand("clean-motion", "a motion on a rig without tremble, with feet and hands that stay in place");
+  auto options = std::make_shared<Options>();
+  options->motion.root_motion = true;
+  command->add_option("RIG", options->rig, "the rig that the motion moves")->required();
+  auto* motion = command->add_option("--motion", options->motion.motion, "the take (BVH)")->required();
+  add_up_option(*command, options->motion.up, motion);
+  command->add_option("--map", options->motion.map, "which joint moves which bone (default: by names)")
+      ->type_name("M.json");
+  add_rest_options(*command, options->motion.rests, motion, motion->get_group());
+  command->add_option("--smooth", options->smooth, "filter out movement faster than this, in Hz; 6 suits walking")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--plant-feet", options->plant_feet, "keep each foot in place while it stands");
+  command
+      ->add_option("--hold", options->holds,
+                   "LIMB=X,Y,Z@FIRST-LAST: keeps the tip of left hand, right hand, left foot or right foot at a place "
+                   "(world, mm) in these frames; LIMB@FIRST-LAST: where it is at FIRST (repeatable)")
+      ->type_name("HOLD")
+      ->expected(1)
+      ->take_all();
+  command->add_option("--ease", options->ease, "seconds over which a limb comes to its place and leaves it")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  writes(command->add_option("-o,--output", options->output, "the cleaned motion, a BVH of the rig"))->required();
+  command->callback([options] { clean(*options); });
+}
+
+}  // namespace limber::cmd

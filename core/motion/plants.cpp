@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/plants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/motion/body_frame.h"
+#include "core/rig/joint_names.h"
+
+namespace limber {
+
+namespace {
+
+// A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted above its lowest places, mm. Both
+// are for a leg of kUsualLeg and grow with its length.
+constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
+constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
+constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
+constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
+// The share of its length to which a leg may be stretched. A little is left, so that the knee keeps its direction.
+constexpr double kStretch = 0.999;
+
+// A motion of the rig's joints that is changed bone by bone.
+class PosedRig {
+ public:
+  PosedRig(const Armature& armature, const Pose& pose)
+      : armature_(armature),
+        pose_(pose),
+        posed_(posed_from_rest(armature, pose)) {}
+
+  const Pose& pose() const { return pose_; }
+  glm::dvec3 head(int bone) const { return posed_[bone] * armature_.bones[bone].head; }
+  glm::dvec3 tail(int bone) const { return posed_[bone] * armature_.bones[bone].tail; }
+  glm::dquat turn(int bone) const { return posed_[bone].rotation; }
+
+  // Turns a bone about its head, in world axes, and all bones that hang on it.
+  void turn_by(int bone, const glm::dquat& rotation) { turn_to(bone, rotation * posed_[bone].rotation); }
+  // Gives a bone this rotation from its rest pose, in world axes.
+  void turn_to(int bone, const glm::dquat& rotation) {
+    const int parent = armature_.bones[bone].parent;
+    const glm::dquat above = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed_[parent].rotation;
+    pose_.rotation[bone] = glm::normalize(glm::conjugate(above) * rotation);
+    posed_ = posed_from_rest(armature_, pose_);
+  }
+
+ private:
+  const Armature& armature_;
+  Pose pose_;
+  std::vector<RigidTransform> posed_;
+};
+
+glm::dvec3 joint_of(const PosedRig& rig, const PlantedLimb& limb) {
+  return limb.end >= 0 ? rig.head(limb.end) : rig.tail(limb.lower);
+}
+glm::dvec3 tip_of(const PosedRig& rig, const PlantedLimb& limb) {
+  return limb.end >= 0 ? rig.tail(limb.end) : rig.tail(limb.lower);
+}
+glm::dvec3 point_of(const PosedRig& rig, const PlantedLimb& limb, PlantPoint point) {
+  return point == PlantPoint::Joint ? joint_of(rig, limb) : tip_of(rig, limb);
+}
+
+// The lengths of a limb's two long bones as they count for reaching: from joint to joint, mm.
+struct Lengths {
+  double upper, lower;
+  double both() const { return upper + lower; }
+};
+Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
+  const glm::dvec3 middle = armature.bones[limb.lower].head;
+  const glm::dvec3 end = limb.end >= 0 ? armature.bones[limb.end].head : armature.bones[limb.lower].tail;
+  return {glm::distance(armature.bones[limb.upper].head, middle), glm::distance(middle, end)};
+}
+
+// Returns the angle about a unit axis by which the lower bone must be turned so that the limb's joint is `wanted` away
+// from its root. Of the two angles that are, it is the one that leaves the limb bent towards positive angles.
+//   upper, lower  vectors from root to middle and from middle to joint
+double bend_for(const glm::dvec3& upper, const glm::dvec3& lower, const glm::dvec3& axis, double wanted) {
+  // dot(upper, turned lower) = across + a cos(angle) + b sin(angle)
+  const double across = glm::dot(upper, axis) * glm::dot(axis, lower);
+  const double a = glm::dot(upper, lower) - across, b = glm::dot(upper, glm::cross(axis, lower));
+  const double c = (wanted * wanted - glm::dot(upper, upper) - glm::dot(lower, lower)) / 2 - across;
+  const double most = std::hypot(a, b);
+  if (most == 0) return 0;
+  const double middle = std::atan2(b, a), half = std::acos(std::clamp(c / most, -1.0, 1.0));
+  const auto bends = [&](double angle) {
+    return glm::dot(axis, glm::cross(upper, glm::angleAxis(angle, axis) * lower)) >= 0;
+  };
+  return std::remainder(bends(middle + half) ? middle + half : middle - half, 2 * std::numbers::pi);
+}
+
+// Bends and turns the limb's two long bones so that its joint comes to `target`, or as near to it as the limb reaches.
+void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature, const glm::dvec3& target) {
+  constexpr double kOfHinge = 0.1;  // how much the hinge counts beside the plane in which the limb is bent already
+  const Lengths length = lengths_of(limb, armature);
+  const glm::dvec3 root = rig.head(limb.upper), upper = rig.head(limb.lower) - root,
+                   lower = joint_of(rig, limb) - rig.head(limb.lower);
+  const double wanted = std::clamp(glm::distance(root, target), std::abs(length.upper - length.lower), length.both());
+  // The plane of a nearly straight limb is chance; there its hinge decides.
+  const glm::dvec3 hinge = rig.turn(limb.upper) * limb.hinge;
+  glm::dvec3 axis = glm::cross(upper, lower) / (length.upper * length.lower) + kOfHinge * hinge;
+  if (glm::length(axis) < 1e-9) axis = hinge;
+  axis = glm::normalize(axis);
+  rig.turn_by(limb.lower, glm::angleAxis(bend_for(upper, lower, axis, wanted), axis));
+  rig.turn_by(limb.upper, shortest_turn(joint_of(rig, limb) - root, target - root));
+}
+
+// The axis about which a limb bends at rest: that of its joint's limits, or the one about which a knee bends backwards
+// and an elbow forwards.
+glm::dvec3 hinge_of(const PlantedLimb& limb, const Armature& armature, const glm::dvec3& back) {
+  const JointLimits& limits = armature.bones[limb.lower].limits;
+  if (limits.type == JointLimits::Type::Hinge && glm::length(limits.axis) > 0) return glm::normalize(limits.axis);
+  const glm::dvec3 along = armature.bones[limb.lower].tail - armature.bones[limb.upper].head;
+  for (const glm::dvec3& towards : {limb.is_leg ? back : -back, glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0)})
+    if (const glm::dvec3 axis = glm::cross(along, towards); glm::length(axis) > 1e-3 * glm::length(along))
+      return glm::normalize(axis);
+  return {1, 0, 0};
+}
+
+// How strongly a plant pulls at its point in a frame: 1 in its frames, falling smoothly to 0 within `ease` frames.
+double share_of(const Plant& plant, int frame, int ease) {
+  const int beyond = std::max({plant.first - frame, frame - plant.last, 0});
+  const double t = std::max(0.0, 1 - double(beyond) / (ease + 1));
+  return t * t * (3 - 2 * t);
+}
+
+// What the plants of one limb's point ask for in a frame.
+struct Pull {
+  double share = 0;
+  glm::dvec3 shift{0};  // from the point's own place, mm; already weighted by the share
+};
+
+class Planter {
+ public:
+  Planter(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses,
+          const std::vector<Plant>& plants, int ease)
+      : armature_(armature),
+        limbs_(limbs),
+        plants_(plants),
+        ease_(ease),
+        tracks_(limbs.size()) {
+    for (const Pose& pose : poses) {
+      const PosedRig rig(armature, pose);
+      for (std::size_t l = 0; l < limbs.size(); ++l)
+        for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip})
+          tracks_[l][static_cast<int>(point)].push_back(point_of(rig, limbs[l], point));
+    }
+  }
+
+  // Returns how the body should move with its planted feet in a frame, mm: as they are pulled, in the mean of the legs.
+  // The legs then keep their shape.
+  glm::dvec3 carrying(const Pose& pose, int frame) const {
+    constexpr double kOfFree = 0.1;  // how much it counts that legs without plants stay as they are
+    const PosedRig rig(armature_, pose);
+    glm::dvec3 sum(0);
+    double weights = kOfFree;
+    for (std::size_t l = 0; l < limbs_.size(); ++l) {
+      if (!limbs_[l].is_leg || !is_pulled(l, frame)) continue;
+      const double share =
+          std::max(pull_of(rig, l, PlantPoint::Joint, frame).share, pull_of(rig, l, PlantPoint::Tip, frame).share);
+      // A pull that is only coming or going is small already.
+      sum += share * (target_of(rig, l, frame) - joint_of(rig, limbs_[l])) / std::max(share, 0.05);
+      weights += share;
+    }
+    return sum / std::max(weights, 1.0);
+  }
+  // Returns by how much the body must sink in a frame so that its legs reach, mm.
+  double sinking(const Pose& pose, int frame) const {
+    const PosedRig rig(armature_, pose);
+    double most = 0;
+    for (std::size_t l = 0; l < limbs_.size(); ++l) {
+      if (!limbs_[l].is_leg || !is_pulled(l, frame)) continue;
+      const glm::dvec3 root = rig.head(limbs_[l].upper), target = target_of(rig, l, frame);
+      const double reach = kStretch * lengths_of(limbs_[l], armature_).both();
+      const double aside = glm::length(glm::dvec2(target - root));
+      if (aside < reach) most = std::max(most, root.z - target.z - std::sqrt(reach * reach - aside * aside));
+    }
+    return most;
+  }
+
+  Pose plant(const Pose& pose, int frame) const {
+    PosedRig rig(armature_, pose);
+    for (std::size_t l = 0; l < limbs_.size(); ++l) {
+      if (!is_pulled(l, frame)) continue;
+      const PlantedLimb& limb = limbs_[l];
+      const glm::dvec3 target = target_of(rig, l, frame), tip = tip_of(rig, limb);
+      const Pull pull = pull_of(rig, l, PlantPoint::Tip, frame);
+      const glm::dquat direction = limb.end >= 0 ? rig.turn(limb.end) : glm::dquat(1, 0, 0, 0);
+      const glm::dvec3 moved = target - joint_of(rig, limb);
+      reach_with(rig, limb, armature_, target);
+      if (limb.end < 0) continue;
+      rig.turn_to(limb.end, direction);
+      const glm::dvec3 wanted = tip + pull.shift + (1 - pull.share) * moved;
+      rig.turn_by(limb.end, shortest_turn(tip_of(rig, limb) - rig.head(limb.end), wanted - rig.head(limb.end)));
+    }
+    return rig.pose();
+  }
+
+ private:
+  bool is_pulled(std::size_t limb, int frame) const {
+    return std::any_of(plants_.begin(), plants_.end(), [&](const Plant& plant) {
+      return plant.limb == static_cast<int>(limb) && share_of(plant, frame, ease_) > 0;
+    });
+  }
+  // Returns where a plant wants its point in a frame. Beside its own frames, the point moves as it did, as far aside as
+  // in the nearest of them: a foot that comes down is not pulled to the ground early.
+  glm::dvec3 goal_of(const Plant& plant, int frame) const {
+    const std::vector<glm::dvec3>& track = tracks_[plant.limb][static_cast<int>(plant.point)];
+    return plant.place + track[frame] - track[std::clamp(frame, plant.first, plant.last)];
+  }
+  // The joint of a limb without foot or hand is its tip.
+  Pull pull_of(const PosedRig& rig, std::size_t limb, PlantPoint point, int frame) const {
+    const glm::dvec3 own = point_of(rig, limbs_[limb], point);
+    Pull pull;
+    // Where one plant follows another closely, both pull. The nearer one counts more, and alone in its own frames.
+    double weights = 0, free = 1;
+    for (const Plant& plant : plants_) {
+      if (plant.limb != static_cast<int>(limb) || plant.point != point) continue;
+      const double share = share_of(plant, frame, ease_), weight = share / (1 - share + 1e-12);
+      pull.shift += weight * (goal_of(plant, frame) - own);
+      weights += weight;
+      free *= 1 - share;
+    }
+    if (weights == 0) return pull;
+    pull.share = 1 - free;
+    pull.shift *= pull.share / weights;
+    return pull;
+  }
+  // Where the limb's joint has to go: as its own plant says, and where that pulls less than fully, along with the tip.
+  glm::dvec3 target_of(const PosedRig& rig, std::size_t limb, int frame) const {
+    const Pull joint = pull_of(rig, limb, PlantPoint::Joint, frame), tip = pull_of(rig, limb, PlantPoint::Tip, frame);
+    const glm::dvec3 own = joint_of(rig, limbs_[limb]), target = own + joint.shift + (1 - joint.share) * tip.shift;
+    if (limbs_[limb].end < 0) return target;
+    // While the tip is held and the joint comes or goes, the joint moves on a sphere about the tip.
+    const Bone& end = armature_.bones[limbs_[limb].end];
+    const double of_tip = tip.share * (1 - joint.share), of_joint = joint.share * (1 - tip.share);
+    const glm::dvec3 held = tip_of(rig, limbs_[limb]) + tip.shift + (1 - tip.share) * (target - own);
+    if (of_tip == 0 || glm::distance(held, target) == 0) return target;
+    const glm::dvec3 on_sphere = held + glm::normalize(target - held) * glm::distance(end.head, end.tail);
+    return glm::mix(target, on_sphere, of_tip / (of_tip + of_joint));
+  }
+
+  const Armature& armature_;
+  const std::vector<PlantedLimb>& limbs_;
+  const std::vector<Plant>& plants_;
+  const int ease_;
+  std::vector<std::array<std::vector<glm::dvec3>, 2>> tracks_;  // of each limb's joint and tip in the given poses
+};
+
+// Returns the values averaged over the frames within `reach`, the near ones more.
+std::vector<glm::dvec3> averaged(const std::vector<glm::dvec3>& values, int reach) {
+  const int count = static_cast<int>(values.size());
+  std::vector<glm::dvec3> result(values.size());
+  for (int f = 0; f < count; ++f) {
+    double weights = 0;
+    for (int g = std::max(0, f - reach); g <= std::min(count - 1, f + reach); ++g) {
+      const double weight = reach + 1 - std::abs(g - f);
+      result[f] += weight * values[g];
+      weights += weight;
+    }
+    result[f] /= weights;
+  }
+  return result;
+}
+
+// Returns a smooth curve that is nowhere below the given values: the largest value within `reach` frames, averaged over
+// as many.
+std::vector<double> smooth_above(const std::vector<double>& values, int reach) {
+  const int count = static_cast<int>(values.size());
+  std::vector<double> most(count), smooth(count);
+  for (int f = 0; f < count; ++f)
+    for (int g = std::max(0, f - reach); g <= std::min(count - 1, f + reach); ++g)
+      most[f] = std::max(most[f], values[g]);
+  for (int f = 0; f < count; ++f) {
+    double sum = 0, weights = 0;
+    for (int g = f - reach; g <= f + reach; ++g) {
+      const double weight = reach + 1 - std::abs(g - f);
+      sum += weight * most[std::clamp(g, 0, count - 1)];
+      weights += weight;
+    }
+    smooth[f] = sum / weights;
+  }
+  return smooth;
+}
+
+// The spans of frames for which `stands` is true, without short interruptions and short spans.
+std::vector<std::array<int, 2>> spans_of(const std::vector<bool>& stands, double rate) {
+  const int longest_gap = static_cast<int>(kLongestGap * rate);
+  const int shortest = std::max(2, static_cast<int>(std::ceil(kShortestStance * rate)));
+  std::vector<std::array<int, 2>> spans;
+  for (int f = 0; f < std::ssize(stands); ++f) {
+    if (!stands[f]) continue;
+    if (!spans.empty() && f - spans.back()[1] <= longest_gap + 1) spans.back()[1] = f;
+    else spans.push_back({f, f});
+  }
+  std::erase_if(spans, [&](const auto& span) { return span[1] - span[0] + 1 < shortest; });
+  return spans;
+}
+
+// Finds the spans in which a point stands.
+//   size  of the leg, as a share of a usual one
+std::vector<std::array<int, 2>> stances_of(const std::vector<glm::dvec3>& places, double size, double rate) {
+  std::vector<double> heights;
+  for (const glm::dvec3& place : places) heights.push_back(place.z);
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(kLowest * double(heights.size() - 1));
+  std::nth_element(heights.begin(), low, heights.end());
+  const double ground = *low;
+  std::vector<bool> stands(places.size());
+  const int last = static_cast<int>(places.size()) - 1;
+  for (int f = 0; f <= last; ++f) {
+    const int before = std::max(0, f - 1), after = std::min(last, f + 1);
+    const double speed = glm::distance(places[before], places[after]) * rate / std::max(1, after - before);
+    stands[f] = speed < kStanding * size && places[f].z < ground + kLifted * size;
+  }
+  return spans_of(stands, rate);
+}
+
+glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
+  glm::dvec3 sum(0);
+  for (int f = first; f <= last; ++f) sum += values[f];
+  return sum / double(last - first + 1);
+}
+
+// Gives each plant of a foot's tip its place. While the joint stays in one place, the tip has one place too.
+//   tips, joints  plants of one foot, sorted by frames
+void place_tips(std::vector<Plant>& tips, const std::vector<Plant>& joints, const std::vector<glm::dvec3>& tip) {
+  for (std::size_t from = 0, to = 0; from < tips.size(); from = to) {
+    const auto is_held_on = [&](const Plant& before, const Plant& after) {
+      return std::any_of(joints.begin(), joints.end(),
+                         [&](const Plant& joint) { return joint.first <= before.last && joint.last >= after.first; });
+    };
+    for (to = from + 1; to < tips.size() && is_held_on(tips[to - 1], tips[to]);) ++to;
+    glm::dvec3 sum(0);
+    int frames = 0;
+    for (std::size_t k = from; k < to; ++k)
+      for (int f = tips[k].first; f <= tips[k].last; ++f, ++frames) sum += tip[f];
+    for (std::size_t k = from; k < to; ++k) tips[k].place = sum / double(frames);
+  }
+}
+
+}  // namespace
+
+std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
+  const Skeleton skeleton = skeleton_of(armature);
+  const auto bone_of = [&](BodyPart part, BodySide side) {
+    const auto found = skeleton.joint.find({part, side, 0});
+    return found == skeleton.joint.end() ? -1 : found->second;
+  };
+  const auto axes = body_axes(skeleton, BodyPart::Thigh);
+  std::vector<PlantedLimb> limbs;
+  for (const bool is_leg : {true, false})
+    for (const BodySide side : {BodySide::Left, BodySide::Right, BodySide::Middle}) {
+      PlantedLimb limb;
+      const char* of_side = side == BodySide::Left ? "left " : side == BodySide::Right ? "right " : "";
+      limb.name = std::string(of_side) + (is_leg ? "foot" : "hand");
+      limb.upper = bone_of(is_leg ? BodyPart::Thigh : BodyPart::UpperArm, side);
+      limb.lower = bone_of(is_leg ? BodyPart::Shank : BodyPart::Forearm, side);
+      limb.end = bone_of(is_leg ? BodyPart::Foot : BodyPart::Hand, side);
+      limb.is_leg = is_leg;
+      if (limb.upper < 0 || limb.lower < 0) continue;
+      const Lengths length = lengths_of(limb, armature);
+      if (!(length.upper > 0 && length.lower > 0)) continue;
+      limb.hinge = hinge_of(limb, armature, axes ? (*axes)[1] : glm::dvec3(0, 1, 0));
+      limbs.push_back(std::move(limb));
+    }
+  return limbs;
+}
+
+glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& armature, const Pose& pose) {
+  return point_of(PosedRig(armature, pose), limb, point);
+}
+
+std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                  const std::vector<Pose>& poses, double rate) {
+  std::vector<Plant> plants;
+  if (poses.empty()) return plants;
+  for (int l = 0; l < std::ssize(limbs); ++l) {
+    const PlantedLimb& limb = limbs[l];
+    if (!limb.is_leg) continue;
+    std::vector<glm::dvec3> joint, tip;
+    for (const Pose& pose : poses) {
+      const PosedRig rig(armature, pose);
+      joint.push_back(joint_of(rig, limb));
+      tip.push_back(tip_of(rig, limb));
+    }
+    const double size = lengths_of(limb, armature).both() / kUsualLeg;
+    std::vector<Plant> tips, joints;
+    if (limb.end >= 0)
+      for (const auto& [first, last] : stances_of(tip, size, rate))
+        tips.push_back({l, PlantPoint::Tip, first, last, {}});
+    for (const auto& [first, last] : stances_of(joint, size, rate))
+      joints.push_back({l, PlantPoint::Joint, first, last, mean_of(joint, first, last)});
+    place_tips(tips, joints, tip);
+    for (Plant& plant : joints) {
+      // Joint and tip of a foot on the ground must be as far apart as they are in the foot.
+      for (const Plant& other : tips) {
+        const int from = std::max(plant.first, other.first), to = std::min(plant.last, other.last);
+        if (from > to) continue;
+        const glm::dvec3 along = mean_of(joint, from, to) - mean_of(tip, from, to);
+        const Bone& foot = armature.bones[limb.end];
+        if (glm::length(along) > 0)
+          plant.place = other.place + glm::normalize(along) * glm::distance(foot.head, foot.tail);
+        break;
+      }
+    }
+    plants.insert(plants.end(), joints.begin(), joints.end());
+    plants.insert(plants.end(), tips.begin(), tips.end());
+  }
+  return plants;
+}
+
+std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                          const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease) {
+  const int last = static_cast<int>(poses.size()) - 1;
+  for (const Plant& plant : plants) {
+    if (plant.limb < 0 || plant.limb >= std::ssize(limbs))
+      throw Error("a plant names no limb of the rig", "planting", "name a hand or foot that the rig has");
+    if (plant.first < 0 || plant.last < plant.first || plant.last > last)
+      throw Error(
+          "the motion does not have these frames",
+          limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last),
+          "choose frames from 0 to " + std::to_string(last));
+  }
+  ease = std::max(0, ease);
+  const Planter planter(armature, limbs, poses, plants, ease);
+  std::vector<Pose> result = poses;
+  std::vector<glm::dvec3> carrying(poses.size());
+  for (int f = 0; f <= last; ++f) carrying[f] = planter.carrying(poses[f], f);
+  carrying = averaged(carrying, ease);
+  for (int f = 0; f <= last; ++f) result[f].root_translation += carrying[f];
+  std::vector<double> sinking(poses.size());
+  for (int f = 0; f <= last; ++f) sinking[f] = planter.sinking(result[f], f);
+  sinking = smooth_above(sinking, ease);
+  for (int f = 0; f <= last; ++f) {
+    result[f].root_translation.z -= sinking[f];
+    result[f] = planter.plant(result[f], f);
+  }
+  return result;
+}
+
+PlantError error_of(const Plant& plant, const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                    const std::vector<Pose>& poses) {
+  PlantError error;
+  glm::dvec3 first(0);
+  for (int f = plant.first; f <= plant.last; ++f) {
+    const glm::dvec3 place = place_of(limbs[plant.limb], plant.point, armature, poses[f]);
+    if (f == plant.first) first = place;
+    error.from_place = std::max(error.from_place, glm::distance(place, plant.place));
+    error.slide = std::max(error.slide, glm::distance(glm::dvec2(place), glm::dvec2(first)));
+  }
+  return error;
+}
+
+}  // namespace limber

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/pose_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace limber {
+
+namespace {
+
+// A Butterworth low-pass filter of second order.
+class LowPass {
+ public:
+  LowPass(double rate, double cutoff) {
+    // Two passes move the frequency at which half of the power is left; a higher one makes up for it.
+    const double of_two_passes = cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25);
+    const double k = std::tan(std::numbers::pi * std::min(of_two_passes / rate, 0.49));
+    const double norm = 1 / (1 + std::numbers::sqrt2 * k + k * k);
+    in_ = k * k * norm;
+    before_ = 2 * (k * k - 1) * norm;
+    twice_before_ = (1 - std::numbers::sqrt2 * k + k * k) * norm;
+  }
+
+  // Filters values in place, from the first to the last. Before the first the value was always the same.
+  template <class Iterator>
+  void run(Iterator begin, Iterator end) const {
+    double x1 = *begin, x2 = *begin, y1 = *begin, y2 = *begin;
+    for (; begin != end; ++begin) {
+      const double x = *begin, y = in_ * (x + 2 * x1 + x2) - before_ * y1 - twice_before_ * y2;
+      x2 = std::exchange(x1, x);
+      y2 = std::exchange(y1, y);
+      *begin = y;
+    }
+  }
+
+ private:
+  double in_, before_, twice_before_;
+};
+
+// Filters the track forwards and backwards. At each end it is continued by its own mirror image, turned about the end's
+// value, so that the filter neither flattens the ends nor makes them ring.
+void filter(std::vector<double>& track, const LowPass& low_pass, std::size_t margin) {
+  const std::size_t count = track.size();
+  margin = std::min(margin, count - 1);
+  std::vector<double> longer;
+  longer.reserve(count + 2 * margin);
+  for (std::size_t i = margin; i > 0; --i) longer.push_back(2 * track.front() - track[i]);
+  longer.insert(longer.end(), track.begin(), track.end());
+  for (std::size_t i = 1; i <= margin; ++i) longer.push_back(2 * track.back() - track[count - 1 - i]);
+  low_pass.run(longer.begin(), longer.end());
+  low_pass.run(longer.rbegin(), longer.rend());
+  std::copy_n(longer.begin() + static_cast<std::ptrdiff_t>(margin), count, track.begin());
+}
+
+}  // namespace
+
+std::vector<Pose> smoothed(const std::vector<Pose>& poses, double rate, double cutoff) {
+  if (!(cutoff > 0) || cutoff >= rate / 2) {
+    char frequencies[96];
+    std::snprintf(frequencies, sizeof frequencies, "%g Hz in a motion of %g frames per second", cutoff, rate);
+    throw Error("the cutoff frequency does not fit the motion", frequencies,
+                "choose one above 0 and below half of the frames per second, such as 6");
+  }
+  std::vector<Pose> result = poses;
+  if (poses.size() < 3) return result;
+  const LowPass low_pass(rate, cutoff);
+  const auto margin = static_cast<std::size_t>(std::ceil(3 * rate / cutoff));
+  std::vector<double> track(poses.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t f = 0; f < poses.size(); ++f) track[f] = poses[f].root_translation[axis];
+    filter(track, low_pass, margin);
+    for (std::size_t f = 0; f < poses.size(); ++f) result[f].root_translation[axis] = track[f];
+  }
+  for (std::size_t bone = 0; bone < poses.front().rotation.size(); ++bone) {
+    // q and -q are the same rotation; each frame takes the one nearer to the frame before.
+    std::vector<glm::dquat> turn(poses.size());
+    for (std::size_t f = 0; f < poses.size(); ++f) {
+      turn[f] = poses[f].rotation[bone];
+      if (f > 0 && glm::dot(turn[f], turn[f - 1]) < 0) turn[f] = -turn[f];
+    }
+    for (int part = 0; part < 4; ++part) {
+      for (std::size_t f = 0; f < poses.size(); ++f) track[f] = turn[f][part];
+      filter(track, low_pass, margin);
+      for (std::size_t f = 0; f < poses.size(); ++f) turn[f][part] = track[f];
+    }
+    for (std::size_t f = 0; f < poses.size(); ++f) result[f].rotation[bone] = glm::normalize(turn[f]);
+  }
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/plants.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/motion/pose_filter.h"
+#include "tests/support/random_limbs.h"
+
+using namespace limber;
+
+namespace {
+
+// Legs and arms without anything else. The body looks along -y.
+Armature walker() {
+  Armature rig;
+  const auto add = [&](const char* name, int parent, const glm::dvec3& head, const glm::dvec3& tail) {
+    rig.bones.push_back({name, parent, head, tail, 0, {}});
+    return static_cast<int>(rig.bones.size()) - 1;
+  };
+  const int hips = add("Hips", -1, {0, 0, 900}, {0, 0, 1000});
+  for (const int side : {1, -1}) {
+    const std::string which = side > 0 ? "Left" : "Right";
+    const double x = 100.0 * side;
+    const int thigh = add((which + "UpLeg").c_str(), hips, {x, 0, 900}, {x, -10, 480});
+    const int shank = add((which + "Leg").c_str(), thigh, {x, -10, 480}, {x, 0, 80});
+    add((which + "Foot").c_str(), shank, {x, 0, 80}, {x, -150, 10});
+  }
+  const int chest = add("Spine", hips, {0, 0, 1000}, {0, 0, 1450});
+  for (const int side : {1, -1}) {
+    const std::string which = side > 0 ? "Left" : "Right";
+    const double x = 200.0 * side;
+    const int upper = add((which + "Arm").c_str(), chest, {x, 0, 1400}, {x, 10, 1100});
+    const int lower = add((which + "ForeArm").c_str(), upper, {x, 10, 1100}, {x, 0, 850});
+    add((which + "Hand").c_str(), lower, {x, 0, 850}, {x, 0, 760});
+  }
+  return rig;
+}
+
+// Steps on the spot that drift forward, as a bad recording does: feet that stand slide along with the body.
+std::vector<Pose> sliding_steps(const Armature& rig, int frames, double tremble = 0) {
+  test::RandomNumbers random(7);
+  std::vector<Pose> poses;
+  for (int f = 0; f < frames; ++f) {
+    Pose pose = rest_pose(rig);
+    pose.root_translation = {0, -2.0 * f, 3 * std::sin(f * 0.2)};
+    for (const int side : {0, 1}) {
+      const double lift = std::max(0.0, std::sin(f * 0.15 + side * std::numbers::pi));
+      const int thigh = 1 + 3 * side;
+      pose.rotation[thigh] = glm::angleAxis(-0.9 * lift, glm::dvec3(1, 0, 0));
+      pose.rotation[thigh + 1] = glm::angleAxis(1.2 * lift, glm::dvec3(1, 0, 0));
+    }
+    for (auto& turn : pose.rotation)
+      turn = glm::normalize(turn * glm::angleAxis(tremble * random.any(-1, 1), glm::dvec3(0, 1, 0)));
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+double largest_step(const Armature& rig, const std::vector<Pose>& poses, const PlantedLimb& limb, PlantPoint point) {
+  double most = 0;
+  for (std::size_t f = 1; f < poses.size(); ++f)
+    most =
+        std::max(most, glm::distance(place_of(limb, point, rig, poses[f]), place_of(limb, point, rig, poses[f - 1])));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("plants: limbs are found by name, and feet stand where they are low and slow") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  REQUIRE(limbs.size() == 4);
+  CHECK(limbs[0].name == "left foot");
+  CHECK(limbs[3].name == "right hand");
+  const auto poses = sliding_steps(rig, 200);
+  const auto plants = plants_of_feet(rig, limbs, poses, 60);
+  CHECK(plants.size() >= 8);
+  for (const Plant& plant : plants) {
+    CHECK(limbs[plant.limb].is_leg);
+    CHECK(error_of(plant, rig, limbs, poses).slide > 10);  // they do slide before
+    // In the middle of the stance the foot is not lifted.
+    const double lift = std::sin((plant.first + plant.last) / 2.0 * 0.15 + plant.limb * std::numbers::pi);
+    CHECK(lift < 0.5);
+  }
+}
+
+TEST_CASE("plants: planted feet stay, lengths of bones stay, and nothing jumps") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  const auto poses = sliding_steps(rig, 200);
+  const auto plants = plants_of_feet(rig, limbs, poses, 60);
+  const auto cleaned = planted(rig, limbs, poses, plants, 9);
+  REQUIRE(cleaned.size() == poses.size());
+  for (const Plant& plant : plants) {
+    CAPTURE(limbs[plant.limb].name);
+    CAPTURE(plant.first);
+    const PlantError error = error_of(plant, rig, limbs, cleaned);
+    CHECK(error.slide < 1);
+    CHECK(error.from_place < 1);
+  }
+  for (const PlantedLimb& limb : limbs)
+    for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip})
+      CHECK(largest_step(rig, cleaned, limb, point) < 2.5 * largest_step(rig, poses, limb, point) + 2);
+  for (const Pose& pose : cleaned)
+    for (const glm::dquat& turn : pose.rotation) CHECK(glm::length(turn) == doctest::Approx(1));
+}
+
+TEST_CASE("plants: a hand reaches a target exactly, keeps its direction, and a far target is missed by the rest") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  const auto poses = sliding_steps(rig, 100);
+  test::RandomNumbers random(3);
+  for (int trial = 0; trial < 40; ++trial) {
+    Plant hold{2, PlantPoint::Tip, 40, 60, {}};
+    // Within the arm's reach of the shoulder's places in these frames.
+    const glm::dvec3 direction =
+        glm::normalize(glm::dvec3(random.any(-1, 1), random.any(-1, 0.2), random.any(-1, 1)) + glm::dvec3(1e-3));
+    hold.place = glm::dvec3(200, -100, 1400) + direction * random.any(250, 420) - glm::dvec3(0, 0, 90);
+    const auto held = planted(rig, limbs, poses, {hold}, 10);
+    CHECK(error_of(hold, rig, limbs, held).from_place < 0.01);
+    const auto direction_of_hand = [&](const Pose& pose) { return posed_from_rest(rig, pose)[limbs[2].end].rotation; };
+    CHECK(std::abs(glm::dot(direction_of_hand(held[50]), direction_of_hand(poses[50]))) == doctest::Approx(1));
+    CHECK(held[20].rotation == poses[20].rotation);  // far before, nothing changed
+    CHECK(held[80].rotation == poses[80].rotation);
+  }
+  Plant far{2, PlantPoint::Tip, 40, 60, {2000, 0, 1400}};
+  const auto held = planted(rig, limbs, poses, {far}, 10);
+  const double arm = 2000 - 200 - 300.17 - 250.2 - 90;
+  CHECK(error_of(far, rig, limbs, held).from_place == doctest::Approx(arm).epsilon(0.15));
+}
+
+TEST_CASE("plants: a body sinks where a straight leg would not reach") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  std::vector<Pose> poses(60, rest_pose(rig));
+  for (Pose& pose : poses) pose.root_translation.z = 30;  // the feet hover
+  Plant stand{0, PlantPoint::Joint, 20, 40, {100, -200, 80}};
+  const auto cleaned = planted(rig, limbs, poses, {stand}, 6);
+  CHECK(error_of(stand, rig, limbs, cleaned).from_place < 0.5);
+  CHECK(cleaned[30].root_translation.z < 20);
+  CHECK(cleaned[0].root_translation.z == doctest::Approx(30));
+  for (std::size_t f = 1; f < cleaned.size(); ++f)
+    CHECK(std::abs(cleaned[f].root_translation.z - cleaned[f - 1].root_translation.z) < 12);
+}
+
+TEST_CASE("plants: wrong frames and limbs are refused, and no frames have no plants") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  const auto poses = sliding_steps(rig, 10);
+  CHECK_THROWS_AS(planted(rig, limbs, poses, {{0, PlantPoint::Tip, 5, 10, {}}}, 3), Error);
+  CHECK_THROWS_AS(planted(rig, limbs, poses, {{0, PlantPoint::Tip, 6, 5, {}}}, 3), Error);
+  CHECK_THROWS_AS(planted(rig, limbs, poses, {{4, PlantPoint::Tip, 0, 5, {}}}, 3), Error);
+  CHECK(planted(rig, limbs, {}, {}, 3).empty());
+  CHECK(plants_of_feet(rig, limbs, {}, 30).empty());
+  Armature stick;
+  stick.bones.push_back({"thing", -1, {0, 0, 0}, {0, 0, 100}, 0, {}});
+  CHECK(planted_limbs(stick).empty());
+}
+
+TEST_CASE("pose filter: slow movement stays, fast movement goes, nothing lags") {
+  const Armature rig = walker();
+  constexpr double kRate = 120;
+  // The gain of two passes of a second-order Butterworth filter at a frequency: 1 / (1 + (tan ratio)^4), where the
+  // cutoff of one pass is raised so that both together halve the power at the cutoff.
+  const auto gain_of = [&](double frequency, double cutoff) {
+    const double raised = cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25);
+    const double ratio = std::tan(std::numbers::pi * frequency / kRate) / std::tan(std::numbers::pi * raised / kRate);
+    return 1 / (1 + std::pow(ratio, 4));
+  };
+  for (const double frequency : {1.0, 4.0, 6.0, 12.0, 30.0}) {
+    CAPTURE(frequency);
+    std::vector<Pose> poses;
+    for (int f = 0; f < 720; ++f) {
+      Pose pose = rest_pose(rig);
+      const double wave = std::sin(2 * std::numbers::pi * frequency * f / kRate);
+      pose.root_translation.x = 10 * wave;
+      pose.rotation[2] = glm::angleAxis(0.02 * wave, glm::dvec3(1, 0, 0));
+      if (f % 3 == 0) pose.rotation[2] = -pose.rotation[2];  // the same rotation
+      poses.push_back(pose);
+    }
+    const auto result = smoothed(poses, kRate, 6);
+    for (int f = 240; f < 480; ++f) {
+      const double wave = std::sin(2 * std::numbers::pi * frequency * f / kRate) * gain_of(frequency, 6);
+      CHECK(result[f].root_translation.x == doctest::Approx(10 * wave).epsilon(0.01).scale(1));
+      const glm::dquat turn = result[f].rotation[2].w < 0 ? -result[f].rotation[2] : result[f].rotation[2];
+      CHECK(turn.x == doctest::Approx(0.01 * wave).epsilon(0.01).scale(0.001));
+    }
+  }
+  CHECK(smoothed(std::vector<Pose>(2, rest_pose(rig)), 30, 6).size() == 2);
+  CHECK_THROWS_AS(smoothed({}, 30, 15), Error);
+  CHECK_THROWS_AS(smoothed({}, 30, 0), Error);
+  CHECK_THROWS_AS(smoothed({}, 30, std::nan("")), Error);
+}
+
+TEST_CASE("pose filter: a straight line stays one up to its ends, and turning the body turns the result") {
+  const Armature rig = walker();
+  std::vector<Pose> poses = sliding_steps(rig, 120, 0.05);
+  for (int f = 0; f < 120; ++f) poses[f].root_translation = {5.0 * f, 0, 0};
+  const auto result = smoothed(poses, 60, 6);
+  for (int f = 0; f < 120; ++f) CHECK(result[f].root_translation.x == doctest::Approx(5.0 * f).epsilon(1e-6).scale(1));
+  const glm::dquat turn = glm::normalize(glm::dquat(0.3, 0.5, -0.2, 0.7));
+  std::vector<Pose> turned = poses;
+  for (Pose& pose : turned) pose.rotation[0] = turn * pose.rotation[0];
+  const auto of_turned = smoothed(turned, 60, 6);
+  for (int f = 0; f < 120; ++f)
+    CHECK(std::abs(glm::dot(of_turned[f].rotation[0], turn * result[f].rotation[0])) == doctest::Approx(1));
+}
