@@ -108,8 +108,11 @@ void print_angles(const Armature& armature, const BodyFrames& frames, const Join
             std::string(motion_name(joint.joint, i)).c_str(), shown, std::round(range.low) + 0.0,
             std::round(range.high) + 0.0, beyond ? ", beyond" : "");
     }
-    if (at_gimbal_lock(joint.joint, motions))
-      print("%-22s at 90 degrees of the middle one, its first and its last angle are one motion\n", "");
+    if (!at_gimbal_lock(joint.joint, motions)) continue;
+    const bool is_first = joint.joint == BodyJoint::Wrist || joint.joint == BodyJoint::Girdle;
+    print("%-22s at 90 degrees of %s, %s are the same rotation\n", "",
+          std::string(motion_name(joint.joint, is_first ? 0 : 1)).c_str(),
+          joint.joint == BodyJoint::Wrist ? "its other motion and the forearm's pronation" : "its other motions");
   }
 }
 

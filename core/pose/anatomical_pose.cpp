@@ -232,8 +232,7 @@ JointAngles with_sides(const BodyFrames& frames, const JointAngles& angles, cons
   // out.
   JointAngles found;
   for (const auto& [joint, motions] : angles)
-    if (angles.size() == 1 || has_joint(frames, joint) ||
-        (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
+    if (has_joint(frames, joint) || (joint.side == BodySide::Middle && has_on_a_side(frames, joint.joint)))
       found[sided(frames, joint, where)] = motions;
   if (!found.empty() || angles.empty()) return found;
   // A limb whose bone names tell no side takes angles that are requested for the left or the right side.

@@ -43,7 +43,11 @@ std::vector<int> bones_below(const Armature& armature, int bone) {
 // Returns an axis across the bone about which a ball joint swings: the axis of the body (left, back, up) that is least
 // along the bone, made perpendicular to it. Left comes first, so a leg that hangs swings forward and back.
 glm::dvec3 swing_axis(const Armature& armature, int bone) {
-  const glm::dvec3 along = glm::normalize(armature.bones[bone].tail - armature.bones[bone].head);
+  const glm::dvec3 whole = armature.bones[bone].tail - armature.bones[bone].head;
+  if (!(glm::length(whole) > 0))
+    throw Error("the bone has no length, so it is not known about which axes its joint turns",
+                armature.bones[bone].name, "give the bone a length, or its joint a hinge");
+  const glm::dvec3 along = glm::normalize(whole);
   const glm::dmat3 body = upright_axes(armature);
   glm::dvec3 best(0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -123,6 +127,10 @@ std::vector<JointTurn> own_turns(const Armature& armature, int bone) {
     const double most = std::min(limits.cone / kDegree, kWidestSwing);
     for (const glm::dvec3& axis : {first, second}) add_turns(axis, -most, most, turns);
   }
+  const JointLimits::Type own = armature.bones[bone].limits.type;
+  if (own == JointLimits::Type::Fixed || (turns.empty() && own != JointLimits::Type::Free))
+    throw Error("the rig's limits do not let this joint turn by 5 degrees", armature.bones[bone].name,
+                "widen them, or say over which range, such as 0,90");
   if (turns.empty()) add_turns(flex_axis(armature, bone), 0, 90, turns);
   return turns;
 }

@@ -76,13 +76,19 @@ std::vector<TurnFigures> measured(const WeightedBody& body, const SkinWeights& w
 WeightEdit with_shares(const WeightedBody& body, const SkinWeights& weights, const JointField& field,
                        std::span<const double> nodes, const JointMotion& motion, const BoneSet& locked) {
   EditScope scope{.locked = locked};
+  std::vector<std::uint8_t> is_moving(body.armature.bones.size(), 0);
+  for (const int bone : motion.moving) is_moving[bone] = 1;
   WeightEdit edit =
       edited(body, weights, scope,
              [&](const WeightRules& rules, Influence& influence, std::int64_t index, const glm::ivec3& voxel) {
                const FieldPoint point = field.point(index, voxel);
                if (point.piece < 0 || point.mask == 0) return WeightChange{};
-               const double share = field.value(point, nodes);
-               return rules.set(influence, motion.moving, static_cast<int>(std::lround(share * kFullWeight)));
+               // Locked bones keep their part of the share; the others get the rest.
+               int held = 0;
+               for (int i = 0; i < 4; ++i)
+                 if (is_moving[influence.bone[i]] && rules.is_locked(influence.bone[i])) held += influence.weight[i];
+               const int share = static_cast<int>(std::lround(field.value(point, nodes) * kFullWeight));
+               return rules.set(influence, motion.moving, std::max(0, share - held));
              });
   scope.region =
       region_where(body.tissue, [&](std::int64_t index, const glm::ivec3&) { return field.mask(index) > 0; });
@@ -269,6 +275,8 @@ JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, i
   if (std::all_of(classes.begin(), classes.end(), [](FleshClass c) { return c == FleshClass::Other; }))
     throw Error("no tissue of this body is known to be skin, fat or muscle", body.armature.bones[bone].name,
                 "give their labels these kinds in a tissue table");
+  if (!settings.locked.empty() && settings.locked[bone])
+    throw Error("the bone below the joint is locked", body.armature.bones[bone].name, "unlock it");
   return Repairer(body, weights, bone, settings, progress).run();
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/pose/joint_turns.h"
 #include "editor/context/transform_settings.h"
 #include "editor/pose/pose_edits.h"
 
@@ -17,10 +18,17 @@ double within(const Editor& editor, double degrees, const AngleRange& range) {
 // Returns the edited pose with X-mirror and the limits of the moved bones. Fingers keep to the ranges of their angles
 // instead: a hinge in the rig's limits would not let them spread.
 Pose finished(const Editor& editor, Pose pose, const JointAngles& moved) {
+  const BodyFrames& frames = body_frames_of_rig(editor);
   std::vector<int> bones;
-  for (const auto& [joint, motions] : moved)
-    if (!is_finger(joint.joint))
-      for (const int bone : bones_of_joints(body_frames_of_rig(editor), {{joint, motions}})) bones.push_back(bone);
+  for (const auto& [joint, motions] : moved) {
+    if (is_finger(joint.joint)) continue;
+    for (const int bone : bones_of_joints(frames, {{joint, motions}})) bones.push_back(bone);
+    // Pronation turns the hand too, and a raised arm its collarbone.
+    std::optional<int> along;
+    if (joint.joint == BodyJoint::Forearm) along = pronating_hand(frames, joint.side);
+    if (joint.joint == BodyJoint::Shoulder) along = frames.find(BodyPart::Clavicle, joint.side);
+    if (along) bones.push_back(*along);
+  }
   const Pose before = pose_of(editor.document());
   return mirrored_too(editor, before, limited(editor, std::move(pose), bones));
 }

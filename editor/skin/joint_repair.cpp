@@ -47,7 +47,7 @@ void start_repairing_joint(Editor& editor) {
              [of, bone, settings, edited, name, tissue = parted_tissue(editor)](Progress& progress) -> Finish {
                JointRepair repair = repair_joint({*of.volume, *tissue, *of.tissues, *of.armature}, *of.weights, bone,
                                                  settings, progress);
-               auto told = std::make_shared<RepairedJoint>(RepairedJoint{.bone = name, .figures = {}});
+               auto told = std::make_shared<RepairedJoint>(RepairedJoint{.bone = name, .figures = {}, .in = {}});
                std::optional<EditedLayers> made;
                if (repair.is_better) made = on_own_layer(edited, "Joint of " + name, repair.weights);
                repair.weights = {};
@@ -60,6 +60,7 @@ void start_repairing_joint(Editor& editor) {
                  } else {
                    e.messages.info(kRepairing, "No weights were found that are better: nothing has changed");
                  }
+                 told->in = e.document().weights;
                  e.skin->painting->repaired_joint = told;
                  e.touch();
                };

@@ -15,8 +15,9 @@ class Column;
 
 // The outcome of the last repair.
 struct RepairedJoint {
-  std::string bone;     // name of the bone below the joint
-  JointRepair figures;  // without its weights
+  std::string bone;                     // name of the bone below the joint
+  JointRepair figures;                  // without its weights
+  std::weak_ptr<const SkinWeights> in;  // the document's weights right after the repair; with others it tells nothing
 };
 
 // Starts the job. The document must have weights that belong to its rig, and an active bone with a parent. Without a

@@ -63,7 +63,8 @@ void draw_joint_repair(Editor& editor, Column& column) {
         editor, "skin.repair_joint",
         {{row.low.x + look.px(10), row.low.y + look.px(4)}, {row.low.x + look.px(10) + width, row.low.y + look.px(30)}},
         label);
-    if (const auto repaired = editor.skin->painting->repaired_joint) draw_gain(editor, column, *repaired);
+    const auto repaired = editor.skin->painting->repaired_joint;
+    if (repaired && repaired->in.lock() == editor.document().weights) draw_gain(editor, column, *repaired);
     column.space(6);
   }
   column.end_section();

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/phantom/phantom.h"
 #include "core/pose/clinical_angles.h"
 #include "tests/support/body_rig.h"
 #include "tests/support/program.h"
@@ -72,6 +73,11 @@ TEST_CASE("pose: a file of clinical angles sets the joints that it names, over i
   CHECK(refusal(R"({"angles": {"left hip": {"bending": 9}}})").find("no motion") != std::string::npos);
   CHECK(refusal(R"({"angles": {"left tail": {"flexion": 9}}})").find("no joint") != std::string::npos);
   CHECK(refusal(R"({"angles": {"hip": {"flexion": 9}}})").find("left, right or both") != std::string::npos);
+  // A limb whose bones tell no side takes the angles of either side.
+  const Armature arm = make_arm_phantom(10).armature;
+  const Pose bent = parse_pose(R"({"angles": {"left elbow": {"flexion": 60}}})", "test", arm);
+  CHECK(*clinical_angles(arm, body_frames(arm), bent).at({BodyJoint::Elbow, BodySide::Middle})[0] ==
+        doctest::Approx(60));
   CHECK(refusal(R"({"angles": [3]})").find("table of joints") != std::string::npos);
   CHECK(refusal(R"({"angles": {"left hip": {"flexion": 999}}})").find("no angle") != std::string::npos);
 }

@@ -70,3 +70,15 @@ TEST_CASE("joint motion: a root, and a range without a turn, are refused with wh
                                  TurnRange{-90, -10}, TurnRange{0, NAN}})
     CHECK_THROWS_WITH_AS(joint_motion(bent_rig(), 1, range), doctest::Contains("such as 0,90"), Error);
 }
+
+TEST_CASE("joint motion: a joint that its limits hold still, and a ball without a length, are refused") {
+  Armature rig = bent_rig();
+  rig.bones[1].limits = {.type = JointLimits::Type::Fixed};
+  CHECK_THROWS_WITH_AS(joint_motion(rig, 1, {}), doctest::Contains("do not let this joint turn"), Error);
+  CHECK(joint_motion(rig, 1, TurnRange{0, 45}).turns.size() == 2);
+  rig.bones[1].limits = {.type = JointLimits::Type::Hinge, .axis = {1, 0, 0}, .minimum = 0, .maximum = 4 * kDegree};
+  CHECK_THROWS_WITH_AS(joint_motion(rig, 1, {}), doctest::Contains("do not let this joint turn"), Error);
+  rig.bones[1].limits = {.type = JointLimits::Type::Ball, .cone = 1};
+  rig.bones[1].tail = rig.bones[1].head;
+  CHECK_THROWS_WITH_AS(joint_motion(rig, 1, {}), doctest::Contains("has no length"), Error);
+}

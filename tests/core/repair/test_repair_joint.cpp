@@ -160,8 +160,10 @@ TEST_CASE("repair joint: one thread gives what two give, bit for bit") {
 
 TEST_CASE("repair joint: where nothing may change the weights come back as they were, and the sentence says so") {
   const Limb arm = phantom_arm(8);
-  const BoneSet all(arm.rig.bones.size(), 1);
-  const JointRepair repair = repair_joint(arm.body(), arm.heat, arm.bone, {.range = TurnRange{0, 45}, .locked = all});
+  BoneSet others(arm.rig.bones.size(), 1);
+  others[arm.bone] = 0;  // with all others locked there is no bone that could give it weight
+  const JointRepair repair =
+      repair_joint(arm.body(), arm.heat, arm.bone, {.range = TurnRange{0, 45}, .locked = others});
   CHECK_FALSE(repair.is_better);
   CHECK(repair.changed == 0);
   CHECK(repair.weights == arm.heat);
@@ -191,6 +193,39 @@ TEST_CASE("repair joint: a locked bone keeps every bit of its weights") {
     }
   CHECK(repair.is_better);
   CHECK(differ == 0);
+}
+
+TEST_CASE(
+    "repair joint: with a locked bone the moving share is what it is without, and its own bone may not be locked") {
+  // The hand takes half of the forearm's weight everywhere, so the moving share stays what it was.
+  Limb arm = phantom_arm(6);
+  const JointRepairSettings settings{.range = TurnRange{0, 60}, .blend = Blend::DualQuaternion};
+  const int hand = require_bone(arm.rig, "Hand");
+  SkinWeights shared = arm.heat;
+  for (std::int64_t brick = 0; brick < shared.chunk_count(); ++brick) {
+    std::vector<Influence> chunk(shared.chunk(brick).begin(), shared.chunk(brick).end());
+    for (Influence& influence : chunk) {
+      std::vector<std::pair<int, double>> weights;
+      for (int i = 0; i < 4; ++i)
+        if (influence.weight[i] > 0 && influence.bone[i] != arm.bone && influence.bone[i] != hand)
+          weights.emplace_back(influence.bone[i], influence.weight[i]);
+      const double moving = influence.of(arm.bone) + influence.of(hand);
+      if (moving == 0 || weights.size() > 2) continue;
+      for (const int bone : {arm.bone, hand}) weights.emplace_back(bone, moving * kFullWeight / 2);
+      influence = quantize(weights);
+    }
+    shared.set_chunk(brick, chunk);
+  }
+  JointRepairSettings locked = settings;
+  locked.locked.assign(arm.rig.bones.size(), 0);
+  locked.locked[hand] = 1;
+  const JointRepair free = repair_joint(arm.body(), shared, arm.bone, settings);
+  const JointRepair held = repair_joint(arm.body(), shared, arm.bone, locked);
+  CHECK(free.is_better);
+  CHECK(held.is_better);
+  CHECK(mean_sum(held.after) < mean_sum(held.before));
+  locked.locked[arm.bone] = 1;
+  CHECK_THROWS_WITH_AS(repair_joint(arm.body(), shared, arm.bone, locked), doctest::Contains("is locked"), Error);
 }
 
 TEST_CASE("repair joint: the real elbow keeps its tissues within 8 % at 45 degrees and within 37 % at 90" *

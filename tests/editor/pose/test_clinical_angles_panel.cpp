@@ -122,6 +122,23 @@ TEST_CASE("clinical angles panel: a list selects any joint, a forearm has two, a
   CHECK(s.angle({Forearm, BodySide::Right}, 0) == doctest::Approx(80));
 }
 
+TEST_CASE("clinical angles panel: pronation stops where the hand's own limits do, and a bent wrist leaves it") {
+  Armature rig = body_rig();
+  rig.bones[require_bone(rig, "RightHand")].limits = {
+      .type = JointLimits::Type::Ball, .cone = 1.4, .twist_minimum = -0.1, .twist_maximum = 0.1};
+  AnglesStage s(rig);
+  s.choose("RightForearm");
+  const double before = s.angle({Forearm, BodySide::Right}, 0);
+  s.type("Right forearm pronation", "85");
+  const double pronated = s.angle({Forearm, BodySide::Right}, 0);
+  CHECK(pronated > before + 2);
+  CHECK(pronated < 80);  // the hand takes a part of it, which its limits cut
+  s.choose("RightHand");
+  s.type("Right wrist flexion", "30");
+  CHECK(s.angle({Forearm, BodySide::Right}, 0) == doctest::Approx(pronated).epsilon(0.02));
+  CHECK(s.angle({Wrist, BodySide::Right}, 0) == doctest::Approx(30).epsilon(0.02));
+}
+
 TEST_CASE("clinical angles panel: fingers spread though the rig's knuckles are hinges, and hinges keep their range") {
   Armature rig = body_rig();
   for (Bone& bone : rig.bones)
