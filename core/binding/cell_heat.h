@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/zeroed_vector.h"
 #include "core/binding/cell_paths.h"
 #include "core/binding/heat_cells.h"
 #include "core/binding/heat_settings.h"
@@ -38,7 +39,7 @@ struct CellTemperatures {
     float value;
   };
   std::vector<std::int64_t> first;  // #cells + 1: index of each cell's first entry
-  std::vector<Entry> entries;
+  ZeroedVector<Entry> entries;
 };
 
 // Throws Error when the solve for a bone does not reach its residual, and Cancelled.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <queue>
 #include <utility>
@@ -52,18 +53,28 @@ class LabelWalls {
       return;
     }
     std::vector<std::int64_t> faces(kinds.size()), bone_faces(kinds.size());
-    tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
-      const Label label = volume.at(v);
-      if (!plain_[label]) return;
-      for (int axis = 0; axis < 3; ++axis)
-        for (int side = -1; side <= 1; side += 2) {
-          glm::ivec3 w = v;
-          w[axis] += side;
-          const Label other = volume.at_or_air(w);
-          if (other == label) continue;
-          ++faces[label];
-          bone_faces[label] += is_bone(kinds[other]);
-        }
+    std::mutex adding;
+    parallel_for(std::ssize(tissue.bricks()), kBricks, [&](std::int64_t begin, std::int64_t end) {
+      std::map<Label, std::array<std::int64_t, 2>> some;  // of each plain label: faces, and faces that touch bone
+      tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) {
+        const Label label = volume.at(v);
+        if (!plain_[label]) return;
+        for (int axis = 0; axis < 3; ++axis)
+          for (int side = -1; side <= 1; side += 2) {
+            glm::ivec3 w = v;
+            w[axis] += side;
+            const Label other = volume.at_or_air(w);
+            if (other == label) continue;
+            auto& [all, of_bone] = some[label];
+            ++all;
+            of_bone += is_bone(kinds[other]);
+          }
+      });
+      const std::lock_guard lock(adding);
+      for (const auto& [label, counts] : some) {
+        faces[label] += counts[0];
+        bone_faces[label] += counts[1];
+      }
     });
     for (size_t label = 0; label < kinds.size(); ++label)
       if (2 * bone_faces[label] > faces[label]) plain_[label] = 0;
