@@ -11,6 +11,7 @@
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
+#include "core/motion/bvh.h"
 #include "core/motion/motion_edit.h"
 #include "core/motion/plants.h"
 #include "core/motion/pose_filter.h"
@@ -73,6 +74,10 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   const std::vector<double> place = numbers_in(std::string_view(value).substr(equals + 1, at - equals - 1), ',', where);
   if (place.size() != 3) throw Error("a hold is not understood", where, kHoldForm);
   hold.place = {place[0], place[1], place[2]};
+  constexpr double kFarthest = 1e6;  // mm
+  for (const double one : place)
+    if (std::abs(one) > kFarthest)
+      throw Error("the place is more than a kilometre away", where, "write it in millimetres of the rig's world");
   return hold;
 }
 
@@ -104,7 +109,7 @@ void clean(const Options& options) {
   const ArmatureFile file = read_armature_file(options.rig);
   warn(file.warnings);
   const Armature& rig = file.armature;
-  const double rate = 1 / read_motion(options.motion.motion, options.motion.up).frame_time;
+  const double rate = 1 / read_bvh(options.motion.motion).frame_time;
   const std::vector<Pose> recorded = read_all_poses(options.motion, rig);
   const std::vector<Pose> smooth = options.smooth > 0 ? smoothed(recorded, rate, options.smooth) : recorded;
 
@@ -115,10 +120,17 @@ void clean(const Options& options) {
   if (options.plant_feet && !has_legs)
     throw Error("no leg of the rig is known by its name", options.rig, "name its bones as in \"LeftThigh\"");
   std::vector<Plant> plants;
+  const int ease = static_cast<int>(std::lround(std::min(options.ease * rate, double(smooth.size()))));
   if (options.plant_feet) plants = plants_of_feet(rig, limbs, smooth, rate);
-  for (const std::string& hold : options.holds) plants.push_back(hold_of(hold, limbs, rig, smooth));
-  const std::vector<Pose> cleaned =
-      planted(rig, limbs, smooth, plants, static_cast<int>(std::lround(options.ease * rate)));
+  if (options.plant_feet && plants.empty())
+    warn("no foot was found to stand: none is low and slow for a tenth of a second");
+  std::vector<Plant> holds;
+  for (const std::string& value : options.holds) {
+    holds.push_back(hold_of(value, limbs, rig, smooth));
+    plants = without_held(plants, holds.back(), ease);
+  }
+  plants.insert(plants.end(), holds.begin(), holds.end());
+  const std::vector<Pose> cleaned = planted(rig, limbs, smooth, plants, ease);
   write_bvh(motion_of_poses(rig, static_cast<int>(cleaned.size()), rate, [&](int frame) { return cleaned[frame]; }),
             options.output);
   print_plants(plants, rig, limbs, recorded, cleaned);

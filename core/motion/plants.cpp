@@ -17,10 +17,13 @@ namespace {
 // are for a leg of kUsualLeg and grow with its length.
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
 constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
+constexpr int kLongestEase = 2000;       // frames
 constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
 constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
 // The share of its length to which a leg may be stretched. A little is left, so that the knee keeps its direction.
 constexpr double kStretch = 0.999;
+// How far the body sinks at most for a foot's place, as a share of the leg's length.
+constexpr double kDeepest = 0.15;
 
 // A motion of the rig's joints that is changed bone by bone.
 class PosedRig {
@@ -31,6 +34,10 @@ class PosedRig {
         posed_(posed_from_rest(armature, pose)) {}
 
   const Pose& pose() const { return pose_; }
+  // Goes back towards an earlier pose's rotation of a bone: by all of the way for share 0, not at all for share 1.
+  void mix_back(int bone, const Pose& earlier, double share) {
+    pose_.rotation[bone] = glm::normalize(glm::slerp(earlier.rotation[bone], pose_.rotation[bone], share));
+  }
   glm::dvec3 head(int bone) const { return posed_[bone] * armature_.bones[bone].head; }
   glm::dvec3 tail(int bone) const { return posed_[bone] * armature_.bones[bone].tail; }
   glm::dquat turn(int bone) const { return posed_[bone].rotation; }
@@ -95,12 +102,14 @@ void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature
   const Lengths length = lengths_of(limb, armature);
   const glm::dvec3 root = rig.head(limb.upper), upper = rig.head(limb.lower) - root,
                    lower = joint_of(rig, limb) - rig.head(limb.lower);
-  const double wanted = std::clamp(glm::distance(root, target), std::abs(length.upper - length.lower), length.both());
-  // The plane of a nearly straight limb is chance; there its hinge decides.
+  const double wanted =
+      std::clamp(glm::distance(root, target), std::abs(length.upper - length.lower), kStretch * length.both());
+  // The axis is the one about which the limb is bent already, on the side of its hinge. The plane of a nearly straight
+  // limb, or of one that is bent the wrong way, is chance; there the hinge decides.
   const glm::dvec3 hinge = rig.turn(limb.upper) * limb.hinge;
-  glm::dvec3 axis = glm::cross(upper, lower) / (length.upper * length.lower) + kOfHinge * hinge;
-  if (glm::length(axis) < 1e-9) axis = hinge;
-  axis = glm::normalize(axis);
+  const glm::dvec3 bent = glm::cross(upper, lower) / (length.upper * length.lower);
+  const double along = glm::dot(bent, hinge);
+  const glm::dvec3 axis = glm::normalize(bent + (kOfHinge + std::max(0.0, -2 * along)) * hinge);
   rig.turn_by(limb.lower, glm::angleAxis(bend_for(upper, lower, axis, wanted), axis));
   rig.turn_by(limb.upper, shortest_turn(joint_of(rig, limb) - root, target - root));
 }
@@ -171,9 +180,10 @@ class Planter {
     for (std::size_t l = 0; l < limbs_.size(); ++l) {
       if (!limbs_[l].is_leg || !is_pulled(l, frame)) continue;
       const glm::dvec3 root = rig.head(limbs_[l].upper), target = target_of(rig, l, frame);
-      const double reach = kStretch * lengths_of(limbs_[l], armature_).both();
+      const double length = lengths_of(limbs_[l], armature_).both(), reach = kStretch * length;
       const double aside = glm::length(glm::dvec2(target - root));
-      if (aside < reach) most = std::max(most, root.z - target.z - std::sqrt(reach * reach - aside * aside));
+      const double up = aside < reach ? std::sqrt(reach * reach - aside * aside) : 0;
+      most = std::max(most, std::min(root.z - target.z - up, kDeepest * length));
     }
     return most;
   }
@@ -187,11 +197,18 @@ class Planter {
       const Pull pull = pull_of(rig, l, PlantPoint::Tip, frame);
       const glm::dquat direction = limb.end >= 0 ? rig.turn(limb.end) : glm::dquat(1, 0, 0, 0);
       const glm::dvec3 moved = target - joint_of(rig, limb);
+      const Pose before = rig.pose();
+      const double share = std::max(pull.share, pull_of(rig, l, PlantPoint::Joint, frame).share);
       reach_with(rig, limb, armature_, target);
-      if (limb.end < 0) continue;
-      rig.turn_to(limb.end, direction);
-      const glm::dvec3 wanted = tip + pull.shift + (1 - pull.share) * moved;
-      rig.turn_by(limb.end, shortest_turn(tip_of(rig, limb) - rig.head(limb.end), wanted - rig.head(limb.end)));
+      if (limb.end >= 0) {
+        rig.turn_to(limb.end, direction);
+        const glm::dvec3 wanted = tip + pull.shift + (1 - pull.share) * moved;
+        rig.turn_by(limb.end, shortest_turn(tip_of(rig, limb) - rig.head(limb.end), wanted - rig.head(limb.end)));
+      }
+      if (share >= 1) continue;
+      // A limb that was bent the wrong way, or in another plane, comes to its bend as smoothly as to its place.
+      for (const int bone : {limb.upper, limb.lower, limb.end})
+        if (bone >= 0) rig.mix_back(bone, before, share);
     }
     return rig.pose();
   }
@@ -358,6 +375,15 @@ std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
       limb.end = bone_of(is_leg ? BodyPart::Foot : BodyPart::Hand, side);
       limb.is_leg = is_leg;
       if (limb.upper < 0 || limb.lower < 0) continue;
+      const auto hangs_on = [&](int bone, int above) {
+        while (bone >= 0 && bone != above) bone = armature.bones[bone].parent;
+        return bone >= 0;
+      };
+      if (!hangs_on(limb.lower, limb.upper)) continue;
+      // A foot that hangs elsewhere, as those for inverse kinematics do, cannot be moved by the leg.
+      if (limb.end >= 0 && (!hangs_on(limb.end, limb.lower) ||
+                            !(glm::distance(armature.bones[limb.end].head, armature.bones[limb.end].tail) > 0)))
+        limb.end = -1;
       const Lengths length = lengths_of(limb, armature);
       if (!(length.upper > 0 && length.lower > 0)) continue;
       limb.hinge = hinge_of(limb, armature, axes ? (*axes)[1] : glm::dvec3(0, 1, 0));
@@ -409,6 +435,20 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
   return plants;
 }
 
+std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease) {
+  const int from = hold.first - ease, to = hold.last + ease;
+  std::vector<Plant> left;
+  for (const Plant& plant : plants) {
+    if (plant.limb != hold.limb || plant.last < from || plant.first > to) {
+      left.push_back(plant);
+      continue;
+    }
+    for (const auto& [first, last] : {std::pair{plant.first, from - 1}, {to + 1, plant.last}})
+      if (first < last) left.push_back({plant.limb, plant.point, first, last, plant.place});
+  }
+  return left;
+}
+
 std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                           const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease) {
   const int last = static_cast<int>(poses.size()) - 1;
@@ -421,7 +461,16 @@ std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLim
           limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last),
           "choose frames from 0 to " + std::to_string(last));
   }
-  ease = std::max(0, ease);
+  for (std::size_t i = 0; i < plants.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const Plant &a = plants[i], &b = plants[k];
+      if (a.limb == b.limb && a.point == b.point && a.first <= b.last && b.first <= a.last)
+        throw Error("one limb cannot be held at two places at once",
+                    limbs[a.limb].name + ", frames " + std::to_string(std::max(a.first, b.first)) + " to " +
+                        std::to_string(std::min(a.last, b.last)),
+                    "choose frames that do not overlap");
+    }
+  ease = std::clamp(ease, 0, kLongestEase);
   const Planter planter(armature, limbs, poses, plants, ease);
   std::vector<Pose> result = poses;
   std::vector<glm::dvec3> carrying(poses.size());
@@ -445,8 +494,9 @@ PlantError error_of(const Plant& plant, const Armature& armature, const std::vec
   for (int f = plant.first; f <= plant.last; ++f) {
     const glm::dvec3 place = place_of(limbs[plant.limb], plant.point, armature, poses[f]);
     if (f == plant.first) first = place;
-    error.from_place = std::max(error.from_place, glm::distance(place, plant.place));
-    error.slide = std::max(error.slide, glm::distance(glm::dvec2(place), glm::dvec2(first)));
+    const double off = glm::distance(place, plant.place), slid = glm::distance(glm::dvec2(place), glm::dvec2(first));
+    if (!(off <= error.from_place)) error.from_place = off;
+    if (!(slid <= error.slide)) error.slide = slid;
   }
   return error;
 }

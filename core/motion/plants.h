@@ -2,8 +2,8 @@
 // Plants feet on the ground and hands on targets: for some frames of a motion, a joint of a limb or the limb's tip
 // stays at a place of the world. The limb's two long bones turn so that it does; the knee or elbow bends in its own
 // plane, and foot or hand keeps its direction unless its joint and its tip are both planted. Before and after these
-// frames the limb comes and goes smoothly. Where a leg is too short for its foot's place, the body sinks as far as it
-// must.
+// frames the limb comes and goes smoothly. The body moves along with its feet, and sinks, within bounds, where a leg
+// would be too short for its foot's place. What a limb cannot reach it misses (error_of()).
 #pragma once
 
 #include <array>
@@ -48,10 +48,14 @@ glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& a
 std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                   const std::vector<Pose>& poses, double rate);
 
+// Returns the plants without the frames in which the limb of `hold` is held, or comes there or leaves. A plant may fall
+// into two.
+std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease);
+
 // Returns the poses with the points at their places. Plants of one point may follow each other closely, but not
 // overlap.
 //   ease  frames over which a limb comes to its place and leaves it
-// Throws Error for a plant without a limb or with frames that the motion does not have.
+// Throws Error for a plant without a limb or with frames that the motion does not have, and for plants that overlap.
 std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                           const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease);
 

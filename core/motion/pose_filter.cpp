@@ -13,13 +13,14 @@ namespace limber {
 
 namespace {
 
+// Two passes move the frequency at which half of the power is left; a higher one makes up for it.
+double of_two_passes(double cutoff) { return cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25); }
+
 // A Butterworth low-pass filter of second order.
 class LowPass {
  public:
   LowPass(double rate, double cutoff) {
-    // Two passes move the frequency at which half of the power is left; a higher one makes up for it.
-    const double of_two_passes = cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25);
-    const double k = std::tan(std::numbers::pi * std::min(of_two_passes / rate, 0.49));
+    const double k = std::tan(std::numbers::pi * of_two_passes(cutoff) / rate);
     const double norm = 1 / (1 + std::numbers::sqrt2 * k + k * k);
     in_ = k * k * norm;
     before_ = 2 * (k * k - 1) * norm;
@@ -42,34 +43,36 @@ class LowPass {
   double in_, before_, twice_before_;
 };
 
-// Filters the track forwards and backwards. At each end it is continued by its own mirror image, turned about the end's
-// value, so that the filter neither flattens the ends nor makes them ring.
-void filter(std::vector<double>& track, const LowPass& low_pass, std::size_t margin) {
-  const std::size_t count = track.size();
-  margin = std::min(margin, count - 1);
-  std::vector<double> longer;
-  longer.reserve(count + 2 * margin);
-  for (std::size_t i = margin; i > 0; --i) longer.push_back(2 * track.front() - track[i]);
-  longer.insert(longer.end(), track.begin(), track.end());
-  for (std::size_t i = 1; i <= margin; ++i) longer.push_back(2 * track.back() - track[count - 1 - i]);
+// Filters the track forwards and backwards. What is filtered is its difference from the straight line between its ends,
+// continued at each end by its own image, turned by half a turn about the end, as often as it takes. So the filter
+// neither flattens the ends nor makes them ring.
+void filter(std::vector<double>& track, const LowPass& low_pass, std::ptrdiff_t margin) {
+  const std::ptrdiff_t count = std::ssize(track), period = 2 * (count - 1);
+  const double first = track.front(), slope = (track.back() - first) / double(count - 1);
+  for (std::ptrdiff_t i = 0; i < count; ++i) track[i] -= first + slope * double(i);
+  std::vector<double> longer(count + 2 * margin);
+  for (std::ptrdiff_t i = 0; i < std::ssize(longer); ++i) {
+    const std::ptrdiff_t at = ((i - margin) % period + period) % period;
+    longer[i] = at < count ? track[at] : -track[period - at];
+  }
   low_pass.run(longer.begin(), longer.end());
   low_pass.run(longer.rbegin(), longer.rend());
-  std::copy_n(longer.begin() + static_cast<std::ptrdiff_t>(margin), count, track.begin());
+  for (std::ptrdiff_t i = 0; i < count; ++i) track[i] = longer[margin + i] + first + slope * double(i);
 }
 
 }  // namespace
 
 std::vector<Pose> smoothed(const std::vector<Pose>& poses, double rate, double cutoff) {
-  if (!(cutoff > 0) || cutoff >= rate / 2) {
+  if (!(cutoff > 0) || of_two_passes(cutoff) >= 0.49 * rate) {
     char frequencies[96];
     std::snprintf(frequencies, sizeof frequencies, "%g Hz in a motion of %g frames per second", cutoff, rate);
     throw Error("the cutoff frequency does not fit the motion", frequencies,
-                "choose one above 0 and below half of the frames per second, such as 6");
+                "choose one above 0 and below two fifths of the frames per second, such as 6");
   }
   std::vector<Pose> result = poses;
   if (poses.size() < 3) return result;
   const LowPass low_pass(rate, cutoff);
-  const auto margin = static_cast<std::size_t>(std::ceil(3 * rate / cutoff));
+  const auto margin = static_cast<std::ptrdiff_t>(std::min(std::ceil(3 * rate / cutoff), 1e6));
   std::vector<double> track(poses.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t f = 0; f < poses.size(); ++f) track[f] = poses[f].root_translation[axis];

@@ -13,7 +13,7 @@ namespace limber {
 // Human Movement, section 3.4.4]; its cutoff is corrected for the two passes. Rotations are filtered as quaternions of
 // one sign and normalized again.
 //   rate    frames per second
-//   cutoff  Hz; throws Error unless it is positive and below half of the rate
+//   cutoff  Hz; throws Error unless it is positive and below two fifths of the rate
 std::vector<Pose> smoothed(const std::vector<Pose>& poses, double rate, double cutoff);
 
 }  // namespace limber
