@@ -13,13 +13,7 @@ namespace limber {
 
 namespace {
 
-// A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted above its lowest places, mm. Both
-// are for a leg of kUsualLeg and grow with its length.
-constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
-constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
-constexpr int kLongestEase = 2000;       // frames
-constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
-constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
+constexpr int kLongestEase = 2000;  // frames
 // The share of its length to which a leg may be stretched. A little is left, so that the knee keeps its direction.
 constexpr double kStretch = 0.999;
 // How far the body sinks at most for a foot's place, as a share of the leg's length.
@@ -300,61 +294,6 @@ std::vector<double> smooth_above(const std::vector<double>& values, int reach) {
   return smooth;
 }
 
-// The spans of frames for which `stands` is true, without short interruptions and short spans.
-std::vector<std::array<int, 2>> spans_of(const std::vector<bool>& stands, double rate) {
-  const int longest_gap = static_cast<int>(kLongestGap * rate);
-  const int shortest = std::max(2, static_cast<int>(std::ceil(kShortestStance * rate)));
-  std::vector<std::array<int, 2>> spans;
-  for (int f = 0; f < std::ssize(stands); ++f) {
-    if (!stands[f]) continue;
-    if (!spans.empty() && f - spans.back()[1] <= longest_gap + 1) spans.back()[1] = f;
-    else spans.push_back({f, f});
-  }
-  std::erase_if(spans, [&](const auto& span) { return span[1] - span[0] + 1 < shortest; });
-  return spans;
-}
-
-// Finds the spans in which a point stands.
-//   size  of the leg, as a share of a usual one
-std::vector<std::array<int, 2>> stances_of(const std::vector<glm::dvec3>& places, double size, double rate) {
-  std::vector<double> heights;
-  for (const glm::dvec3& place : places) heights.push_back(place.z);
-  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(kLowest * double(heights.size() - 1));
-  std::nth_element(heights.begin(), low, heights.end());
-  const double ground = *low;
-  std::vector<bool> stands(places.size());
-  const int last = static_cast<int>(places.size()) - 1;
-  for (int f = 0; f <= last; ++f) {
-    const int before = std::max(0, f - 1), after = std::min(last, f + 1);
-    const double speed = glm::distance(places[before], places[after]) * rate / std::max(1, after - before);
-    stands[f] = speed < kStanding * size && places[f].z < ground + kLifted * size;
-  }
-  return spans_of(stands, rate);
-}
-
-glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
-  glm::dvec3 sum(0);
-  for (int f = first; f <= last; ++f) sum += values[f];
-  return sum / double(last - first + 1);
-}
-
-// Gives each plant of a foot's tip its place. While the joint stays in one place, the tip has one place too.
-//   tips, joints  plants of one foot, sorted by frames
-void place_tips(std::vector<Plant>& tips, const std::vector<Plant>& joints, const std::vector<glm::dvec3>& tip) {
-  for (std::size_t from = 0, to = 0; from < tips.size(); from = to) {
-    const auto is_held_on = [&](const Plant& before, const Plant& after) {
-      return std::any_of(joints.begin(), joints.end(),
-                         [&](const Plant& joint) { return joint.first <= before.last && joint.last >= after.first; });
-    };
-    for (to = from + 1; to < tips.size() && is_held_on(tips[to - 1], tips[to]);) ++to;
-    glm::dvec3 sum(0);
-    int frames = 0;
-    for (std::size_t k = from; k < to; ++k)
-      for (int f = tips[k].first; f <= tips[k].last; ++f, ++frames) sum += tip[f];
-    for (std::size_t k = from; k < to; ++k) tips[k].place = sum / double(frames);
-  }
-}
-
 }  // namespace
 
 std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
@@ -394,45 +333,6 @@ std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
 
 glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& armature, const Pose& pose) {
   return point_of(PosedRig(armature, pose), limb, point);
-}
-
-std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses, double rate) {
-  std::vector<Plant> plants;
-  if (poses.empty()) return plants;
-  for (int l = 0; l < std::ssize(limbs); ++l) {
-    const PlantedLimb& limb = limbs[l];
-    if (!limb.is_leg) continue;
-    std::vector<glm::dvec3> joint, tip;
-    for (const Pose& pose : poses) {
-      const PosedRig rig(armature, pose);
-      joint.push_back(joint_of(rig, limb));
-      tip.push_back(tip_of(rig, limb));
-    }
-    const double size = lengths_of(limb, armature).both() / kUsualLeg;
-    std::vector<Plant> tips, joints;
-    if (limb.end >= 0)
-      for (const auto& [first, last] : stances_of(tip, size, rate))
-        tips.push_back({l, PlantPoint::Tip, first, last, {}});
-    for (const auto& [first, last] : stances_of(joint, size, rate))
-      joints.push_back({l, PlantPoint::Joint, first, last, mean_of(joint, first, last)});
-    place_tips(tips, joints, tip);
-    for (Plant& plant : joints) {
-      // Joint and tip of a foot on the ground must be as far apart as they are in the foot.
-      for (const Plant& other : tips) {
-        const int from = std::max(plant.first, other.first), to = std::min(plant.last, other.last);
-        if (from > to) continue;
-        const glm::dvec3 along = mean_of(joint, from, to) - mean_of(tip, from, to);
-        const Bone& foot = armature.bones[limb.end];
-        if (glm::length(along) > 0)
-          plant.place = other.place + glm::normalize(along) * glm::distance(foot.head, foot.tail);
-        break;
-      }
-    }
-    plants.insert(plants.end(), joints.begin(), joints.end());
-    plants.insert(plants.end(), tips.begin(), tips.end());
-  }
-  return plants;
 }
 
 std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease) {
