@@ -76,7 +76,7 @@ inline const RigNames kUnrealNames{"pelvis",
                                    "r",
                                    {"thumb", "index", "middle", "ring", "pinky"}};
 
-inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
+inline std::string all_replaced(std::string text, const std::string& what, const std::string& with) {
   for (std::size_t at; (at = text.find(what)) != text.npos;) text.replace(at, what.size(), with);
   return text;
 }
@@ -93,7 +93,9 @@ inline Armature body_rig(const RigNames& names = kAnatomistsNames, bool with_fin
             neck = add(names.neck, chest, {0, 0, 1450}, {0, 0, 1550});
   add(names.head, neck, {0, 0, 1550}, {0, 0, 1750});
   for (const double out : {1.0, -1.0}) {
-    const auto sided = [&](const std::string& name) { return replaced(name, "@", out > 0 ? names.left : names.right); };
+    const auto sided = [&](const std::string& name) {
+      return all_replaced(name, "@", out > 0 ? names.left : names.right);
+    };
     const auto at = [&](double aside, double back, double up) { return glm::dvec3(out * aside, back, up); };
     const int clavicle = add(sided(names.clavicle), chest, at(20, -40, 1420), at(180, 0, 1420));
     const int upper = add(sided(names.upper_arm), clavicle, at(180, 0, 1420), at(180, 0, 1120));
@@ -105,9 +107,10 @@ inline Armature body_rig(const RigNames& names = kAnatomistsNames, bool with_fin
       int parent = hand;
       for (int segment = 1; segment <= 3; ++segment) {
         const double top = (thumb ? 830 : 770) - 30 * (segment - 1);
-        parent = add(replaced(replaced(sided(names.finger), "#", names.fingers[static_cast<std::size_t>(finger)]), "%",
-                              std::to_string(segment)),
-                     parent, at(aside, 0, top), at(aside, 0, top - 30));
+        parent =
+            add(all_replaced(all_replaced(sided(names.finger), "#", names.fingers[static_cast<std::size_t>(finger)]),
+                             "%", std::to_string(segment)),
+                parent, at(aside, 0, top), at(aside, 0, top - 30));
       }
     }
     const int thigh = add(sided(names.thigh), pelvis, at(90, 0, 930), at(90, 0, 500)),

@@ -46,7 +46,7 @@ struct Body {
   glm::dquat lies{1, 0, 0, 0};  // as a whole, from upright
 
   std::string sided(const std::string& name, double side) const {
-    return replaced(name, "@", side > 0 ? names.left : names.right);
+    return all_replaced(name, "@", side > 0 ? names.left : names.right);
   }
   glm::dvec3 along(const Pose& pose, const std::string& from, const std::string& to, double side) const {
     return glm::conjugate(lies) * between(rig, pose, sided(from, side), sided(to, side));
