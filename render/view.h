@@ -45,9 +45,9 @@ class Renderer {
   // Returns a note for the user on the last upload ("Shown at 1/2 of its resolution: ..."), or an empty text.
   const std::string& note() const;
 
-  // Begins a frame. Until the next call, all views together spend about `upload_seconds` on uploading large changes of
-  // weights. While changes wait for their upload, views are not complete. If this function is never called, each draw
-  // uploads everything.
+  // Begins a frame. Until the next call, all views and upload() together spend about `upload_seconds` on uploading
+  // large changes of weights, grey images and prepared bodies. While changes that a view shows wait for their upload,
+  // it is not complete. If this function is never called, each draw uploads everything.
   void begin_frame(double upload_seconds);
 
   // Uploads a prepared body: as much as the frame's time limit allows. Returns true when the body can be drawn without

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <functional>
 #include <random>
 
 #include "core/binding/heat_diffusion.h"
@@ -46,6 +47,15 @@ std::shared_ptr<const LabelVolume> air_on(const Grid& grid) {
 }
 
 int grey_at(const Image& image, const glm::ivec2& at) { return pixel_of(image, at).r; }
+
+// An image of 64^3 voxels whose values depend on the distance from its middle, in voxels.
+GreyVolume round_image(const std::function<float(double)>& value_at) {
+  GreyVolume image;
+  image.grid = grid_of({64, 64, 64});
+  for (int i = 0; i < 64 * 64 * 64; ++i)
+    image.voxels.push_back(value_at(glm::length(glm::dvec3(i % 64, i / 64 % 64, i / 4096) - 31.5)));
+  return image;
+}
 
 }  // namespace
 
@@ -137,12 +147,7 @@ TEST_CASE("grey image: large images are uploaded over several frames, and the pi
 TEST_CASE("grey image: in 3D a ball of bone covers what a ball covers, and flesh around it is clear") {
   Studio studio;
   const Grid grid = grid_of({64, 64, 64});
-  GreyVolume image;
-  image.grid = grid;
-  for (int i = 0; i < 64 * 64 * 64; ++i) {
-    const double r = glm::length(glm::dvec3(i % 64, i / 64 % 64, i / 4096) - 31.5);
-    image.voxels.push_back(r < 12 ? 900.0f : r < 28 ? 40.0f : -1000.0f);
-  }
+  const GreyVolume image = round_image([](double r) { return r < 12 ? 900.0f : r < 28 ? 40.0f : -1000.0f; });
   Scene scene = scene_of(air_on(grid));
   scene.grey = shown(image);
   scene.display = Display::Image;
@@ -233,12 +238,7 @@ TEST_CASE(
     "grey image: a picture that is refined after others of the body is whole, and two images keep their textures") {
   Studio studio;
   const Grid grid = grid_of({64, 64, 64});
-  GreyVolume image;
-  image.grid = grid;
-  for (int i = 0; i < 64 * 64 * 64; ++i) {
-    const double r = glm::length(glm::dvec3(i % 64, i / 64 % 64, i / 4096) - 31.5);
-    image.voxels.push_back(r < 26 ? 900.0f : -1000.0f);
-  }
+  const GreyVolume image = round_image([](double r) { return r < 26 ? 900.0f : -1000.0f; });
   Scene scene =
       scene_of(painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - 31.5) < 26 ? 1 : 0; }));
   scene.grey = shown(image);

@@ -196,7 +196,7 @@ TEST_CASE("repair joint: a locked bone keeps every bit of its weights") {
 }
 
 TEST_CASE(
-    "repair joint: with a locked bone the moving share is what it is without, and its own bone may not be locked") {
+    "repair joint: a locked bone that holds half of the moving share leaves room, and its own bone may not be locked") {
   // The hand takes half of the forearm's weight everywhere, so the moving share stays what it was.
   Limb arm = phantom_arm(6);
   const JointRepairSettings settings{.range = TurnRange{0, 60}, .blend = Blend::DualQuaternion};
