@@ -19,7 +19,7 @@ struct BrickWindow {
   struct Source {
     const LabelVolume& volume;
     const TissueVoxels& tissue;
-    const std::vector<std::uint16_t>& held_by;  // bone that fixes each tissue voxel's temperature; kSoft: none
+    const ZeroedVector<std::uint16_t>& held_by;  // bone that fixes each tissue voxel's temperature; kSoft: none
     const std::vector<float>& conductivity;     // of each label's tissue, above 0
   };
   // Step in the arrays to the neighbour towards -x, +x, -y, +y, -z, +z.

@@ -45,7 +45,7 @@ HeatLaw::HeatLaw(const Grid& grid, const TissueTable& tissues, const std::map<La
 }
 
 HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-                     const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
+                     const ZeroedVector<std::uint16_t>& held_by, const NearestBone& nearest,
                      const std::map<Label, double>& stiffness)
     : volume_(volume),
       tissue_(tissue),

@@ -57,8 +57,8 @@ struct HeatLaw {
 // Returns the rig bone that holds each tissue voxel at a fixed temperature, kSoft for a voxel that no bone holds. A
 // bone holds the voxels of its parts (BoneParts). A bone without parts holds the soft voxels around its axis, and a
 // bone outside the tissue holds nothing.
-std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
-                                      const Armature& armature);
+ZeroedVector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
+                                       const Armature& armature);
 
 // The nearest bone of every tissue voxel, and its distance. Distances are lengths of paths through tissue, so that a
 // bone across an air gap is not near. A voxel whose temperature a bone fixes has distance 0. A voxel that no path from
@@ -68,13 +68,13 @@ struct NearestBone {
   ZeroedVector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                         const std::vector<std::uint16_t>& held_by);
+                         const ZeroedVector<std::uint16_t>& held_by);
 // Finds the bone that gives heat to each voxel at a distance: the nearest bone, as nearest_bone() finds it, but with
 // corrected distances. The last bone of a chain counts as nearer than it is. A bone that only links a limb to the trunk
 // (a collarbone) counts as further away than it is. Flesh around a joint is divided by the plane that bisects the angle
 // of the joint.
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                            const std::vector<std::uint16_t>& held_by);
+                            const ZeroedVector<std::uint16_t>& held_by);
 
 // Conductance of heat from a bone into a cell, through a face or at a distance.
 struct HeldFace {
@@ -87,7 +87,7 @@ class HeatGraph {
  public:
   // Keeps references to all arguments except `tissues` and `stiffness`; they must outlive this object.
   HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
-            const std::vector<std::uint16_t>& held_by, const NearestBone& nearest,
+            const ZeroedVector<std::uint16_t>& held_by, const NearestBone& nearest,
             const std::map<Label, double>& stiffness = {});
 
   // Fills `system` with a cell for each soft voxel of the given bricks. Soft voxels in other bricks have temperature 0.
@@ -137,7 +137,7 @@ class HeatGraph {
 
   const LabelVolume& volume_;
   const TissueVoxels& tissue_;
-  const std::vector<std::uint16_t>& held_by_;
+  const ZeroedVector<std::uint16_t>& held_by_;
   const NearestBone& nearest_;
   const HeatLaw law_;
   std::vector<std::uint64_t> bones_in_brick_;

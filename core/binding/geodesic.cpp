@@ -24,7 +24,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
                           const BoneParts& parts, const GeodesicBinding& settings, Progress& progress,
                           WeightsReport* report) {
   progress.update("weights", 0);
-  const std::vector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
+  const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
   const int bone_count = static_cast<int>(armature.bones.size());
   std::vector<std::vector<std::pair<std::int64_t, glm::i16vec3>>> sources(bone_count);

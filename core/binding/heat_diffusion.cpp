@@ -175,7 +175,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   WeightsReport& said = report ? *report : ignored;
   progress.update("weights", 0);
   return_free_memory();  // gives back the memory that splitting bones and finding seams has freed
-  const std::vector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
+  const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const HeatBody body{volume, tissue, tissues, armature, held_by};
   BestFour best(tissue);
   const glm::i16vec3 shift = shift_of_cells(volume.grid, tissue.size(), settings.most_cells);

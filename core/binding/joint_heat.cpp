@@ -90,7 +90,7 @@ NearestBone nearest_along_paths(const HeatBody& body, const std::vector<std::int
 }
 }  // namespace
 
-std::vector<std::int32_t> bricks_between_bones(const TissueVoxels& tissue, const std::vector<std::uint16_t>& held_by,
+std::vector<std::int32_t> bricks_between_bones(const TissueVoxels& tissue, const ZeroedVector<std::uint16_t>& held_by,
                                                const glm::i16vec3& shift) {
   std::vector<NearBones> near(tissue.bricks().size());
   parallel_for(std::ssize(near), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -52,14 +52,14 @@ double flesh_around(const Bone& bone, const LabelVolume& volume) {
 }
 }  // namespace
 
-std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
-                                      const Armature& armature) {
-  std::vector<std::uint16_t> held_by(tissue.size(), kSoft);
+ZeroedVector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
+                                       const Armature& armature) {
+  ZeroedVector<std::uint16_t> held_by(tissue.size());
   std::vector<bool> has_part(armature.bones.size(), false);
   for (const auto& part : parts.parts) has_part[part.bone] = true;
   parallel_for(tissue.size(), 1 << 16, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i)
-      if (parts.part_of[i]) held_by[i] = static_cast<std::uint16_t>(parts.parts[parts.part_of[i] - 1].bone);
+      held_by[i] = parts.part_of[i] ? static_cast<std::uint16_t>(parts.parts[parts.part_of[i] - 1].bone) : kSoft;
   });
   if (std::find(has_part.begin(), has_part.end(), false) == has_part.end()) return held_by;
 
@@ -97,7 +97,7 @@ std::vector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVox
 
 namespace {
 NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tissue,
-                              const std::vector<std::uint16_t>& held_by, const std::vector<BoneReach>& reaches) {
+                              const ZeroedVector<std::uint16_t>& held_by, const std::vector<BoneReach>& reaches) {
   NearestBone nearest;
   nearest.bone.assign(held_by.begin(), held_by.end());
   nearest.distance.assign(tissue.size(), std::numeric_limits<float>::infinity());
@@ -119,12 +119,12 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
 }  // namespace
 
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                         const std::vector<std::uint16_t>& held_by) {
+                         const ZeroedVector<std::uint16_t>& held_by) {
   return spread_from_bones(volume, tissue, held_by, std::vector<BoneReach>(armature.bones.size()));
 }
 
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                            const std::vector<std::uint16_t>& held_by) {
+                            const ZeroedVector<std::uint16_t>& held_by) {
   NearestBone nearest = spread_from_bones(volume, tissue, held_by, reaches_of_bones(armature));
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);

@@ -9,7 +9,7 @@ namespace limber {
 SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                        const BoneParts& parts, Progress& progress, WeightsReport* report) {
   progress.update("weights", 0);
-  const std::vector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
+  const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
   progress.update("weights", 0.8);
   BestFour best(tissue);

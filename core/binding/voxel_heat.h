@@ -18,7 +18,7 @@ struct HeatBody {
   const TissueVoxels& tissue;
   const TissueTable& tissues;
   const Armature& armature;
-  const std::vector<std::uint16_t>& held_by;  // from fixed_bone()
+  const ZeroedVector<std::uint16_t>& held_by;  // from fixed_bone()
 };
 
 // What is known before the solve. `brick` and `place` are indices of a brick and of a soft voxel in it; `lane` is the

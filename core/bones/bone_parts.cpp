@@ -5,14 +5,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <queue>
-#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "core/bones/bone_watershed.h"
+#include "core/bones/gather_parts.h"
 #include "core/bones/hugging.h"
 #include "core/bones/named_bones.h"
 #include "core/bones/shoulder_girdles.h"
@@ -407,46 +406,6 @@ std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tis
   return bone;
 }
 
-// Groups the voxels that follow the same rig bone and are connected into parts. A part smaller than a hundredth of its
-// rig bone's largest part is added to that part.
-//   bone  rig bone of each voxel of the graph
-void gather_parts(const BoneGraph& graph, const Hugging& hugging, const std::vector<int>& bone, BoneParts& result) {
-  std::vector<std::int32_t> joined(graph.size());
-  std::iota(joined.begin(), joined.end(), 0);
-  auto root = [&](std::int32_t p) {
-    while (joined[p] != p) p = joined[p] = joined[joined[p]];
-    return p;
-  };
-  for (std::int32_t i = 0; i < graph.size(); ++i)
-    for (std::int32_t n : graph.neighbour[i])
-      if (n > i && bone[n] == bone[i]) joined[root(n)] = root(i);
-
-  std::vector<std::int64_t> voxels(graph.size(), 0);
-  for (std::int32_t i = 0; i < graph.size(); ++i) ++voxels[root(i)];
-  std::map<int, std::int32_t> largest;
-  for (std::int32_t p = 0; p < graph.size(); ++p)
-    if (voxels[p] > 0)
-      if (auto [at, is_new] = largest.insert({bone[p], p}); !is_new && voxels[p] > voxels[at->second]) at->second = p;
-  constexpr int kMostParts = 60'000;  // upper limit on the number of parts, because part numbers are stored in 16 bits
-  std::vector<int> number(graph.size(), -1);
-  auto number_of = [&](std::int32_t p) {
-    const std::int32_t home = largest[bone[p]];
-    if (100 * voxels[p] < voxels[home] || std::ssize(result.parts) >= kMostParts) p = home;
-    if (number[p] < 0) {
-      number[p] = static_cast<int>(result.parts.size());
-      result.parts.push_back({bone[p], 0, glm::dvec3(0)});
-    }
-    return number[p];
-  };
-  for (std::int32_t i = 0, piece = -1, part = -1; i < graph.size(); ++i) {
-    if (const std::int32_t its_piece = root(i); its_piece != piece) piece = its_piece, part = number_of(piece);
-    result.part_of[graph.place[i]] = static_cast<std::uint16_t>(1 + part);
-    result.parts[part].voxel_count += 1;
-    result.parts[part].centre += glm::dvec3(graph.voxel[i]);
-  }
-  for (auto& part : result.parts) part.centre = hugging.world(part.centre / double(part.voxel_count));
-}
-
 struct ShapeBones {
   std::vector<int> bone;  // rig bone of each voxel of the graph
   std::vector<BroadCut> broad_cuts;
@@ -495,26 +454,6 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   return {std::move(bone), std::move(cuts.broad)};
 }
 
-std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const LabelVolume& volume,
-                                               const NamedBones& named, const std::vector<int>& bone,
-                                               const std::map<Label, LabelBones>& labels) {
-  std::map<std::pair<Label, int>, BoneParts::Identity> found;
-  // Entry of the previous voxel, kept because the next voxel most often has the same.
-  BoneParts::Identity* identity = nullptr;
-  for (std::int64_t i = 0; i < graph.size(); ++i) {
-    const Label label = volume.at(graph.voxel[i]);
-    if (!identity || identity->label != label || identity->bone != bone[i]) {
-      const auto name = labels.find(label);
-      identity =
-          &found.insert({{label, bone[i]}, {label, bone[i], {}, name != labels.end() && name->second.is_substitute, 0}})
-               .first->second;
-    }
-    identity->found_by = named.found_by[i];
-    ++identity->voxel_count;
-  }
-  const auto all = std::views::values(found);
-  return {all.begin(), all.end()};
-}
 }  // namespace
 
 BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
@@ -528,18 +467,17 @@ BoneParts split_bones(const LabelVolume& volume, const TissueVoxels& tissue, con
   if (graph.size() == 0) return result;
   progress.update("bones", 0.4);
   const Hugging hugging(armature, volume.grid);
-  const NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
-  std::vector<int> bone = named.bone;
+  NamedBones named = assign_named_bones(graph, volume, kinds, armature, labels);
   if (Unsettled unsettled = unsettled_part(graph, named); !unsettled.from.empty()) {
     std::vector<std::int32_t> group;
     for (const std::int32_t i : unsettled.from) group.push_back(named.group[i]);
     ShapeBones found = bones_by_shape(std::move(unsettled.graph), volume, tissue, kinds, armature, hugging, group,
                                       named.candidates, progress);
-    for (std::size_t k = 0; k < found.bone.size(); ++k) bone[unsettled.from[k]] = found.bone[k];
+    for (std::size_t k = 0; k < found.bone.size(); ++k) named.bone[unsettled.from[k]] = found.bone[k];
     result.broad_cuts = std::move(found.broad_cuts);
   }
-  gather_parts(graph, hugging, bone, result);
-  result.identities = identities_of(graph, volume, named, bone, labels);
+  gather_parts(graph, hugging, named.bone, result);
+  result.identities = identities_of(graph, volume, named, labels);
   progress.update("bones", 1);
   return result;
 }

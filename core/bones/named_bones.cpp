@@ -17,6 +17,7 @@ namespace {
 constexpr double kClearMajority = 0.85;
 // Share of a bone's voxels that decide which rig bone carries the bone: those nearest to any rig bone.
 constexpr double kAttached = 0.1;
+constexpr std::int64_t kGrain = 65536;  // voxels of the graph per block of a parallel loop
 
 class Assigning {
  public:
@@ -28,9 +29,9 @@ class Assigning {
         armature_(armature),
         labels_(labels),
         world_from_voxel_(world_from_voxel(volume.grid)) {
-    named_.bone.assign(graph.size(), -1);
-    named_.group.assign(graph.size(), NamedBones::kUnnamed);
-    named_.found_by.assign(graph.size(), FoundBy::Shape);
+    named_.bone.resize(graph.size());
+    named_.group.resize(graph.size());
+    named_.found_by.resize(graph.size());
     named_.candidates.resize(1);
   }
 
@@ -62,14 +63,38 @@ class Assigning {
       if (is_new) sets_.push_back({&bones, {}});
       set_of[label] = static_cast<int>(found->second);
     }
-    set_of_.assign(graph_.size(), -1);
-    for (std::int32_t i = 0; i < graph_.size(); ++i) {
-      const Label label = volume_.at(graph_.voxel[i]);
-      set_of_[i] = set_of[label];
-      if (set_of_[i] < 0) continue;
-      sets_[set_of_[i]].voxels.push_back(i);
-      named_.found_by[i] = labels_.at(label).found_by;
+    std::vector<FoundBy> found_by(set_of.size(), FoundBy::Shape);
+    for (const auto& [label, bones] : labels_) found_by[label] = bones.found_by;
+    set_of_.resize(graph_.size());
+    std::vector<std::vector<std::int64_t>> counts((graph_.size() + kGrain - 1) / kGrain);  // of each block and set
+    parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<std::int64_t>& count = counts[begin / kGrain];
+      count.resize(sets_.size());
+      for (std::int64_t i = begin; i < end; ++i) {
+        const Label label = volume_.at(graph_.voxel[i]);
+        named_.bone[i] = -1;
+        named_.group[i] = NamedBones::kUnnamed;
+        named_.found_by[i] = found_by[label];
+        set_of_[i] = set_of[label];
+        if (set_of_[i] >= 0) ++count[set_of_[i]];
+      }
+    });
+    list_voxels(counts);
+  }
+
+  // Lists the voxels of every set by their index in the graph.
+  //   counts  for each block of voxels, the number of voxels in each set; becomes where the block begins in the set
+  void list_voxels(std::vector<std::vector<std::int64_t>>& counts) {
+    for (std::size_t k = 0; k < sets_.size(); ++k) {
+      std::int64_t total = 0;
+      for (std::vector<std::int64_t>& count : counts) total += std::exchange(count[k], total);
+      sets_[k].voxels.resize(total);
     }
+    parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      std::vector<std::int64_t>& next = counts[begin / kGrain];
+      for (std::int64_t i = begin; i < end; ++i)
+        if (const int set = set_of_[i]; set >= 0) sets_[set].voxels[next[set]++] = static_cast<std::int32_t>(i);
+    });
   }
 
   void assign(const Set& set) {
@@ -146,21 +171,36 @@ class Assigning {
   // Lets marrow and spongy bone without a name follow the rig bones of named labels that they touch, spreading breadth
   // first.
   void spread_into_marrow() {
+    // Only voxels beside marrow without a name have a voxel to spread to.
+    std::vector<std::vector<std::int32_t>> starts((graph_.size() + kGrain - 1) / kGrain);
+    parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        if (named_.group[i] == NamedBones::kUnnamed) continue;
+        const auto& around = graph_.neighbour[i];
+        if (std::any_of(around.begin(), around.end(), [&](std::int32_t n) { return is_unnamed_marrow(n); }))
+          starts[begin / kGrain].push_back(static_cast<std::int32_t>(i));
+      }
+    });
     std::vector<std::int32_t> front;
-    for (std::int32_t i = 0; i < graph_.size(); ++i)
-      if (named_.group[i] != NamedBones::kUnnamed) front.push_back(i);
+    for (const std::vector<std::int32_t>& some : starts) front.insert(front.end(), some.begin(), some.end());
     for (std::size_t k = 0; k < front.size(); ++k) {
       const std::int32_t from = front[k];
       for (const std::int32_t n : graph_.neighbour[from]) {
-        if (n < 0 || named_.group[n] != NamedBones::kUnnamed) continue;
-        const TissueKind kind = kinds_[volume_.at(graph_.voxel[n])];
-        if (kind != TissueKind::Marrow && kind != TissueKind::CancellousBone) continue;
+        if (!is_unnamed_marrow(n)) continue;
         named_.group[n] = named_.group[from];
         named_.bone[n] = named_.bone[from];
         named_.found_by[n] = FoundBy::Kind;
         front.push_back(n);
       }
     }
+  }
+
+  // Returns true for a voxel of marrow or spongy bone that follows no rig bone yet. `n` may also be kNotBone or
+  // kOutside.
+  bool is_unnamed_marrow(std::int32_t n) const {
+    if (n < 0 || named_.group[n] != NamedBones::kUnnamed) return false;
+    const TissueKind kind = kinds_[volume_.at(graph_.voxel[n])];
+    return kind == TissueKind::Marrow || kind == TissueKind::CancellousBone;
   }
 
   const BoneGraph& graph_;
@@ -171,7 +211,7 @@ class Assigning {
   AffineTransform world_from_voxel_;
   std::vector<Set> sets_;
   // Index in sets_ for each voxel of the graph; -1: rig bones of the voxel's label are not known.
-  std::vector<int> set_of_;
+  ZeroedVector<int> set_of_;
   std::vector<bool> seen_;
   NamedBones named_;
 };
@@ -184,9 +224,15 @@ NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume,
 
 Unsettled unsettled_part(const BoneGraph& whole, const NamedBones& named) {
   Unsettled part;
+  std::vector<std::vector<std::int32_t>> from((whole.size() + kGrain - 1) / kGrain);
+  parallel_for(whole.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i)
+      if (named.bone[i] < 0) from[begin / kGrain].push_back(static_cast<std::int32_t>(i));
+  });
+  for (const std::vector<std::int32_t>& some : from) part.from.insert(part.from.end(), some.begin(), some.end());
+  if (part.from.empty()) return part;
   std::vector<std::int32_t> number(whole.size(), kNotBone);
-  for (std::int32_t i = 0; i < whole.size(); ++i)
-    if (named.bone[i] < 0) number[i] = static_cast<std::int32_t>(part.from.size()), part.from.push_back(i);
+  for (std::size_t k = 0; k < part.from.size(); ++k) number[part.from[k]] = static_cast<std::int32_t>(k);
   const bool is_all = part.from.size() == static_cast<std::size_t>(whole.size());
   const auto count = std::ssize(part.from);
   part.graph.resize(count);

@@ -15,11 +15,11 @@
 namespace limber {
 
 struct NamedBones {
-  std::vector<int> bone;  // rig bone of each voxel of the graph; -1: must be found by shape
+  ZeroedVector<int> bone;  // rig bone of each voxel of the graph; -1: must be found by shape
   // Index in `candidates` for each voxel of the graph. Voxels with different indices (groups) are different bones.
-  std::vector<std::int32_t> group;
+  ZeroedVector<std::int32_t> group;
   std::vector<std::vector<int>> candidates;  // for each group, the rig bones that it may follow; empty: any
-  std::vector<FoundBy> found_by;             // how the rig bone of each voxel of the graph was found
+  ZeroedVector<FoundBy> found_by;            // how the rig bone of each voxel of the graph was found
   static constexpr std::int32_t kUnnamed = 0;
 };
 

@@ -57,7 +57,7 @@ class SeamFinder {
   }
 
   Seams run(Progress& progress) {
-    node_of_.assign(tissue_.size(), -1);
+    node_of_.resize(tissue_.size());
     find_borders();
     for (size_t k = 0; k < limbs_.size();) {
       if (progress.cancelled()) throw Cancelled();
@@ -86,16 +86,17 @@ class SeamFinder {
   // Assigns every tissue voxel to the nearest bone, along paths through tissue. If the name of a tissue contains a limb
   // ("Muscle, arms"), only bones of that limb count.
   void spread_bones() {
-    bone_ = held_by_;
-    std::vector<float> distance(tissue_.size(), std::numeric_limits<float>::infinity());
-    std::vector<Label> label;  // label of each tissue voxel; empty when no label names a limb
+    bone_.resize(tissue_.size());
+    ZeroedVector<float> distance(tissue_.size());
+    ZeroedVector<Label> label;  // label of each tissue voxel; empty when no label names a limb
     if (std::any_of(named_.begin(), named_.end(), [](const auto& name) { return name.has_value(); }))
       label.resize(tissue_.size());
     TissueFront front(volume_, tissue_);
     front.start_all([&](std::int64_t place, const glm::ivec3& v) {
       if (!label.empty()) label[place] = volume_.at(v);
+      bone_[place] = held_by_[place];
+      distance[place] = held_by_[place] == kSoft ? std::numeric_limits<float>::infinity() : 0;
       if (held_by_[place] == kSoft) return TissueFront::kNoSource;
-      distance[place] = 0;
       return has_soft_beside(v) ? held_by_[place] : TissueFront::kNoSource;
     });
     front.spread(
@@ -242,12 +243,13 @@ class SeamFinder {
         cheapest_cut(band, volume_, kind_, seams_, skin_layers(band.limb.has_bone), skin_layers(band.limb.may_touch));
   }
   void clear(const SeamBand& band) {
-    for (const Node& node : band.nodes) node_of_[node.place] = -1;
+    for (const Node& node : band.nodes) node_of_[node.place] = 0;
   }
+  std::int32_t node_at(std::int64_t place) const { return node_of_[place] - 1; }
 
   // Returns true if a tissue voxel lies in another band than the given one.
   bool is_of_other(const SeamBand& band, std::int64_t place) const {
-    const std::int32_t node = node_of_[place];
+    const std::int32_t node = node_at(place);
     return node >= std::ssize(band.nodes) || (node >= 0 && band.nodes[node].place != place);
   }
   // Finds the voxels of a band. Returns false if the band touches another one.
@@ -256,16 +258,16 @@ class SeamFinder {
     std::vector<std::int32_t> open;
     bool is_apart = true;
     const auto add = [&](const glm::ivec3& v, std::int64_t place, float way) {
-      node_of_[place] = static_cast<std::int32_t>(band.nodes.size());
-      open.push_back(node_of_[place]);
+      open.push_back(static_cast<std::int32_t>(band.nodes.size()));
       band.nodes.push_back({v, place, way});
+      node_of_[place] = static_cast<std::int32_t>(band.nodes.size());
     };
     for (const auto& [v, place] : borders_) {
       if (!is_of(limb, place)) continue;
       for_each_joined(v, [&](int, const glm::ivec3& w, std::int64_t there) {
         if (is_of(limb, there) || !may_touch(limb, there) || !is_free(limb, armature_, face_centre(v, w))) return;
         for (const auto& [voxel, at] : {std::pair{v, place}, {w, there}}) {
-          if (node_of_[at] < 0) add(voxel, at, 0);
+          if (node_at(at) < 0) add(voxel, at, 0);
           else is_apart = is_apart && !is_of_other(band, at);
         }
       });
@@ -278,7 +280,7 @@ class SeamFinder {
         if (is_of_other(band, there)) is_apart = false;
         const float way = from.way + static_cast<float>(spacing[direction >> 1]);
         if (!is_apart || way > width || bone_[there] == kSoft) return;
-        if (const std::int32_t node = node_of_[there]; node < 0) {
+        if (const std::int32_t node = node_at(there); node < 0) {
           add(w, there, way);
         } else if (way < band.nodes[node].way) {
           band.nodes[node].way = way;
@@ -308,8 +310,8 @@ class SeamFinder {
     for (std::size_t n = 0; n < band.nodes.size(); ++n)
       for_each_joined(band.nodes[n].voxel, [&](int direction, const glm::ivec3&, std::int64_t there) {
         const int axis = direction >> 1;
-        band.beside[n][direction & 1 ? SeamBand::edge_up(axis) : axis] = node_of_[there];
-        band.is_end[n] = band.is_end[n] || node_of_[there] < 0;
+        band.beside[n][direction & 1 ? SeamBand::edge_up(axis) : axis] = node_at(there);
+        band.is_end[n] = band.is_end[n] || node_at(there) < 0;
       });
   }
 
@@ -384,8 +386,8 @@ class SeamFinder {
   std::vector<std::optional<LimbName>> named_;  // limb that the name of each label contains
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
-  std::vector<std::uint16_t> held_by_, bone_;  // rig bone of each tissue voxel; held_by_: kSoft outside bone tissue
-  std::vector<std::int32_t> node_of_;          // index in its band of each tissue voxel; -1: in no band
+  ZeroedVector<std::uint16_t> held_by_, bone_;  // rig bone of each tissue voxel; held_by_: kSoft outside bone tissue
+  ZeroedVector<std::int32_t> node_of_;          // 1 + index in its band of each tissue voxel; 0: in no band
   std::vector<Border> borders_;
   bool has_skin_ = false;
   TissueSet inside_;                          // bones, and the tissue connected to them without crossing skin

@@ -253,9 +253,9 @@ void write_weights(const SkinWeights& weights, const LabelVolume& volume, const 
   write_atomically(path, [&](const Path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     out.write(header.data(), std::ssize(header));
-    // Chunks are unpacked on several threads, some thousand at a time.
-    constexpr std::int64_t kAtOnce = 4096, kGrain = 64;
-    std::vector<Influence> influences;
+    // Chunks are unpacked on several threads, a thousand at a time.
+    constexpr std::int64_t kAtOnce = 1024, kGrain = 32;
+    ZeroedVector<Influence> influences;
     for (std::int64_t from = 0; from < weights.chunk_count(); from += kAtOnce) {
       const std::int64_t to = std::min(from + kAtOnce, weights.chunk_count());
       const auto place = [&](std::int64_t b) {

@@ -17,7 +17,6 @@ constexpr std::size_t kMostLines = 500, kMostColumns = 120;
 const std::map<std::string, std::string> kLong = {
     {"core/autorig/articulated_fit.cpp", "one solver, whose steps share their state"},
     {"core/autorig/joint_axis_fit.cpp", "one solver, whose steps share their state"},
-    {"core/bones/bone_parts.cpp", "one algorithm in the order of its steps"},
     {"core/bones/joint_cuts.cpp", "one algorithm in the order of its steps"},
     {"core/deform/preview_map.cpp", "one inner loop in its variants for lanes and blends"},
     {"core/motion/retarget.cpp", "one algorithm in the order of its steps"},

@@ -115,7 +115,7 @@ auto gap_at(int x, int slope = 1 << 20) {
   };
 }
 
-HeatCells cells_of(const Hand& hand, const std::vector<std::uint16_t>& held_by, const HeatLaw& law, int shift) {
+HeatCells cells_of(const Hand& hand, const ZeroedVector<std::uint16_t>& held_by, const HeatLaw& law, int shift) {
   return make_heat_cells({hand.body.volume, hand.tissue, held_by, law.conductivity}, law,
                          glm::i16vec3(static_cast<std::int16_t>(shift)));
 }
@@ -224,7 +224,7 @@ TEST_CASE("heat cells: an island in the air is named, and its voxels follow one 
 TEST_CASE("heat cells: a cell is a connected set of soft voxels of one block, and links are the same both ways") {
   const auto is_cut = [](const glm::ivec3& v) { return v.x == 29 && v.z >= kPalm; };
   const Hand hand = two_fingers(gap_at(21, 5), is_cut);
-  const std::vector<std::uint16_t> held_by = fixed_bone(hand.body.volume, hand.tissue, hand.parts, hand.body.armature);
+  const ZeroedVector<std::uint16_t> held_by = fixed_bone(hand.body.volume, hand.tissue, hand.parts, hand.body.armature);
   const HeatLaw law(hand.body.volume.grid, hand.body.tissues);
   for (const int shift : {1, 2, 3}) {
     CAPTURE(shift);
@@ -277,7 +277,7 @@ TEST_CASE("heat cells: paths to voxels are as long as those from voxel to voxel"
   const Hand hand = two_fingers(gap_at(21, 5));
   const Grid& grid = hand.body.volume.grid;
   const Armature& rig = hand.body.armature;
-  const std::vector<std::uint16_t> held_by = fixed_bone(hand.body.volume, hand.tissue, hand.parts, rig);
+  const ZeroedVector<std::uint16_t> held_by = fixed_bone(hand.body.volume, hand.tissue, hand.parts, rig);
   const NearestBone exact = attracting_bone(hand.body.volume, hand.tissue, rig, held_by);
   const HeatLaw law(grid, hand.body.tissues);
   const std::vector<BoneReach> reaches = reaches_of_bones(rig);

@@ -26,7 +26,7 @@ struct RandomBody {
   LabelVolume volume;
   TissueTable tissues;
   TissueVoxels tissue;
-  std::vector<std::uint16_t> held_by;
+  ZeroedVector<std::uint16_t> held_by;
   NearestBone nearest;
 
   RandomBody(const glm::ivec3& size, const glm::dvec3& spacing, unsigned seed) {
