@@ -24,13 +24,15 @@ class Outputs {
   // Registers files that will be written, so that they are removed on failure. Files that already exist now are not
   // removed.
   void expect(const std::vector<Path>& paths) {
+    std::error_code unreadable;
     for (const Path& path : paths)
-      if (!std::filesystem::exists(path)) written_.push_back(path);
+      if (!std::filesystem::exists(path, unreadable)) written_.push_back(path);
   }
   template <class Write>
   void write(const std::string& path, const Write& write) {
     if (path.empty()) return;
-    const bool is_new = !std::filesystem::exists(path);
+    std::error_code unreadable;
+    const bool is_new = !std::filesystem::exists(path, unreadable);
     write();
     if (is_new) written_.push_back(path);
   }

@@ -114,7 +114,8 @@ bool is_done(const Path& folder, const std::string& key) {
   if (!json.is_object() || json.value("key", "") != key) return false;
   // An export names no files, since some formats write one for each tissue.
   return !json.contains("files") || std::all_of(json["files"].begin(), json["files"].end(), [&](const Json& name) {
-    return name.is_string() && fs::exists(folder / name.get<std::string>());
+    std::error_code unreadable;
+    return name.is_string() && fs::exists(folder / name.get<std::string>(), unreadable);
   });
 }
 

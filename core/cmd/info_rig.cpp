@@ -141,7 +141,9 @@ bool is_rig_or_motion(const Path& file) {
   const std::string extension = extension_of(file);
   for (const char* own : {".bvh", ".vtk", ".arm", ".gltf", ".glb", ".obj"})
     if (extension == own) return true;
-  return extension == ".json" && std::filesystem::is_regular_file(file) && kind_of_json(file) != JsonFile::Other;
+  std::error_code unreadable;
+  return extension == ".json" && std::filesystem::is_regular_file(file, unreadable) &&
+         kind_of_json(file) != JsonFile::Other;
 }
 
 std::string describe_rig_or_motion(const Path& file) {

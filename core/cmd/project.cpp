@@ -53,7 +53,8 @@ void require(bool holds, const std::string& what, const std::string& where, cons
 
 void require_new(const Path& path, bool replace) {
   check_place(path);
-  require(replace || !std::filesystem::exists(path), "a file of that name is there already", path.string(),
+  std::error_code unreadable;
+  require(replace || !std::filesystem::exists(path, unreadable), "a file of that name is there already", path.string(),
           "choose another name, or say --replace");
 }
 

@@ -204,10 +204,11 @@ WeightsSummary summarize_weights(const Path& path) {
 }
 
 bool is_volume_path(const Path& path) {
-  if (std::filesystem::is_directory(path)) return is_dicom_folder(path);
+  std::error_code unreadable;
+  if (std::filesystem::is_directory(path, unreadable)) return is_dicom_folder(path);
   const std::string name = lower_case(path.filename().string());
   // A ".raw" file is a volume only when the .txt file that describes it exists.
-  if (name.ends_with(".raw")) return std::filesystem::exists(Path(path).replace_extension(".txt"));
+  if (name.ends_with(".raw")) return std::filesystem::exists(Path(path).replace_extension(".txt"), unreadable);
   for (const VolumeFormat& format : volume_formats())
     for (const std::string& ending : format.endings)
       if (name.ends_with(ending)) return true;

@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
   app.add_option("FILE", files, "volumes or a project to open in the editor")->check([](const std::string& name) {
     // An argument without "." or "/" that names no file is most likely a misspelled command.
     const bool is_word = name.find_first_of("./") == std::string::npos;
-    return is_word && !std::filesystem::exists(name) ? "there is neither a command nor a file " + name : std::string();
+    std::error_code unreadable;
+    return is_word && !std::filesystem::exists(name, unreadable) ? "there is neither a command nor a file " + name
+                                                                 : std::string();
   });
   app.require_subcommand(0, 1);
   limber::cmd::add_commands(app, limber::cmd::kProgramCommit);
