@@ -76,8 +76,8 @@ struct Root {
     out.put(std::int32_t{0});  // the index of the shown clip; the next value is its frame
     out.put(std::int32_t{0});
     list(PartKind::NamedPose);
-    for (const PartKind kind :
-         {PartKind::Anchors, PartKind::WeightLocks, PartKind::WeightLayers, PartKind::Seams, PartKind::BoneMap})
+    for (const PartKind kind : {PartKind::Anchors, PartKind::WeightLocks, PartKind::WeightLayers, PartKind::Seams,
+                                PartKind::BoneMap, PartKind::Measurements})
       part(kind);
     node.bytes = out.take();
     return to_chunk(node);
@@ -122,6 +122,7 @@ bool has(const Document& document, PartKind kind) {
     case PartKind::WeightLayers: return document.layers != nullptr;
     case PartKind::Seams: return document.seams != nullptr;
     case PartKind::BoneMap: return document.bone_map != nullptr;
+    case PartKind::Measurements: return document.measurements != nullptr;
     default: return false;
   }
 }
@@ -136,9 +137,10 @@ class Assembly {
   }
 
   std::optional<Document> document(std::vector<std::string>& warnings) {
-    for (const PartKind kind : {PartKind::Volume, PartKind::Tissues, PartKind::VolumeType, PartKind::Armature,
-                                PartKind::Weights, PartKind::Pose, PartKind::Visibility, PartKind::Anchors,
-                                PartKind::WeightLocks, PartKind::WeightLayers, PartKind::Seams, PartKind::BoneMap})
+    for (const PartKind kind :
+         {PartKind::Volume, PartKind::Tissues, PartKind::VolumeType, PartKind::Armature, PartKind::Weights,
+          PartKind::Pose, PartKind::Visibility, PartKind::Anchors, PartKind::WeightLocks, PartKind::WeightLayers,
+          PartKind::Seams, PartKind::BoneMap, PartKind::Measurements})
       choose_one(kind);
     for (const PartKind kind : {PartKind::Result, PartKind::Clip, PartKind::NamedPose}) choose_all(kind);
     WithRoot source(chunks_, root_);

@@ -13,6 +13,7 @@
 #include <glm/glm.hpp>
 
 #include "core/bones/bone_identity.h"
+#include "core/measure/measurement.h"
 #include "core/motion/clip.h"
 #include "core/pose/ik_constraints.h"
 #include "core/pose/pose_library.h"
@@ -109,6 +110,7 @@ struct Document {
   std::shared_ptr<const WeightLayers> layers;  // `weights` is the blend of these layers; null: no layers
   std::shared_ptr<const Seams> seams;  // seams edited by the user (empty: none); null: seams are found automatically
   std::shared_ptr<const BoneMap> bone_map;  // the rig bones that the user assigned to labels; null: none assigned
+  std::shared_ptr<const Measurements> measurements;  // null: none
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -12,8 +12,8 @@ namespace limber {
 
 // The reader also accepts the earlier layouts. Layout 1 has one motion and no clips. Layout 2 has no pose library, 3
 // has no anchors, 4 has only bits 0 and 1 of packed_reference(), 5 has no weight locks, 6 has no weight layers, 7 has
-// no overlap in a result, and 8 has neither seams nor a bone map.
-constexpr std::uint32_t kDocumentLayout = 9;
+// no overlap in a result, 8 has neither seams nor a bone map, and 9 has no measurements.
+constexpr std::uint32_t kDocumentLayout = 10;
 
 // The first byte of a part, which names its type.
 enum class PartKind : std::uint8_t {
@@ -35,7 +35,8 @@ enum class PartKind : std::uint8_t {
   SolvedMesh,
   Overlap,
   Seams,
-  BoneMap
+  BoneMap,
+  Measurements
 };
 
 template <class T>
@@ -134,6 +135,11 @@ template <>
 struct PartKindOf<BoneMap> {
   static constexpr PartKind kKind = PartKind::BoneMap;
   static constexpr const char* kName = "bone map";
+};
+template <>
+struct PartKindOf<Measurements> {
+  static constexpr PartKind kKind = PartKind::Measurements;
+  static constexpr const char* kName = "measurements";
 };
 
 // Packs three settings of a clip into one byte. Bits 0 and 1 are the retargeting's reference, bits 2 and 3 the rest

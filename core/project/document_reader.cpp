@@ -166,6 +166,20 @@ void get(ByteReader& in, BoneMap& map) {
   }
 }
 
+void get(ByteReader& in, Measurements& measurements) {
+  measurements.resize(in.count(13));
+  for (Measurement& one : measurements) {
+    one.name = in.text();
+    one.kind = static_cast<MeasureKind>(in.get_below<std::uint8_t>(kMeasureKinds));
+    one.points.resize(in.count(24));
+    in.require(is_complete(one.kind, one.points.size()));
+    for (glm::dvec3& point : one.points) {
+      point = get_vector(in);
+      in.require(is_finite(point));
+    }
+  }
+}
+
 void get(ByteReader& in, SolvedMesh& solved) {
   const std::string mesh = in.text(), step = in.text();
   try {
@@ -317,6 +331,7 @@ class Reading {
       if (layout > 6) part(document.layers);
       if (layout > 8) part(document.seams);
       if (layout > 8) part(document.bone_map);
+      if (layout > 9) part(document.measurements);
     }
     in.require(next == node.nodes.size());
     in.end();

@@ -99,6 +99,16 @@ void put(ByteWriter& out, const BoneMap& map) {
   }
 }
 
+void put(ByteWriter& out, const Measurements& measurements) {
+  out.count(measurements.size());
+  for (const Measurement& one : measurements) {
+    out.text(one.name);
+    out.put(static_cast<std::uint8_t>(one.kind));
+    out.count(one.points.size());
+    for (const glm::dvec3& point : one.points) put(out, point);
+  }
+}
+
 void put(ByteWriter& out, const Motion& motion) {
   out.count(motion.joints.size());
   for (const BvhJoint& joint : motion.joints) {
@@ -223,6 +233,7 @@ class DocumentWriter::Writing {
     part(document.layers);
     part(document.seams);
     part(document.bone_map);
+    part(document.measurements);
     root.bytes = out.take();
     const ChunkHash hash = put_chunk(to_chunk(root));
     progress_.update("save", 1);

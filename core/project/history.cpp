@@ -88,6 +88,11 @@ std::int64_t own_bytes(const BoneMap& map) {
     bytes += kNode + std::int64_t{sizeof label + sizeof bone} + heap_bytes(label) + heap_bytes(bone);
   return bytes;
 }
+std::int64_t own_bytes(const Measurements& measurements) {
+  std::int64_t bytes = heap_bytes(measurements);
+  for (const Measurement& one : measurements) bytes += heap_bytes(one.name) + heap_bytes(one.points);
+  return bytes;
+}
 std::int64_t own_bytes(const WeightLayer::Mask& mask) { return heap_bytes(mask); }
 // Returns the layer's size without its mask blocks and the chunks of its weights. Documents share these, so they are
 // counted separately.
@@ -183,6 +188,7 @@ class History::Ledger {
     visit(document.layers, step);
     count(document.seams, step);
     count(document.bone_map, step);
+    count(document.measurements, step);
     bytes_ += step * (static_cast<std::int64_t>(sizeof(Step)) + heap_bytes(document.results) +
                       heap_bytes(document.clips) + heap_bytes(document.poses));
   }

@@ -18,6 +18,7 @@
 #include "editor/files/import.h"
 #include "editor/files/project_session.h"
 #include "editor/files/tour.h"
+#include "editor/measure/measure_view.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
 #include "editor/resample/difference_overlay.h"
@@ -148,6 +149,7 @@ Editor::Editor(Host& host, const Preferences& preferences)
       overlap(std::make_unique<OverlapView>()),
       seams(std::make_unique<SeamView>()),
       bone_table(std::make_unique<BoneTable>()),
+      measures(std::make_unique<MeasureView>()),
       timeline(std::make_unique<Timeline>()),
       last_operation(std::make_unique<LastOperation>()) {
   before_change = stop_playing;

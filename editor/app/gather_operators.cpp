@@ -15,6 +15,7 @@ std::vector<Operator> navigation_operators();
 std::vector<Operator> clip_operators();
 std::vector<Operator> slice_operators();
 std::vector<Operator> image_operators();
+std::vector<Operator> measure_operators();
 std::vector<Operator> tissue_operators();
 std::vector<Operator> select_operators();
 std::vector<Operator> search_operators();
@@ -41,14 +42,39 @@ std::vector<Operator> help_operators();
 
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
-  for (auto list : {file_operators,         import_operators,      export_operators,      edit_operators,
-                    workspace_operators,    view_operators,        navigation_operators,  clip_operators,
-                    slice_operators,        image_operators,       tissue_operators,      select_operators,
-                    search_operators,       preferences_operators, prepare_operators,     rig_fit_operators,
-                    skin_operators,         paint_operators,       weight_edit_operators, region_operators,
-                    skin_display_operators, layer_operators,       test_pose_operators,   weight_problem_operators,
-                    joint_repair_operators, seam_operators,        bone_table_operators,  rig_operators,
-                    pose_operators,         motion_operators,      motion_clip_operators, resample_operators,
+  for (auto list : {file_operators,
+                    import_operators,
+                    export_operators,
+                    edit_operators,
+                    workspace_operators,
+                    view_operators,
+                    navigation_operators,
+                    clip_operators,
+                    slice_operators,
+                    image_operators,
+                    measure_operators,
+                    tissue_operators,
+                    select_operators,
+                    search_operators,
+                    preferences_operators,
+                    prepare_operators,
+                    rig_fit_operators,
+                    skin_operators,
+                    paint_operators,
+                    weight_edit_operators,
+                    region_operators,
+                    skin_display_operators,
+                    layer_operators,
+                    test_pose_operators,
+                    weight_problem_operators,
+                    joint_repair_operators,
+                    seam_operators,
+                    bone_table_operators,
+                    rig_operators,
+                    pose_operators,
+                    motion_operators,
+                    motion_clip_operators,
+                    resample_operators,
                     help_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;

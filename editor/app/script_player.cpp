@@ -210,8 +210,7 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     hold(words, 2, false);
     settle();
   } else if (command == "press") {
-    need(words, 2);
-    host_.events.push(PointerMoved{place_of(words[1])});
+    if (words.size() > 1) host_.events.push(PointerMoved{place_of(words[1])});
     settle();
     host_.events.push(ButtonChanged{MouseButton::Left, true});
     settle();

@@ -3,7 +3,7 @@
 // document and the same pictures. A line holds one command, "#" begins a comment, names with spaces stand in quotes.
 //
 //   click NAME [MODIFIER...]         also double-click, right-click; a menu's path opens the menu: click "File/Open..."
-//   press NAME | release             presses the left button on NAME, releases it
+//   press [NAME] | release           presses the left button on NAME or where the pointer is, releases it
 //   drag NAME DX DY [BUTTON] [MODIFIER...]   from the widget's centre, px at scale 1; BUTTON: LMB, MMB, RMB
 //   wheel NAME STEPS [MODIFIER...]
 //   move NAME | move X Y

@@ -51,6 +51,7 @@ struct DifferenceView;
 struct OverlapView;
 struct SeamView;
 struct BoneTable;
+struct MeasureView;
 
 // A drag with a mouse button. `moved` is called for every move of the pointer until the button is released (then
 // `ended` is called) or Escape cancels the drag (then `cancelled` is called).
@@ -185,6 +186,7 @@ struct Editor : Ui {
   std::unique_ptr<OverlapView> overlap;        // declared in overlap_overlay.h; never null
   std::unique_ptr<SeamView> seams;             // declared in seam_view.h; never null
   std::unique_ptr<BoneTable> bone_table;       // declared in bone_table.h; never null
+  std::unique_ptr<MeasureView> measures;       // declared in measure_view.h; never null
   struct {
     std::string result;  // the result whose name is being edited; "" for none
     std::string text;

@@ -49,6 +49,7 @@ void draw_display(Editor& editor, Column& column);
 void draw_clipping(Editor& editor, Column& column);
 void draw_image_section(Editor& editor, Column& column);
 void draw_under_cursor(Editor& editor, Column& column);
+void draw_measurements(Editor& editor, Column& column);
 void draw_motion(Editor& editor, Column& column);
 void draw_layers(Editor& editor, Column& column);
 void draw_weight_problems(Editor& editor, Column& column);

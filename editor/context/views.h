@@ -95,7 +95,7 @@ struct Views {
   bool show_cross_hair = true;
   render::Display display = render::Display::Solid;
   render::SliceDisplay slice_display = render::SliceDisplay::Labels;
-  bool grid = true, axes = true, scale_bar = true, letters = true, bones = true;
+  bool grid = true, axes = true, scale_bar = true, letters = true, bones = true, rulers = false;
   render::BoneShape bone_shape = render::BoneShape::Octahedron;
   bool bone_names = false, bone_axes = false, bones_in_front = false;
   std::optional<render::ShownGrey> image;  // the grey image shown with the labels (editor/volume/shown_image.h)

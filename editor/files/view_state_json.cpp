@@ -109,6 +109,7 @@ std::string editor_state(const Editor& editor) {
             {"grid", views.grid},
             {"axes", views.axes},
             {"scale_bar", views.scale_bar},
+            {"rulers", views.rulers},
             {"letters", views.letters},
             {"show_cross_hair", views.show_cross_hair},
             {"bones", views.bones},
@@ -162,6 +163,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   take(json, "grid", views.grid);
   take(json, "axes", views.axes);
   take(json, "scale_bar", views.scale_bar);
+  take(json, "rulers", views.rulers);
   take(json, "letters", views.letters);
   take(json, "show_cross_hair", views.show_cross_hair);
   take(json, "bones", views.bones);

@@ -151,7 +151,9 @@ std::vector<Menu> menus() {
         "> Tissues", "view.hide", "view.isolate_selected", "view.reveal", "<",
         "> Slices", "slice.show_labels", "slice.show_outlines", "slice.next", "slice.previous", "<",
         "> Overlays", "view.grid", "view.axes", "view.scale_bar", "view.letters", "view.bones", "view.rig_check",
-        "view.cross_hair", "<",
+        "view.cross_hair", "view.rulers", "<",
+        "> Measure", "measure.distance", "measure.angle", "measure.girth", "measure.thickness", "-", "measure.show",
+        "measure.rename", "measure.copy", "-", "measure.delete", "measure.clear", "<",
         "> Bones", "view.bones_octahedron", "view.bones_stick", "view.bones_cylinder", "-", "view.bone_names",
         "view.bone_axes", "view.bones_in_front", "<",
         "-", "view.find", "view.sidebar", "view.tool_strip",
@@ -192,6 +194,8 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Views") return {name, {"view.front", "view.back", "view.left", "view.right", "view.top", "view.bottom",
         "view.opposite", "-",
         "view.ortho", "view.frame_selected", "view.frame_all", "view.walk"}};
+  if (name == "Measure") return {name, {"measure.distance", "measure.angle", "measure.girth", "measure.thickness",
+        "-", "measure.show", "measure.copy", "measure.clear"}};
   if (name == "Display") return {name, {"view.solid", "view.xray_display", "view.tissue",
         "view.image_display", "-", "view.clip_box", "view.clip_plane"}};
   if (name == "Weight display")

@@ -73,6 +73,7 @@ void draw_sidebar(Editor& editor) {
     draw_image_section(editor, column);
     draw_clipping(editor, column);
     draw_under_cursor(editor, column);
+    draw_measurements(editor, column);
     draw_history(editor, column);
     column.space(sidebar_rest(column.row(0).high.y + ImGui::GetScrollY() - rect.low.y) / editor.look.scale);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "editor/context/panels.h"
+#include "editor/measure/ruler_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
 
@@ -98,14 +99,16 @@ void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
   const int axis = grid_axis_of(grid, frame.normal);
   const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
   draw_cross_hair(editor, camera, frame, rect);
-  draw_view_title(editor, rect, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
+  draw_rulers(editor, place);
+  const Rect free = beside_rulers(editor, rect);
+  draw_view_title(editor, free, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
                   std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) +
                       (rect.width() > editor.look.px(300) && (scene.volume != editor.document().volume || scene.pose)
                            ? " \u00b7 posed"
                            : ""));
-  draw_letters(editor, frame, rect);
+  draw_letters(editor, frame, free);
   draw_slice_bar(editor, grid, axis, rect);
-  draw_scale_bar(editor, rect, camera.millimetres_per_pixel);
+  draw_scale_bar(editor, free, camera.millimetres_per_pixel);
   if (editor.layout.place_of(ViewId::Body) || side_a) return;
   draw_fem_legend(editor, rect);
   draw_marks_legend(editor, rect);

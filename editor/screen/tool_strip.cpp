@@ -17,16 +17,17 @@ void draw_tool_strip(Editor& editor) {
   begin_region(editor, Region::ToolStrip, "strip", rect, look.theme.panel);
   fill({{rect.high.x - look.line(), rect.low.y}, rect.high}, look.theme.void_);
   float y = rect.low.y + look.px(4);
-  std::vector<std::string> tools = {"tool.select", "tool.cross_hair", "-", "view.clip_box", "view.clip_plane"};
+  std::vector<std::string> tools = {"tool.select",   "tool.cross_hair", "-",
+                                    "view.clip_box", "view.clip_plane", "measure.menu"};
   if (editor.workspace == Workspace::Pose)
-    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.reach",
-             "-",           "pose.breakdown",  "-", "view.clip_box", "view.clip_plane"};
+    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.reach",
+             "-",           "pose.breakdown",  "-", "view.clip_box", "view.clip_plane", "measure.menu"};
   if (editor.workspace == Workspace::Skin)
     tools = with_brushes({"*", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "skin.pick_bone", "-",
-                          "view.clip_box", "view.clip_plane"});
+                          "view.clip_box", "view.clip_plane", "measure.menu"});
   if (editor.workspace == Workspace::Rig)
-    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",    "tool.scale", "-",
-             "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane"};
+    tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.scale",  "-",
+             "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane", "measure.menu"};
   // Compute the height of a button. In a low window the buttons are lower, so that all of them fit.
   const auto lines = static_cast<float>(std::count(tools.begin(), tools.end(), "-"));
   const float rows = static_cast<float>(tools.size()) - lines;

@@ -8,6 +8,7 @@
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
 #include "editor/dialogs/redo_last_operator.h"
+#include "editor/measure/measure_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/screen/menus.h"
 #include "editor/seams/seam_view.h"
@@ -327,6 +328,7 @@ void draw_views_region(Editor& editor) {
     if (place.id == ViewId::Body) draw_body_overlay(editor, place);
     else draw_slice_overlay(editor, place);
     draw_seams(editor, place);
+    draw_measurements_over(editor, place);
     draw_gizmo(editor, place);
     draw_brush(editor, place);
     draw_wipe(editor, place.rect);

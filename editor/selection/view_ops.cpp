@@ -108,6 +108,7 @@ std::vector<Operator> view_operators() {
       overlay_operator("view.grid", "Grid", "Show the grid on the ground.", &Views::grid),
       overlay_operator("view.axes", "Axes", "Show the axis ball, which shows the direction of view.", &Views::axes),
       overlay_operator("view.scale_bar", "Scale bar", "Show a scale bar in every view.", &Views::scale_bar),
+      overlay_operator("view.rulers", "Rulers", "Show rulers in mm along the edges of the slices.", &Views::rulers),
       overlay_operator("view.letters", "Orientation letters",
                        "Show letters for the sides of the body, such as L and R.", &Views::letters),
       overlay_operator("view.bones", "Bones", "Show the skeleton in the views.", &Views::bones),

@@ -80,6 +80,7 @@ std::vector<Proof> proofs_of_joint_repair();
 std::vector<Proof> proofs_of_seams();
 std::vector<Proof> proofs_of_bone_table();
 std::vector<Proof> proofs_of_images();
+std::vector<Proof> proofs_of_measuring();
 std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();

@@ -314,6 +314,18 @@ TEST_CASE("golden: a CT below the labels in the slices, and its bones in 3D") {
   check_golden("ct", scene.picture());
 }
 
+TEST_CASE("golden: an arm measured, with rulers") {
+  Arm scene;
+  scene.play(
+      "click view.four\n click View/Overlays/Rulers\n click sidebar/sections/Steps/fold\n click "
+      "sidebar/sections/Outliner/fold\n click sidebar/sections/Tissues/fold\n click "
+      "sidebar/sections/Measurements/fold\n click View/Measure/\"Measure girth\"\n click \"3D view/view\"\n key "
+      "Return\n click View/Measure/\"Measure thickness\"\n click Coronal/view\n key Return\n click "
+      "View/Measure/\"Measure angle\"\n click \"3D view/view\"\n click Coronal/view\n click Sagittal/view\n key "
+      "Return\n wait-idle\n move \"Axial/view\"");
+  check_golden("measurements", scene.picture());
+}
+
 TEST_CASE("golden: preferences") {
   Arm scene;
   scene.play("key Ctrl+,");

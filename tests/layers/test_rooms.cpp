@@ -22,14 +22,15 @@ struct Floor {
 };
 
 const std::vector<Floor> kFloors = {
-    {"core", {"platform", "base",    "volume",        "tissue",  "volume_io",     "rig",     "motion",   "rig_io",
-              "pose",     "phantom", "mesh",          "bones",   "prepare",       "autorig", "skin",     "binding",
-              "seams",    "paint",   "paint/brushes", "deform",  "deform/blends", "fem",     "resample", "export",
-              "report",   "repair",  "body",          "project", "batch",         "study",   "cmd",      "python"}},
+    {"core",
+     {"platform", "base",          "volume", "tissue",        "volume_io", "rig",      "motion", "rig_io",  "pose",
+      "phantom",  "measure",       "mesh",   "bones",         "prepare",   "autorig",  "skin",   "binding", "seams",
+      "paint",    "paint/brushes", "deform", "deform/blends", "fem",       "resample", "export", "report",  "repair",
+      "body",     "project",       "batch",  "study",         "cmd",       "python"}},
     {"render", {"gl", "scene", "textures", "passes", ""}},
     {"editor",
-     {"input", "ui", "context", "dialogs", "file_browser", "shown", "viewport", "volume", "seams", "rig", "motion",
-      "pose", "selection", "skin", "resample", "files", "screen", "app", "cli"}},
+     {"input", "ui",     "context", "dialogs",   "file_browser", "shown",    "viewport", "volume", "measure", "seams",
+      "rig",   "motion", "pose",    "selection", "skin",         "resample", "files",    "screen", "app",     "cli"}},
 };
 
 std::string room_of(const std::string& file) { return fs::path(file).parent_path().generic_string(); }

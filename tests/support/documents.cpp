@@ -36,6 +36,7 @@ bool equal(const Anchors& a, const Anchors& b) {
 bool equal(const WeightLocks& a, const WeightLocks& b) { return a == b; }
 bool equal(const Seams& a, const Seams& b) { return a == b; }
 bool equal(const BoneMap& a, const BoneMap& b) { return a == b; }
+bool equal(const Measurements& a, const Measurements& b) { return a == b; }
 bool equal(const LabelVolume& a, const LabelVolume& b) { return a.grid == b.grid && a.voxels == b.voxels; }
 bool equal(const Tissue& a, const Tissue& b) {
   return a.label == b.label && same(a.file_value, b.file_value) && a.name == b.name && a.colour == b.colour &&
@@ -218,7 +219,7 @@ bool same_contents(const Document& a, const Document& b) {
   };
   return a.clip == b.clip && a.frame == b.frame && all_equal(a.clips, b.clips) && all_equal(a.poses, b.poses) &&
          equal(a.anchors, b.anchors) && equal(a.locks, b.locks) && equal(a.layers, b.layers) &&
-         equal(a.seams, b.seams) && equal(a.bone_map, b.bone_map);
+         equal(a.seams, b.seams) && equal(a.bone_map, b.bone_map) && equal(a.measurements, b.measurements);
 }
 
 Document small_document() {
@@ -245,13 +246,22 @@ Document small_document() {
   for (int x = 3; x < 20; ++x) seams.cut({x, 7, 2}, 1), seams.cut({x, 7, 6}, 2);
   document.seams = shared(seams);
   document.bone_map = shared(BoneMap{{"17@left", "Lower"}, {"bone \xff not UTF-8", "Upper"}});
+  document.measurements = shared(Measurements{{"Distance \xff", MeasureKind::Distance, {{1e-300, -0.0, 3}, {4, 5, 6}}},
+                                              {"", MeasureKind::Girth, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}});
   document.results.push_back(shared(result_of(document, random)));
   return document;
 }
 
 Document random_edit(const Document& document, std::mt19937& random) {
   Document next = document;
-  switch (below(random, 11)) {
+  switch (below(random, 12)) {
+    case 11: {
+      Measurements all = document.measurements ? *document.measurements : Measurements{};
+      if (!all.empty() && below(random, 2)) all.pop_back();
+      else all.push_back({"Angle", MeasureKind::Angle, {{unit(random), 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+      next.measurements = all.empty() ? nullptr : shared(std::move(all));
+      break;
+    }
     case 10: {
       Seams seams = document.seams ? *document.seams : Seams(document.volume->grid.size);
       const glm::ivec3 lower(1 + below(random, 20), 1 + below(random, 6), 1 + below(random, 5));

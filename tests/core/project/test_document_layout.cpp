@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Projects of earlier versions.
+#include <cmath>
 #include <random>
 #include <unordered_map>
 
@@ -39,8 +40,9 @@ class Chunks final : public ChunkSink, public ChunkSource {
 
 namespace {
 
-// Of the document and of its results.
-void drop_seams_and_bone_map(Document& document) {
+// What layout 8 does not have, of the document and of its results.
+void drop_parts_after_8(Document& document) {
+  document.measurements = nullptr;
   document.seams = nullptr;
   document.bone_map = nullptr;
   for (auto& result : document.results) {
@@ -87,12 +89,13 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   now.anchors = nullptr;
   now.locks = nullptr;
   now.layers = nullptr;
-  drop_seams_and_bone_map(now);
+  drop_parts_after_8(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses and the flags of anchors, locks, layers, seams and bone map at its end.
-  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 5);
+  // The same, without the count of poses and the flags of anchors, locks, layers, seams, bone map and measurements at
+  // its end.
+  node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 6);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -104,11 +107,11 @@ TEST_CASE("project: a document of the third layout opens, without pins and poles
   now.anchors = nullptr;
   now.locks = nullptr;
   now.layers = nullptr;
-  drop_seams_and_bone_map(now);
+  drop_parts_after_8(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 5);
+  node.bytes.resize(node.bytes.size() - 6);
   node.bytes[0] = 3;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -119,11 +122,11 @@ TEST_CASE("project: a document of the fifth layout opens, without locks of weigh
   Document now = small_document();
   now.locks = nullptr;
   now.layers = nullptr;
-  drop_seams_and_bone_map(now);
+  drop_parts_after_8(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 4);
+  node.bytes.resize(node.bytes.size() - 5);
   node.bytes[0] = 5;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -133,11 +136,11 @@ TEST_CASE("project: a document of the fifth layout opens, without locks of weigh
 TEST_CASE("project: a document of the sixth layout opens, without layers of weights") {
   Document now = small_document();
   now.layers = nullptr;
-  drop_seams_and_bone_map(now);
+  drop_parts_after_8(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 3);
+  node.bytes.resize(node.bytes.size() - 4);
   node.bytes[0] = 6;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
@@ -159,15 +162,42 @@ TEST_CASE("project: layers that belong to other weights are left out and said so
 
 TEST_CASE("project: a document of the eighth layout opens, without seams and bone map") {
   Document now = small_document();
-  drop_seams_and_bone_map(now);
+  drop_parts_after_8(now);
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  node.bytes.resize(node.bytes.size() - 2);
+  node.bytes.resize(node.bytes.size() - 3);
   node.bytes[0] = 8;
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
   CHECK(warnings.empty());
+}
+
+TEST_CASE("project: a document of the ninth layout opens, without measurements") {
+  Document now = small_document();
+  now.measurements = nullptr;
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes.resize(node.bytes.size() - 1);
+  node.bytes[0] = 9;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: measurements with too few points, or points that are no numbers, are refused") {
+  for (const Measurement& wrong :
+       {Measurement{"A", MeasureKind::Angle, {{0, 0, 0}, {1, 0, 0}}}, Measurement{"G", MeasureKind::Girth, {{0, 0, 0}}},
+        Measurement{"D", MeasureKind::Distance, {{0, 0, 0}, {1, NAN, 0}}}}) {
+    Document now;
+    now.measurements = std::make_shared<const Measurements>(Measurements{wrong});
+    Chunks chunks;
+    DocumentWriter writer;
+    const ChunkHash root = writer.write(now, chunks, Packing::Quick);
+    std::vector<std::string> warnings;
+    CHECK_THROWS_AS(read_document(root, chunks, "new.limber", warnings), Error);
+  }
 }
 
 TEST_CASE("project: seams of another volume, or beside air, are left out and said so") {

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/measure/tissue_thickness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/measure/tissue_share.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kDirections = 400;
+constexpr double kStep = 0.25;       // step along a line, in shortest voxel edges
+constexpr double kFirstTurn = 0.08;  // first turn of the search around the best direction, radians
+
+// Bundles of parallel lines through one point of a tissue.
+class LinesThrough {
+ public:
+  LinesThrough(const LabelVolume& volume, const glm::dvec3& centre, Label label)
+      : volume_(volume),
+        to_voxel_(voxel_from_world(volume.grid)),
+        centre_(centre),
+        label_(label),
+        voxel_(std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z})) {}
+
+  // Returns the mean distances from the centre to the tissue's border ahead and behind, mm. Lines that begin outside
+  // the tissue do not count.
+  //   most  upper limit on each distance, mm
+  std::array<double, 2> to_borders(const glm::dvec3& direction, double most) const {
+    const glm::dvec3 other = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 a = glm::normalize(glm::cross(direction, other)), b = glm::cross(direction, a);
+    std::array<double, 2> sum{0, 0};
+    int count = 0;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        const glm::dvec3 from = centre_ + voxel_ * (double(i) * a + double(j) * b);
+        if ((i || j) && share(from) < kInside) continue;
+        sum[0] += to_border(from, direction, most);
+        sum[1] += to_border(from, -direction, most);
+        ++count;
+      }
+    return {sum[0] / count, sum[1] / count};
+  }
+  double length(const glm::dvec3& direction, double most) const {
+    const auto [ahead, behind] = to_borders(direction, most);
+    return ahead + behind;
+  }
+
+ private:
+  static constexpr double kInside = 0.5;
+
+  double to_border(const glm::dvec3& from, const glm::dvec3& direction, double most) const {
+    const double step = kStep * voxel_;
+    double before = share(from);
+    for (double way = step; way < most + step; way += step) {
+      const double here = share(from + way * direction);
+      if (here < kInside) return way - step * std::clamp((kInside - here) / std::max(before - here, 1e-9), 0.0, 1.0);
+      before = here;
+    }
+    return most;
+  }
+  double share(const glm::dvec3& point) const {
+    return tissue_share(volume_, to_voxel_ * point, [this](Label label) { return label == label_; });
+  }
+
+  const LabelVolume& volume_;
+  AffineTransform to_voxel_;
+  glm::dvec3 centre_;
+  Label label_;
+  double voxel_;  // shortest voxel edge, mm
+};
+
+}  // namespace
+
+std::array<glm::dvec3, 2> thickness_line(const LabelVolume& volume, const glm::ivec3& voxel) {
+  const Label label = volume.at_or_air(voxel);
+  if (label == 0) throw Error("there is no tissue at this point", "measuring", "choose a point on the body");
+  const glm::dvec3 centre = world_from_voxel(volume.grid) * glm::dvec3(voxel);
+  const LinesThrough lines(volume, centre, label);
+  double least = glm::length(glm::dvec3(volume.grid.size) * volume.grid.spacing);
+  glm::dvec3 best(0, 0, 1);
+  // Directions spread evenly over half a sphere, by a spiral of the golden angle.
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = (i + 0.5) / kDirections, r = std::sqrt(1 - z * z),
+                 turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    const glm::dvec3 direction(r * std::cos(turn), r * std::sin(turn), z);
+    if (const double length = lines.length(direction, least); length < least) least = length, best = direction;
+  }
+  for (double turn = kFirstTurn; turn > 0.005; turn /= 2)
+    for (bool better = true; better;) {
+      better = false;
+      const glm::dvec3 other = std::abs(best.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+      const glm::dvec3 a = glm::normalize(glm::cross(best, other)), b = glm::cross(best, a);
+      for (const glm::dvec3& way : {a, -a, b, -b}) {
+        const glm::dvec3 direction = glm::normalize(best + std::tan(turn) * way);
+        if (const double length = lines.length(direction, least); length < least * (1 - 1e-9))
+          least = length, best = direction, better = true;
+      }
+    }
+  const auto [ahead, behind] = lines.to_borders(best, least);
+  return {centre - behind * best, centre + ahead * best};
+}
+
+}  // namespace limber

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators that measure the body, and that change the list of measurements.
+#include "editor/context/document_edits.h"
+#include "editor/context/operator_polls.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/measure/measure_tool.h"
+#include "editor/measure/measure_view.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_measurement(const Editor& editor) {
+  const auto& all = editor.document().measurements;
+  return all && !all->empty() ? "" : "Measure something first";
+}
+std::string needs_chosen(const Editor& editor) {
+  if (const std::string reason = needs_measurement(editor); !reason.empty()) return reason;
+  return chosen_measurement(editor) ? "" : "Select a measurement in the sidebar first";
+}
+
+Operator tool_operator(const char* id, const char* label, const char* description, MeasureKind kind) {
+  return {id,          label,       icon::kMeasure,
+          "View",      description, [kind](Editor& e) { e.modal = begin_measuring(e, kind); },
+          needs_volume};
+}
+
+void remove_chosen(Editor& editor) {
+  Document next = editor.document();
+  Measurements all = *next.measurements;
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(*chosen_measurement(editor)));
+  next.measurements = all.empty() ? nullptr : std::make_shared<const Measurements>(std::move(all));
+  commit(editor, "Delete measurement", std::move(next));
+}
+
+void remove_all(Editor& editor) {
+  Document next = editor.document();
+  next.measurements = nullptr;
+  commit(editor, "Delete all measurements", std::move(next));
+}
+
+void ask_name(Editor& editor) {
+  const std::string before = editor.measures->chosen;
+  FormRequest request;
+  request.title = "Rename measurement";
+  request.action = "Rename";
+  request.fields = {text_of("Name", "", before)};
+  request.outcome = [before](const Editor& e, const std::vector<FormField>& fields) -> std::string {
+    const std::string& name = fields[0].text;
+    if (name.empty()) throw NotYet{"Type a name"};
+    for (const Measurement& one : *e.document().measurements)
+      if (one.name == name && name != before) throw NotYet{"Another measurement has this name"};
+    return "";
+  };
+  request.act = [](Editor& e, const std::vector<FormField>& fields) {
+    Document next = e.document();
+    Measurements all = *next.measurements;
+    all[*chosen_measurement(e)].name = fields[0].text;
+    next.measurements = std::make_shared<const Measurements>(std::move(all));
+    commit(e, "Rename measurement", std::move(next));
+    e.measures->chosen = fields[0].text;
+  };
+  editor.open_dialog(make_form(std::move(request)));
+}
+
+}  // namespace
+
+std::vector<Operator> measure_operators() {
+  return {
+      {"measure.menu", "Measure", icon::kMeasure, "View",
+       "Measure a distance, an angle, the girth of a limb or the thickness of a tissue.",
+       [](Editor& e) { e.open_popup = "Measure"; }, needs_volume},
+      tool_operator("measure.distance", "Measure distance", "Click two points of the body, in any view.",
+                    MeasureKind::Distance),
+      tool_operator("measure.angle", "Measure angle", "Click three points of the body; the angle is at the second.",
+                    MeasureKind::Angle),
+      tool_operator("measure.girth", "Measure girth",
+                    "Click a limb: a tape goes around it, across the nearest bone, or in the plane of a slice.",
+                    MeasureKind::Girth),
+      tool_operator("measure.thickness", "Measure thickness",
+                    "Click a tissue: the shortest line through it, from border to border.", MeasureKind::Thickness),
+      {"measure.show", "Show measurements", "", "View", "Show or hide all measurements in the views.",
+       [](Editor& e) { e.measures->shown = !e.measures->shown; }, needs_measurement,
+       [](const Editor& e) { return e.measures->shown; }},
+      {"measure.rename", "Rename measurement...", icon::kRename, "View", "Give the selected measurement another name.",
+       ask_name, needs_chosen},
+      {"measure.delete", "Delete measurement", icon::kTrash, "View", "Delete the selected measurement.", remove_chosen,
+       needs_chosen},
+      {"measure.clear", "Delete all measurements", "", "View", "Delete all measurements.", remove_all,
+       needs_measurement},
+      {"measure.copy", "Copy measurements", "", "View",
+       "Copy all measurements to the clipboard, as a table for a spreadsheet.",
+       [](Editor& e) { e.host.set_clipboard(table_of_measurements(e)); }, needs_measurement},
+  };
+}
+
+}  // namespace limber::editor

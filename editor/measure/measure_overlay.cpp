@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/measure/measure_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/measure/measure_view.h"
+#include "editor/shown/compare_wipe.h"
+#include "editor/ui/draw.h"
+#include "editor/ui/widgets.h"
+#include "editor/viewport/gizmo_draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kLine = 2, kDot = 4;  // pixels at scale 1
+constexpr float kPad = 6, kRow = 16;  // of a plate
+constexpr double kArcShare = 0.35;    // radius of an angle's arc, as a share of its shorter side
+constexpr int kArcSteps = 24;
+constexpr double kNearSlice = 5;       // mm from the plane of a slice within which it shows a measurement
+constexpr float kHiddenAlpha = 0.35f;  // opacity of the side of a tape that faces away
+
+glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
+  glm::dvec3 sum(0);
+  for (const glm::dvec3& point : points) sum += point;
+  return sum / double(std::max<std::size_t>(points.size(), 1));
+}
+
+class MeasurePainter {
+ public:
+  MeasurePainter(Editor& editor, const ViewProjection& view, Colour colour)
+      : editor_(editor),
+        view_(view),
+        colour_(colour) {}
+
+  // Draws a line with a dark edge, so that it is seen on light and on dark tissue.
+  void line(const glm::dvec3& from, const glm::dvec3& to, float alpha = 1) const {
+    const auto a = view_.pixel_of(from), b = view_.pixel_of(to);
+    if (!a || !b) return;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float width = editor_.look.px(kLine);
+    list->AddLine(im(glm::vec2(*a)), im(glm::vec2(*b)), with_alpha(editor_.look.theme.view_plate, 0.6f * alpha),
+                  width + editor_.look.px(2));
+    list->AddLine(im(glm::vec2(*a)), im(glm::vec2(*b)), with_alpha(colour_, alpha), width);
+  }
+  void dot(const glm::dvec3& at) const {
+    GizmoPainter(editor_, view_).dot(at, colour_, editor_.look.theme.view_plate, kDot);
+  }
+  void tape(const std::vector<glm::dvec3>& corners) const {
+    const glm::dvec3 middle = middle_of(corners);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+      const glm::dvec3 outward = (a + b) * 0.5 - middle;
+      const bool is_hidden =
+          view_.place.id == ViewId::Body && glm::dot(outward, view_.direction_to_eye((a + b) * 0.5)) < 0;
+      line(a, b, is_hidden ? kHiddenAlpha : 1);
+    }
+  }
+  void angle(const std::vector<glm::dvec3>& points) const {
+    const glm::dvec3 a = points[0] - points[1], b = points[2] - points[1];
+    const double radius = kArcShare * std::min(glm::length(a), glm::length(b));
+    const double whole = glm::radians(measure(MeasureKind::Angle, points));
+    if (radius <= 0 || whole <= 1e-6) return;
+    const glm::dvec3 x = glm::normalize(a), across = b - glm::dot(b, x) * x;
+    if (glm::length(across) < 1e-9) return;
+    const glm::dvec3 y = glm::normalize(across);
+    const auto at = [&](int i) {
+      const double t = whole * i / kArcSteps;
+      return points[1] + radius * (std::cos(t) * x + std::sin(t) * y);
+    };
+    for (int i = 0; i < kArcSteps; ++i) line(at(i), at(i + 1));
+  }
+
+ private:
+  Editor& editor_;
+  const ViewProjection& view_;
+  Colour colour_;
+};
+
+// Returns whether a view shows a measurement: always in the 3D view, in a slice when all its points are near the plane.
+bool is_near(const ViewProjection& view, const std::vector<glm::dvec3>& points) {
+  return view.place.id == ViewId::Body || std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
+           return std::abs(glm::dot(point - view.slice.centre, view.towards_eye)) <= kNearSlice;
+         });
+}
+
+// Returns the place for a plate beside a pixel: at the first of a few places where it covers no other plate.
+Rect place_of_plate(const Look& look, const Rect& view, const glm::vec2& at, const glm::vec2& size,
+                    const std::vector<Rect>& taken) {
+  Rect first;
+  for (int tries = 0; tries < 12; ++tries) {
+    const float side = tries % 2 ? -1.0f : 1.0f, row = static_cast<float>(tries / 2) - (tries / 2 > 2 ? 6.0f : 0.0f);
+    glm::vec2 low =
+        at + glm::vec2(side > 0 ? look.px(10) : -look.px(10) - size.x, row * (size.y + look.px(3)) - size.y / 2);
+    low = glm::clamp(low, view.low + look.px(4), glm::max(view.low, view.high - size - look.px(4)));
+    const Rect rect{glm::round(low), glm::round(low) + size};
+    if (tries == 0) first = rect;
+    if (std::none_of(taken.begin(), taken.end(), [&](const Rect& other) { return other.overlaps(rect); })) return rect;
+  }
+  return first;
+}
+
+}  // namespace
+
+void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points,
+                  const std::vector<std::string>& words, bool is_chosen, std::vector<Rect>& taken) {
+  if (points.empty()) return;
+  const Look& look = editor.look;
+  const Colour colour = is_chosen ? kGizmoActive : look.theme.view_text;
+  const MeasurePainter painter(editor, view, colour);
+  glm::dvec3 beside = middle_of(points);
+  if (kind == MeasureKind::Girth) {
+    painter.tape(points);
+    // The plate is at the tape's right end.
+    beside = *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+      return glm::dot(a, view.right) < glm::dot(b, view.right);
+    });
+  } else {
+    for (std::size_t i = 1; i < points.size(); ++i) painter.line(points[i - 1], points[i]);
+    if (kind == MeasureKind::Angle && points.size() == 3) {
+      painter.angle(points);
+      beside = points[1];
+    }
+    for (const glm::dvec3& point : points) painter.dot(point);
+  }
+  const auto at = view.pixel_of(beside);
+  if (!at || words.empty()) return;
+  float width = 0;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    width = std::max(width, text_size(i ? look.fonts.small : look.fonts.semibold, words[i]).x);
+  const glm::vec2 size{std::ceil(width) + look.px(2 * kPad), look.px(kRow * static_cast<float>(words.size()) + 6)};
+  const Rect plate = place_of_plate(look, view.place.rect, glm::vec2(*at), size, taken);
+  taken.push_back(plate);
+  fill(plate, with_alpha(look.theme.view_plate, 0.85f), look.px(4));
+  if (is_chosen) outline(plate, colour, look.px(4), look.line());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const float y = plate.low.y + look.px(3 + kRow * static_cast<float>(i));
+    put_text(editor, i ? look.fonts.small : look.fonts.semibold, i ? look.theme.view_text2 : look.theme.view_text,
+             Rect{{plate.low.x + look.px(kPad), y}, {plate.high.x - look.px(kPad) + 1, y + look.px(kRow)}}, words[i]);
+  }
+}
+
+void draw_measurements_over(Editor& editor, const ViewPlace& place) {
+  const auto& all = editor.document().measurements;
+  if (!all || all->empty() || !editor.measures->shown) return;
+  const render::Scene& scene = scene_of(editor, place);
+  if (!scene.volume) return;
+  const ViewProjection view(editor, place);
+  const auto& placed = placed_measurements(editor, scene);
+  std::vector<Rect> taken;
+  ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
+  for (std::size_t i = 0; i < all->size(); ++i) {
+    const Measurement& one = (*all)[i];
+    if (!is_near(view, placed[i])) continue;
+    const bool is_chosen = one.name == editor.measures->chosen;
+    const double now = measure(one.kind, placed[i]), rest = measure(one.kind, one.points);
+    std::vector<std::string> words{text_of_measure(one.kind, now)};
+    if (is_chosen) {
+      words.push_back(one.name);
+      if (std::abs(now - rest) >= 0.05) words.push_back("at rest " + text_of_measure(one.kind, rest));
+    }
+    draw_measure(editor, view, one.kind, placed[i], words, is_chosen, taken);
+    if (!taken.empty()) register_widget(editor, "measurement " + one.name, taken.back());
+  }
+  ImGui::PopClipRect();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/measure/measure_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/measure/body_girth.h"
+#include "core/measure/tissue_thickness.h"
+#include "editor/context/pointer_context.h"
+#include "editor/measure/measure_overlay.h"
+#include "editor/measure/measure_view.h"
+#include "editor/shown/compare_wipe.h"
+
+namespace limber::editor {
+
+namespace {
+
+// A point of the body under the pointer.
+struct PointOnBody {
+  ViewPlace place;
+  glm::dvec3 at_rest, shown;  // world, mm
+  glm::ivec3 voxel;           // of the volume at rest
+};
+
+// Returns the point of the body under the pointer, in any view. In a slice of a body at rest it may also be in the air.
+std::optional<PointOnBody> point_under_pointer(Editor& editor) {
+  const ViewPlace* place = hovered_view(editor);
+  if (!place || !editor.document().volume) return std::nullopt;
+  const render::Scene& scene = scene_at_pointer(editor, *place);
+  const glm::vec2 pixel = editor.input.pointer - place->rect.low;
+  std::optional<render::Hit> hit;
+  std::optional<glm::dvec3> shown;
+  if (place->id == ViewId::Body) {
+    if (hit = body_at_pointer(editor, *place).pick(glm::ivec2(pixel)); hit) shown = hit->point;
+  } else {
+    shown = world_of(slice_of(*editor.views, place->id).camera, pixel, place->rect.size());
+  }
+  if (!shown) return std::nullopt;
+  const bool is_result = scene.volume != editor.document().volume;
+  const auto at_rest = is_result ? std::nullopt : point_at_rest(scene, *shown);
+  if (!at_rest) return std::nullopt;
+  // A point of the surface lies between the voxels of the body and the air.
+  const glm::ivec3 nearest(glm::floor(voxel_from_world(scene.volume->grid) * *at_rest + 0.5));
+  return PointOnBody{*place, *at_rest, *shown, hit ? hit->voxel : nearest};
+}
+
+// Runs the operator that a chord is bound to, if it only changes the view. Returns whether there is one. So the body
+// can be turned and the slices moved from one click to the next.
+bool navigate(Editor& editor, const Chord& chord) {
+  const std::string* id = editor.keymap.find(chord, contexts(editor));
+  // Walking is a tool of its own, which would end this one.
+  if (!id || !(id->starts_with("view.") || id->starts_with("slice.")) || *id == "view.walk") return false;
+  run(editor, *id);
+  return true;
+}
+
+// Returns the direction of the bone nearest to a point of the body at rest. Nothing without a rig.
+std::optional<glm::dvec3> along_nearest_bone(const Document& document, const glm::dvec3& point) {
+  if (!document.armature) return std::nullopt;
+  double least = std::numeric_limits<double>::max();
+  std::optional<glm::dvec3> along;
+  for (const Bone& bone : document.armature->bones) {
+    const glm::dvec3 way = bone.tail - bone.head;
+    if (const double d = distance_to_bone(bone, point); d < least && glm::length(way) > 0)
+      least = d, along = glm::normalize(way);
+  }
+  return along;
+}
+
+class MeasureTool final : public Modal {
+ public:
+  explicit MeasureTool(MeasureKind kind) : kind_(kind) {}
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    if (editor.drag && editor.drag->moved) editor.drag->moved(editor, pixels);
+    editor.touch();
+    return true;
+  }
+  bool wheel(Editor& editor, float steps) override {
+    editor.input.wheel = steps;
+    navigate(editor, {Chord::Kind::Wheel, editor.input.modifiers()});
+    return true;
+  }
+  void cancel(Editor& editor) override { end_drag(editor); }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (event.button == MouseButton::Middle) {
+      end_drag(editor);
+      if (!event.down) return true;
+      const Modifiers modifiers = editor.input.modifiers();
+      if (!navigate(editor, {Chord::Kind::Drag, modifiers, Key::None, event.button}))
+        navigate(editor, {Chord::Kind::Press, modifiers, Key::None, event.button});
+      return true;
+    }
+    if (editor.drag) return true;
+    if (event.button == MouseButton::Right && event.down) return false;
+    if (event.button != MouseButton::Left || !event.down) return true;
+    const auto point = point_under_pointer(editor);
+    const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
+    if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
+      const ViewPlace* place = hovered_view(editor);
+      const bool is_result = place && scene_at_pointer(editor, *place).volume != editor.document().volume;
+      editor.messages.info(
+          "There is no point of the body under the pointer",
+          is_result ? "A result shows what was measured before. Set points on the body at rest or in the pose."
+                    : "Click on the body, in 3D or in a slice.");
+      return true;
+    }
+    attempt(editor, "Measure", [&](Editor& e) { take(e, *point); });
+    editor.touch();
+    return true;
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    editor.touch();
+    if (event.key == Key::Backspace) {
+      if (!points_.empty()) points_.pop_back();
+      return true;
+    }
+    if (navigate(editor, {Chord::Kind::Key, editor.input.modifiers(), event.key})) return true;
+    return event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter;
+  }
+
+  void draw(Editor& editor, const ViewPlace& place) override {
+    if (points_.empty()) return;
+    const render::Scene& scene = scene_of(editor, place);
+    if (scene.volume != editor.document().volume) return;
+    const ViewProjection view(editor, place);
+    std::vector<glm::dvec3> points = points_on_scene(editor, scene, points_);
+    std::vector<std::string> words;
+    if (const auto pointer = point_under_pointer(editor)) {
+      points.push_back(pointer->shown);
+      if (is_complete(kind_, points.size())) words.push_back(text_of_measure(kind_, measure(kind_, points)));
+    }
+    std::vector<Rect> taken;
+    draw_measure(editor, view, kind_, points, words, true, taken);
+  }
+
+  std::vector<KeyHint> hints(const Editor&) const override {
+    const char* click = kind_ == MeasureKind::Girth       ? "Put a tape around the body"
+                        : kind_ == MeasureKind::Thickness ? "Measure the tissue"
+                                                          : "Set a point";
+    std::vector<KeyHint> all{{{"LMB"}, click}};
+    if (!points_.empty()) all.push_back({{"Backspace"}, "Remove the last point"});
+    all.push_back({{"MMB"}, "Turn the view"});
+    all.push_back({{"Enter", "Esc"}, "Done"});
+    return all;
+  }
+  std::string title() const override { return "Measure " + std::string(word_of(kind_)); }
+
+ private:
+  // Ends the drag of the view.
+  static void end_drag(Editor& editor) {
+    if (!editor.drag) return;
+    const Drag ended = std::move(*editor.drag);
+    editor.drag.reset();
+    if (ended.ended) ended.ended(editor);
+  }
+  void take(Editor& editor, const PointOnBody& point) {
+    const LabelVolume& volume = *editor.document().volume;
+    if (kind_ == MeasureKind::Girth) {
+      add_measurement(editor, kind_, girth_tape(volume, point.at_rest, normal_at(editor, point)));
+    } else if (kind_ == MeasureKind::Thickness) {
+      const auto ends = thickness_line(volume, point.voxel);
+      add_measurement(editor, kind_, {ends[0], ends[1]});
+    } else {
+      points_.push_back(point.at_rest);
+      if (is_complete(kind_, points_.size())) add_measurement(editor, kind_, std::exchange(points_, {}));
+    }
+  }
+  // Returns the normal of a tape's plane: of the slice that was clicked, where it shows the body at rest; else along
+  // the nearest bone; without a rig that of the least girth.
+  static glm::dvec3 normal_at(const Editor& editor, const PointOnBody& point) {
+    const bool is_posed = scene_of(editor, point.place).pose != nullptr;
+    if (point.place.id != ViewId::Body && !is_posed) return render::frame_of(axis_of(point.place.id)).normal;
+    if (const auto along = along_nearest_bone(editor.document(), point.at_rest)) return *along;
+    const ViewProjection view(editor, point.place);
+    const glm::dvec3 inward = view.ray(glm::dvec2(editor.input.pointer)).direction;
+    const LabelVolume& volume = *editor.document().volume;
+    return least_girth_normal(volume, middle_along(volume, point.at_rest, inward));
+  }
+
+  MeasureKind kind_;
+  std::vector<glm::dvec3> points_;  // set so far, world, mm, at rest
+};
+
+}  // namespace
+
+std::unique_ptr<Modal> begin_measuring(Editor&, MeasureKind kind) { return std::make_unique<MeasureTool>(kind); }
+
+}  // namespace limber::editor

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Draws rulers along the lower and the left edge of a slice: ticks at round world coordinates, with their numbers in
+// mm.
+#pragma once
+
+#include "editor/context/view_projection.h"
+
+namespace limber::editor {
+
+void draw_rulers(Editor& editor, const ViewPlace& place);
+// Returns the part of a slice that the rulers leave free.
+Rect beside_rulers(const Editor& editor, const Rect& slice);
+
+// Returns the distance between two numbered ticks, mm: 1, 2 or 5 times a power of ten, at least `least` mm.
+double ruler_step(double least);
+
+}  // namespace limber::editor
