@@ -66,7 +66,8 @@ std::string sha256_of_file(const Path& path) {
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error("the file cannot be opened", path.string(), std::strerror(errno));
-  if (!fs::is_regular_file(path, unreadable)) throw Error("this is not a regular file", path.string(), "name a file on disk");
+  if (!fs::is_regular_file(path, unreadable))
+    throw Error("this is not a regular file", path.string(), "name a file on disk");
   std::vector<char> block(1 << 16);
   while (in.read(block.data(), std::ssize(block)) || in.gcount() > 0) hash.add(block.data(), in.gcount());
   return hash.hex();

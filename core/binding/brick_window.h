@@ -20,7 +20,7 @@ struct BrickWindow {
     const LabelVolume& volume;
     const TissueVoxels& tissue;
     const ZeroedVector<std::uint16_t>& held_by;  // bone that fixes each tissue voxel's temperature; kSoft: none
-    const std::vector<float>& conductivity;     // of each label's tissue, above 0
+    const std::vector<float>& conductivity;      // of each label's tissue, above 0
   };
   // Step in the arrays to the neighbour towards -x, +x, -y, +y, -z, +z.
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
