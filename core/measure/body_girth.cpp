@@ -87,17 +87,25 @@ class PlaneCut {
     side_ = 2 * half_ + 1;
   }
 
-  // Returns the tape's corners in the plane. Nothing when the cut reaches the volume's border.
-  std::optional<std::vector<glm::dvec2>> tape() const {
+  // Returns the tape's corners in the plane. Nothing when the cut reaches the volume's border, or the tape is surely
+  // longer than `most`, in cells.
+  std::optional<std::vector<glm::dvec2>> tape(double most = std::numeric_limits<double>::infinity()) const {
     std::vector<bool> seen(static_cast<std::size_t>(side_) * side_);
-    std::vector<glm::ivec2> open{{0, 0}};
+    struct Open {
+      glm::ivec2 cell;
+      double share;
+    };
+    std::vector<Open> open{{{0, 0}, share({0, 0})}};
     seen[index({0, 0})] = true;
     std::vector<glm::dvec2> border;
+    glm::ivec2 low(0), high(0);
     while (!open.empty()) {
-      const glm::ivec2 cell = open.back();
+      const auto [cell, here] = open.back();
       open.pop_back();
       if (is_at_border(cell)) return std::nullopt;
-      const double here = share(cell);
+      low = glm::min(low, cell);
+      high = glm::max(high, cell);
+      if (2.0 * std::max(high.x - low.x, high.y - low.y) > most) return std::nullopt;
       for (const glm::ivec2& step : {glm::ivec2(1, 0), glm::ivec2(-1, 0), glm::ivec2(0, 1), glm::ivec2(0, -1)}) {
         const glm::ivec2 next = cell + step;
         if (std::max(std::abs(next.x), std::abs(next.y)) >= half_) return std::nullopt;
@@ -105,7 +113,7 @@ class PlaneCut {
         const double there = share(next);
         if (there >= kInside) {
           seen[index(next)] = true;
-          open.push_back(next);
+          open.push_back({next, there});
         } else {
           const double t = here > there ? std::clamp((here - kInside) / (here - there), 0.0, 1.0) : 0;
           border.push_back(glm::dvec2(cell) + t * glm::dvec2(step));
@@ -204,11 +212,11 @@ glm::dvec3 middle_along(const LabelVolume& volume, const glm::dvec3& surface, co
 glm::dvec3 least_girth_normal(const LabelVolume& volume, const glm::dvec3& point) {
   const glm::dvec3 centre = point_in_tissue(volume, point);
   constexpr double kNone = std::numeric_limits<double>::max();
+  double least = kNone;
   const auto girth = [&](const glm::dvec3& normal) {
-    return length_of(PlaneCut(volume, centre, normal, kCoarse).tape(), kNone);
+    return length_of(PlaneCut(volume, centre, normal, kCoarse).tape(least), kNone);
   };
   glm::dvec3 best(0, 0, 1);
-  double least = kNone;
   // Directions spread evenly over half a sphere, by a spiral of the golden angle.
   for (int i = 0; i < kPlanes; ++i) {
     const double z = (i + 0.5) / kPlanes, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));

@@ -102,7 +102,15 @@ std::array<glm::dvec3, 2> thickness_line(const LabelVolume& volume, const glm::i
       }
     }
   const auto [ahead, behind] = lines.to_borders(best, least);
-  return {centre - behind * best, centre + ahead * best};
+  const std::array<glm::dvec3, 2> ends{centre - behind * best, centre + ahead * best};
+  for (const glm::dvec3& end : ends) {
+    const glm::dvec3 place = voxel_from_world(volume.grid) * end;
+    if (glm::any(glm::lessThan(place, glm::dvec3(-0.25))) ||
+        glm::any(glm::greaterThan(place, glm::dvec3(volume.grid.size) - 0.75)))
+      throw Error("the tissue is cut off by the border of the volume", "measuring",
+                  "choose a point further from where the body is cut off");
+  }
+  return ends;
 }
 
 }  // namespace limber

@@ -14,7 +14,7 @@ namespace limber {
 
 // Returns the two ends of the shortest line, world, mm.
 //   voxel  a voxel of the tissue; the line runs through its middle
-//   throws Error when there is no tissue at the voxel
+//   throws Error when there is no tissue at the voxel, or when the line ends at the border of the volume
 std::array<glm::dvec3, 2> thickness_line(const LabelVolume& volume, const glm::ivec3& voxel);
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
@@ -167,15 +168,18 @@ void get(ByteReader& in, BoneMap& map) {
 }
 
 void get(ByteReader& in, Measurements& measurements) {
+  constexpr double kFarthest = 1e6;  // mm from the origin of the world
   measurements.resize(in.count(13));
+  std::set<std::string> names;
   for (Measurement& one : measurements) {
     one.name = in.text();
+    in.require(!one.name.empty() && names.insert(one.name).second);
     one.kind = static_cast<MeasureKind>(in.get_below<std::uint8_t>(kMeasureKinds));
     one.points.resize(in.count(24));
     in.require(is_complete(one.kind, one.points.size()));
     for (glm::dvec3& point : one.points) {
       point = get_vector(in);
-      in.require(is_finite(point));
+      in.require(is_finite(point) && glm::length(point) < kFarthest);
     }
   }
 }

@@ -279,7 +279,8 @@ void write_bender_weights(const SkinWeights& weights, const LabelVolume& volume,
                           const Path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw Error("the folder cannot be made", folder.string(), "choose another place");
+  if (!fs::is_directory(folder, error))
+    throw Error("the folder cannot be made", folder.string(), "choose another place");
   const std::size_t digits = std::max<std::size_t>(2, std::to_string(weights.bones().size() - 1).size());
   std::vector<float> values(volume.voxels.size());
   for (std::size_t bone = 0; bone < weights.bones().size(); ++bone) {

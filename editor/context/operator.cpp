@@ -2,6 +2,7 @@
 #include "editor/context/operator.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
 
 #include "core/base/error.h"
@@ -55,6 +56,10 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
   } catch (const std::bad_alloc&) {
     editor.messages.show_error("There is not enough memory: " + label +
                                ": close other programs, or use a coarser volume");
+  } catch (const std::filesystem::filesystem_error& error) {
+    editor.messages.show_error(error.code().message() + ": " + error.path1().string() +
+                                   ": check the name, and that you may read and write there",
+                               label);
   } catch (const std::exception& error) {
     editor.messages.show_error(std::string("A mistake of the program itself: ") + label + ": " + error.what());
   }

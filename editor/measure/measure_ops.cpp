@@ -21,8 +21,15 @@ std::string needs_chosen(const Editor& editor) {
 }
 
 Operator tool_operator(const char* id, const char* label, const char* description, MeasureKind kind) {
-  return {id,          label,       icon::kMeasure,
-          "View",      description, [kind](Editor& e) { e.modal = begin_measuring(e, kind); },
+  return {id,
+          label,
+          icon::kMeasure,
+          "View",
+          description,
+          [kind](Editor& e) {
+            e.modal = begin_measuring(e, kind);
+            e.modal_wrap = {};
+          },
           needs_volume};
 }
 

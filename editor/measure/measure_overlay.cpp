@@ -141,17 +141,17 @@ void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, 
   }
 }
 
-void draw_measurements_over(Editor& editor, const ViewPlace& place) {
-  const auto& all = editor.document().measurements;
-  if (!all || all->empty() || !editor.measures->shown) return;
-  const render::Scene& scene = scene_of(editor, place);
+namespace {
+// Draws the measurements on the body of one scene into a part of the view.
+void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& scene, const Rect& part) {
   if (!scene.volume) return;
+  const Measurements& all = *editor.document().measurements;
   const ViewProjection view(editor, place);
-  const auto& placed = placed_measurements(editor, scene);
+  const auto placed = placed_measurements(editor, scene);
   std::vector<Rect> taken;
-  ImGui::PushClipRect(im(place.rect.low), im(place.rect.high), true);
-  for (std::size_t i = 0; i < all->size(); ++i) {
-    const Measurement& one = (*all)[i];
+  ImGui::PushClipRect(im(part.low), im(part.high), true);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Measurement& one = all[i];
     if (!is_near(view, placed[i])) continue;
     const bool is_chosen = one.name == editor.measures->chosen;
     const double now = measure(one.kind, placed[i]), rest = measure(one.kind, one.points);
@@ -160,10 +160,28 @@ void draw_measurements_over(Editor& editor, const ViewPlace& place) {
       words.push_back(one.name);
       if (std::abs(now - rest) >= 0.05) words.push_back("at rest " + text_of_measure(one.kind, rest));
     }
+    const std::size_t before = taken.size();
     draw_measure(editor, view, one.kind, placed[i], words, is_chosen, taken);
-    if (!taken.empty()) register_widget(editor, "measurement " + one.name, taken.back());
+    // While a tool works, its clicks go through the plates.
+    if (!editor.modal && taken.size() > before && part.contains(taken.back()) &&
+        press_area(editor, "measurement " + one.name, taken.back()).clicked)
+      editor.measures->chosen = one.name;
   }
   ImGui::PopClipRect();
+}
+}  // namespace
+
+void draw_measurements_over(Editor& editor, const ViewPlace& place) {
+  const auto& all = editor.document().measurements;
+  if (!all || all->empty() || !editor.measures->shown) return;
+  const bool is_wiped = editor.views->other_scene && !editor.layout.by_sides;
+  if (!is_wiped) return draw_on_scene(editor, place, scene_of(editor, place), place.rect);
+  const float line = std::clamp(wipe_line(editor, place.rect), place.rect.low.x, place.rect.high.x);
+  {
+    const PathScope side(editor, "A");
+    draw_on_scene(editor, place, *editor.views->other_scene, {place.rect.low, {line, place.rect.high.y}});
+  }
+  draw_on_scene(editor, place, editor.views->scene, {{line, place.rect.low.y}, place.rect.high});
 }
 
 }  // namespace limber::editor

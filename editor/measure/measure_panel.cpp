@@ -24,7 +24,7 @@ void draw_buttons(Editor& editor, const Rect& row, const std::array<const char*,
 
 void draw_list(Editor& editor, Column& column, const Measurements& all) {
   const Look& look = editor.look;
-  const auto& placed = placed_measurements(editor, editor.views->scene);
+  const auto placed = placed_measurements(editor, editor.views->scene);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measurement& one = all[i];
     Rect row;
@@ -39,7 +39,13 @@ void draw_list(Editor& editor, Column& column, const Measurements& all) {
              Align::Right);
     if (pressed.hovered)
       tooltip(editor, row, one.name, "At rest " + text_of_measure(one.kind, measure(one.kind, one.points)) + ".");
-    if (pressed.clicked) editor.measures->chosen = one.name;
+    if (pressed.clicked) {
+      editor.measures->chosen = one.name;
+      // The slices go there.
+      glm::dvec3 sum(0);
+      for (const glm::dvec3& point : placed[i]) sum += point;
+      editor.views->cross_hair = sum / double(placed[i].size());
+    }
     if (pressed.double_clicked) run(editor, "measure.rename");
   }
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <imgui.h>
+
 #include "core/base/error.h"
 #include "core/measure/body_girth.h"
 #include "core/measure/tissue_thickness.h"
@@ -12,6 +14,7 @@
 #include "editor/measure/measure_overlay.h"
 #include "editor/measure/measure_view.h"
 #include "editor/shown/compare_wipe.h"
+#include "editor/ui/keyboard.h"
 
 namespace limber::editor {
 
@@ -24,7 +27,8 @@ struct PointOnBody {
   glm::ivec3 voxel;           // of the volume at rest
 };
 
-// Returns the point of the body under the pointer, in any view. In a slice of a body at rest it may also be in the air.
+// Returns the point of the body under the pointer, in any view. In a slice it may also lie in the air, up to two voxels
+// beside tissue.
 std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || !editor.document().volume) return std::nullopt;
@@ -37,10 +41,10 @@ std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   } else {
     shown = world_of(slice_of(*editor.views, place->id).camera, pixel, place->rect.size());
   }
-  if (!shown) return std::nullopt;
+  if (!shown || !scene.volume) return std::nullopt;
   const bool is_result = scene.volume != editor.document().volume;
   const auto at_rest = is_result ? std::nullopt : point_at_rest(scene, *shown);
-  if (!at_rest) return std::nullopt;
+  if (!at_rest || !is_at_tissue(*editor.document().volume, *at_rest)) return std::nullopt;
   // A point of the surface lies between the voxels of the body and the air.
   const glm::ivec3 nearest(glm::floor(voxel_from_world(scene.volume->grid) * *at_rest + 0.5));
   return PointOnBody{*place, *at_rest, *shown, hit ? hit->voxel : nearest};
@@ -49,11 +53,31 @@ std::optional<PointOnBody> point_under_pointer(Editor& editor) {
 // Runs the operator that a chord is bound to, if it only changes the view. Returns whether there is one. So the body
 // can be turned and the slices moved from one click to the next.
 bool navigate(Editor& editor, const Chord& chord) {
+  constexpr const char* kNavigation[] = {"view.orbit", "view.pan",    "view.zoom",  "view.front",    "view.back",
+                                         "view.left",  "view.right",  "view.top",   "view.bottom",   "view.opposite",
+                                         "view.ortho", "view.frame_", "slice.next", "slice.previous"};
+  if (!hovered_view(editor)) return false;
   const std::string* id = editor.keymap.find(chord, contexts(editor));
-  // Walking is a tool of its own, which would end this one.
-  if (!id || !(id->starts_with("view.") || id->starts_with("slice.")) || *id == "view.walk") return false;
+  if (!id || std::none_of(std::begin(kNavigation), std::end(kNavigation),
+                          [&](const char* name) { return id->starts_with(name); }))
+    return false;
   run(editor, *id);
   return true;
+}
+
+// Returns whether something is open that needs the keyboard or covers the views.
+bool is_busy(const Editor& editor) {
+  return editor.dialog || !editor.messages.errors.empty() || is_typing(editor) ||
+         ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+// Returns whether the pointer is over a bar, a button or a plate in a view.
+bool is_over_widget(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
+    return widget.region == Region::Views && !widget.name.ends_with("/view") &&
+           widget.rect.contains(editor.input.pointer);
+  });
 }
 
 // Returns the direction of the bone nearest to a point of the body at rest. Nothing without a rig.
@@ -71,7 +95,7 @@ std::optional<glm::dvec3> along_nearest_bone(const Document& document, const glm
 
 class MeasureTool final : public Modal {
  public:
-  explicit MeasureTool(MeasureKind kind) : kind_(kind) {}
+  MeasureTool(const Editor& editor, MeasureKind kind) : kind_(kind), volume_(editor.document().volume) {}
 
   bool moved(Editor& editor, const glm::vec2& pixels) override {
     if (editor.drag && editor.drag->moved) editor.drag->moved(editor, pixels);
@@ -84,10 +108,18 @@ class MeasureTool final : public Modal {
     return true;
   }
   void cancel(Editor& editor) override { end_drag(editor); }
+  // Ends where a menu, a dialog or a text field opens, or another volume comes. At first the menu that began the tool
+  // may still be open.
+  bool frame(Editor& editor, double) override {
+    if (!is_busy(editor)) was_free_ = true;
+    if (!(was_free_ && is_busy(editor)) && editor.document().volume == volume_) return true;
+    end_drag(editor);
+    return false;
+  }
   bool button(Editor& editor, const ButtonChanged& event) override {
     if (event.button == MouseButton::Middle) {
       end_drag(editor);
-      if (!event.down) return true;
+      if (!event.down || is_busy(editor)) return true;
       const Modifiers modifiers = editor.input.modifiers();
       if (!navigate(editor, {Chord::Kind::Drag, modifiers, Key::None, event.button}))
         navigate(editor, {Chord::Kind::Press, modifiers, Key::None, event.button});
@@ -95,19 +127,24 @@ class MeasureTool final : public Modal {
     }
     if (editor.drag) return true;
     if (event.button == MouseButton::Right && event.down) return false;
-    if (event.button != MouseButton::Left || !event.down) return true;
+    const ViewPlace* place = hovered_view(editor);
+    if (event.button != MouseButton::Left || !event.down || !place || is_over_widget(editor)) return true;
     const auto point = point_under_pointer(editor);
     const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
     if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
-      const ViewPlace* place = hovered_view(editor);
-      const bool is_result = place && scene_at_pointer(editor, *place).volume != editor.document().volume;
+      const bool is_result = scene_at_pointer(editor, *place).volume != editor.document().volume;
       editor.messages.info(
           "There is no point of the body under the pointer",
           is_result ? "A result shows what was measured before. Set points on the body at rest or in the pose."
                     : "Click on the body, in 3D or in a slice.");
       return true;
     }
-    attempt(editor, "Measure", [&](Editor& e) { take(e, *point); });
+    try {
+      take(editor, *point);
+    } catch (const Error& error) {
+      const ErrorMessage message = parts_of(error.what());
+      editor.messages.warn(message.what, message.what_to_do);
+    }
     editor.touch();
     return true;
   }
@@ -118,8 +155,16 @@ class MeasureTool final : public Modal {
       if (!points_.empty()) points_.pop_back();
       return true;
     }
-    if (navigate(editor, {Chord::Kind::Key, editor.input.modifiers(), event.key})) return true;
-    return event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter;
+    const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
+    if (navigate(editor, chord)) return true;
+    const std::string* id = editor.keymap.find(chord, {"global"});
+    if (id && points_.empty() && (*id == "edit.undo" || *id == "edit.redo")) {
+      run(editor, *id);
+      return true;
+    }
+    if (event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter) return true;
+    end_drag(editor);
+    return false;
   }
 
   void draw(Editor& editor, const ViewPlace& place) override {
@@ -182,11 +227,15 @@ class MeasureTool final : public Modal {
   }
 
   MeasureKind kind_;
+  std::shared_ptr<const LabelVolume> volume_;
+  bool was_free_ = false;           // no menu, dialog or text field was open in an earlier frame
   std::vector<glm::dvec3> points_;  // set so far, world, mm, at rest
 };
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_measuring(Editor&, MeasureKind kind) { return std::make_unique<MeasureTool>(kind); }
+std::unique_ptr<Modal> begin_measuring(const Editor& editor, MeasureKind kind) {
+  return std::make_unique<MeasureTool>(editor, kind);
+}
 
 }  // namespace limber::editor

@@ -10,6 +10,6 @@
 
 namespace limber::editor {
 
-std::unique_ptr<Modal> begin_measuring(Editor& editor, MeasureKind kind);
+std::unique_ptr<Modal> begin_measuring(const Editor& editor, MeasureKind kind);
 
 }  // namespace limber::editor

@@ -48,9 +48,16 @@ std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, co
 std::vector<glm::dvec3> in_result(Editor& editor, const Result& result, const std::vector<glm::dvec3>& at_rest) {
   if (!result.from_volume || !result.from_weights || !result.from_armature || !result.from_pose || !result.from_tissues)
     return at_rest;
+  if (result.from_pose->rotation.size() != result.from_armature->bones.size()) return at_rest;
   const Document& document = editor.document();
   const auto tissue = result.from_volume == document.volume ? tissue_voxels(*editor.views, document)
                                                             : std::make_shared<const TissueVoxels>(*result.from_volume);
+  // Parts of a damaged project may not belong to each other.
+  const auto& bones = result.from_weights->bones();
+  const bool has_bones = std::all_of(bones.begin(), bones.end(), [&](const std::string& bone) {
+    return result.from_armature->find(bone).has_value();
+  });
+  if (!has_bones || result.from_weights->chunk_count() != std::ssize(tissue->bricks())) return at_rest;
   const Blend blend = find_blend(result.method).value_or(Blend::DualQuaternion);
   std::vector<glm::dvec3> posed = posed_points(*result.from_volume, *tissue, *result.from_tissues, *result.from_weights,
                                                *result.from_armature, *result.from_pose, blend, nullptr, at_rest);
@@ -82,12 +89,36 @@ bool is_previewed(const Document& document, const render::Scene& scene) {
 
 }  // namespace
 
+bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest) {
+  constexpr int kReach = 2;
+  const glm::dvec3 place = voxel_from_world(volume.grid) * at_rest;
+  if (!(glm::all(glm::greaterThan(place, glm::dvec3(-kReach - 1))) &&
+        glm::all(glm::lessThan(place, glm::dvec3(volume.grid.size + kReach)))))
+    return false;
+  const glm::ivec3 voxel(glm::floor(place + 0.5));
+  for (int z = -kReach; z <= kReach; ++z)
+    for (int y = -kReach; y <= kReach; ++y)
+      for (int x = -kReach; x <= kReach; ++x)
+        if (volume.at_or_air(voxel + glm::ivec3(x, y, z)) != 0) return true;
+  return false;
+}
+
 std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& scene,
                                         const std::vector<glm::dvec3>& at_rest) {
-  if (at_rest.empty()) return {};
-  if (is_previewed(editor.document(), scene)) return previewed(editor, scene, at_rest);
-  if (const Result* result = result_of(editor.document(), scene)) return in_result(editor, *result, at_rest);
-  return at_rest;
+  const Document& document = editor.document();
+  const bool is_preview = is_previewed(document, scene);
+  const Result* result = is_preview ? nullptr : result_of(document, scene);
+  const LabelVolume* volume = is_preview ? document.volume.get() : result ? result->from_volume.get() : nullptr;
+  if (!volume) return at_rest;
+  std::vector<glm::dvec3> moving;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < at_rest.size(); ++i)
+    if (is_at_tissue(*volume, at_rest[i])) moving.push_back(at_rest[i]), which.push_back(i);
+  if (moving.empty()) return at_rest;
+  moving = is_preview ? previewed(editor, scene, moving) : in_result(editor, *result, moving);
+  std::vector<glm::dvec3> posed = at_rest;
+  for (std::size_t k = 0; k < which.size(); ++k) posed[which[k]] = moving[k];
+  return posed;
 }
 
 std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::dvec3& world) {
@@ -98,30 +129,34 @@ std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::d
   return world_from_voxel(scene.volume->grid) * *rest;
 }
 
-const std::vector<std::vector<glm::dvec3>>& placed_measurements(Editor& editor, const render::Scene& scene) {
-  MeasureView& view = *editor.measures;
-  const Document& document = editor.document();
-  const auto known = std::find_if(view.placed.begin(), view.placed.end(), [&](const MeasureView::Placed& placed) {
-    return placed.of == document.measurements && placed.volume == scene.volume;
-  });
-  // A preview changes with every frame of a drag, and its points are quickly moved.
-  const bool is_kept = !is_previewed(document, scene);
-  if (known != view.placed.end() && is_kept) return known->points;
-  if (known != view.placed.end()) view.placed.erase(known);
-  MeasureView::Placed placed{document.measurements, scene.volume, {}};
-  std::vector<glm::dvec3> all;
-  for (const Measurement& one : *document.measurements) all.insert(all.end(), one.points.begin(), one.points.end());
-  all = points_on_scene(editor, scene, all);
-  auto next = all.begin();
-  for (const Measurement& one : *document.measurements) {
+std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const render::Scene& scene) {
+  const Measurements& measurements = *editor.document().measurements;
+  std::vector<glm::dvec3> at_rest;
+  for (const Measurement& one : measurements) at_rest.insert(at_rest.end(), one.points.begin(), one.points.end());
+  // A preview changes with every frame of a drag, and its points are quickly moved. Those of results are kept.
+  std::vector<MeasureView::Placed>& placed = editor.measures->placed;
+  std::vector<glm::dvec3> posed;
+  if (!result_of(editor.document(), scene)) {
+    posed = points_on_scene(editor, scene, at_rest);
+  } else if (const auto known = std::find_if(placed.begin(), placed.end(),
+                                             [&](const MeasureView::Placed& one) {
+                                               return one.volume.lock() == scene.volume && one.at_rest == at_rest;
+                                             });
+             known != placed.end()) {
+    posed = known->posed;
+  } else {
+    posed = points_on_scene(editor, scene, at_rest);
+    if (placed.size() >= kRemembered) placed.erase(placed.begin());
+    placed.push_back({scene.volume, at_rest, posed});
+  }
+  std::vector<std::vector<glm::dvec3>> points;
+  auto next = posed.begin();
+  for (const Measurement& one : measurements) {
     const auto end = next + std::ssize(one.points);
-    placed.points.emplace_back(next, end);
+    points.emplace_back(next, end);
     next = end;
   }
-  if (!is_kept) placed.volume = nullptr;  // so that no later frame takes it for the body at rest
-  if (view.placed.size() >= kRemembered) view.placed.erase(view.placed.begin());
-  view.placed.push_back(std::move(placed));
-  return view.placed.back().points;
+  return points;
 }
 
 void add_measurement(Editor& editor, MeasureKind kind, std::vector<glm::dvec3> points) {
@@ -154,12 +189,15 @@ std::string table_of_measurements(Editor& editor) {
   std::string table = "name\tkind\tat rest\tas shown\tunit\n";
   const auto& all = editor.document().measurements;
   if (!all) return table;
-  const auto& placed = placed_measurements(editor, editor.views->scene);
+  const auto placed = placed_measurements(editor, editor.views->scene);
   for (std::size_t i = 0; i < all->size(); ++i) {
     const Measurement& one = (*all)[i];
     char values[80];
     std::snprintf(values, sizeof values, "%.3f\t%.3f", measure(one.kind, one.points), measure(one.kind, placed[i]));
-    table += one.name + "\t" + std::string(word_of(one.kind)) + "\t" + values + "\t" +
+    std::string name = one.name;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '\t' || c == '\n'; }, ' ');
+    table += name + "\t" + std::string(word_of(one.kind)) + "\t" + values + "\t" +
              (one.kind == MeasureKind::Angle ? "degrees" : "mm") + "\n";
   }
   return table;

@@ -18,20 +18,22 @@ struct MeasureView {
   bool shown = true;
   std::string chosen;  // name of the measurement that is chosen in the list; "" for none
 
-  // The points on the body of one scene, with what they were computed from.
+  // The points on the body of a result, with what they were computed from.
   struct Placed {
-    std::shared_ptr<const Measurements> of;
-    std::shared_ptr<const LabelVolume> volume;    // null: of a preview, which lasts one frame
-    std::vector<std::vector<glm::dvec3>> points;  // of each measurement, world, mm
+    std::weak_ptr<const LabelVolume> volume;
+    std::vector<glm::dvec3> at_rest, posed;  // of all measurements, world, mm
   };
-  std::vector<Placed> placed;  // a few scenes, latest last
+  std::vector<Placed> placed;  // of a few results, latest last
 };
 
 // Returns the points of each measurement of the document on the body that a scene shows, world, mm.
-const std::vector<std::vector<glm::dvec3>>& placed_measurements(Editor& editor, const render::Scene& scene);
-// Returns where points of the body at rest lie on the body that a scene shows, world, mm.
+std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const render::Scene& scene);
+// Returns where points of the body at rest lie on the body that a scene shows, world, mm. Points that are not at tissue
+// stay where they are.
 std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& scene,
                                         const std::vector<glm::dvec3>& at_rest);
+// Returns whether a point of the body at rest lies in tissue or at most two voxels beside it.
+bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest);
 // Returns the point of the body at rest that a scene shows at a world point. Nothing where it shows no tissue.
 std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::dvec3& world);
 

@@ -63,6 +63,11 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
     next.pose.reset();
     note = "The rig did not fit the mirrored body and was removed";
   }
+  if (now.measurements && mirrored) {
+    next.measurements.reset();
+    note += note.empty() ? "The measurements did not fit the mirrored body and were removed"
+                         : "; the measurements were removed too";
+  }
   if (now.visibility && !(now.volume->grid == volume->grid)) {
     Visibility shown = *now.visibility;
     shown.clip_box = moved(shown.clip_box, now.volume->grid, volume->grid);

@@ -246,8 +246,9 @@ Document small_document() {
   for (int x = 3; x < 20; ++x) seams.cut({x, 7, 2}, 1), seams.cut({x, 7, 6}, 2);
   document.seams = shared(seams);
   document.bone_map = shared(BoneMap{{"17@left", "Lower"}, {"bone \xff not UTF-8", "Upper"}});
-  document.measurements = shared(Measurements{{"Distance \xff", MeasureKind::Distance, {{1e-300, -0.0, 3}, {4, 5, 6}}},
-                                              {"", MeasureKind::Girth, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}});
+  document.measurements =
+      shared(Measurements{{"Distance \xff", MeasureKind::Distance, {{1e-300, -0.0, 3}, {4, 5, 6}}},
+                          {"Waist", MeasureKind::Girth, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}});
   document.results.push_back(shared(result_of(document, random)));
   return document;
 }
@@ -258,7 +259,9 @@ Document random_edit(const Document& document, std::mt19937& random) {
     case 11: {
       Measurements all = document.measurements ? *document.measurements : Measurements{};
       if (!all.empty() && below(random, 2)) all.pop_back();
-      else all.push_back({"Angle", MeasureKind::Angle, {{unit(random), 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+      else
+        all.push_back(
+            {"Angle " + std::to_string(random()), MeasureKind::Angle, {{unit(random), 0, 0}, {0, 1, 0}, {0, 0, 1}}});
       next.measurements = all.empty() ? nullptr : shared(std::move(all));
       break;
     }

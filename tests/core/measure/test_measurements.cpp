@@ -152,4 +152,8 @@ TEST_CASE("thickness: the shortest line through a layer, a rod and a slab") {
   const auto line = thickness_line(slab, {20, 20, 19});
   CHECK(glm::distance(line[0], line[1]) == doctest::Approx(3).epsilon(1e-4));
   CHECK_THROWS_AS(thickness_line(slab, {20, 20, 3}), Error);
+  // A slab at the volume's border, where the tissue may go on.
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) slab.at({x, y, 0}) = slab.at({x, y, 1}) = kFlesh;
+  CHECK_THROWS_AS(thickness_line(slab, {20, 20, 1}), Error);
 }

@@ -177,7 +177,7 @@ TEST_CASE("measurements stay on the tissue when the body is posed, and are kept 
   test.editor->history.commit("Bend", document);
   test.play("wait-idle");
   REQUIRE(test.editor->views->scene.pose);
-  const auto& placed = placed_measurements(*test.editor, test.editor->views->scene);
+  const auto placed = placed_measurements(*test.editor, test.editor->views->scene);
   REQUIRE(placed.size() == 2);
   const Measurement& across = (*document.measurements)[0];
   CHECK(glm::distance(placed[0][0], across.points[0]) < 1e-9);
@@ -231,6 +231,65 @@ TEST_CASE("measure tool: in a posed body the points are those of the body at res
   CHECK(glm::distance(all[0].points[0], rest) < 3);  // the map is exact to about a voxel, 4 x 5 x 3 mm
   CHECK(glm::distance(all[0].points[1], {0, 0, 20}) < 3);
   test.play("key Escape");
+}
+
+TEST_CASE("measure tool: a dialog that opens gets the keyboard, and undo works between two measurements") {
+  FourViews test;
+  test.play("click View/Measure/\"Measure distance\"\n wait-idle");
+  for (const double x : {10.0, 20.0}) {
+    click_at(test, ViewId::Axial, {-20, 10, 0});
+    click_at(test, ViewId::Axial, {x, 10, 0});
+  }
+  CHECK(measured(test.editor->document()).size() == 2);
+  test.play("key Ctrl+Z\n wait-idle");
+  CHECK(test.editor->modal);
+  CHECK(measured(test.editor->document()).size() == 1);
+  test.editor->measures->chosen = "Distance 1";
+  run(*test.editor, "measure.rename");
+  test.play("wait-idle\n expect dialog yes");
+  CHECK_FALSE(test.editor->modal);
+  test.play("key Ctrl+A\n type hint\n key Return\n wait-idle\n expect dialog no");
+  CHECK(measured(test.editor->document()).back().name == "hint");
+  CHECK_FALSE(test.editor->document().visibility);  // H hides a tissue where it is a command
+}
+
+TEST_CASE("measurements: points in the air stay where they are, and results that do not fit are left at rest") {
+  LimbEditor test;
+  Document document = test.editor->document();
+  document.weights = half_weights(*document.volume);
+  Pose pose = rest_pose(*document.armature);
+  pose.rotation[1] = glm::angleAxis(glm::radians(50.0), glm::dvec3(1, 0, 0));
+  document.pose = std::make_shared<const Pose>(pose);
+  const std::vector<glm::dvec3> points{{0, 0, -20}, {900'000, 0, 0}};
+  document.measurements = std::make_shared<const Measurements>(Measurements{{"Far", MeasureKind::Distance, points}});
+  Result result;
+  result.name = "Result";
+  result.method = "dqs";
+  result.volume = std::make_shared<const LabelVolume>(*document.volume);
+  result.from_volume = document.volume;
+  result.from_tissues = document.tissues;
+  result.from_armature = document.armature;
+  result.from_weights = document.weights;
+  Pose wrong = pose;
+  wrong.rotation.pop_back();
+  result.from_pose = std::make_shared<const Pose>(wrong);
+  document.results = {std::make_shared<const Result>(result)};
+  result.name = "Whole";
+  result.volume = std::make_shared<const LabelVolume>(*document.volume);
+  result.from_pose = document.pose;
+  document.results.push_back(std::make_shared<const Result>(result));
+  test.editor->history.reset(document, "Open limb");
+  test.play("key Ctrl+3\n wait-idle");
+  const auto moved = posed_from_rest(*document.armature, pose);
+  const auto posed = placed_measurements(*test.editor, test.editor->views->scene);
+  REQUIRE(test.editor->views->scene.pose);
+  CHECK(glm::distance(posed[0][0], moved[1] * points[0]) < 1e-9);
+  CHECK(posed[0][1] == points[1]);
+  render::Scene scene;
+  scene.volume = document.results[0]->volume;
+  CHECK(placed_measurements(*test.editor, scene)[0] == points);
+  scene.volume = document.results[1]->volume;
+  CHECK(glm::distance(placed_measurements(*test.editor, scene)[0][0], moved[1] * points[0]) < 1e-6);
 }
 
 TEST_CASE("rulers: numbers are round and far enough apart at any zoom") {
