@@ -319,9 +319,11 @@ TEST_CASE("golden: an arm measured, with rulers") {
   scene.play(
       "click view.four\n click View/Overlays/Rulers\n click sidebar/sections/Steps/fold\n click "
       "sidebar/sections/Outliner/fold\n click sidebar/sections/Tissues/fold\n click "
-      "sidebar/sections/Measurements/fold\n click View/Measure/\"Measure girth\"\n click \"3D view/view\"\n key "
-      "Return\n click View/Measure/\"Measure thickness\"\n click Coronal/view\n key Return\n click "
-      "View/Measure/\"Measure angle\"\n click \"3D view/view\"\n click Coronal/view\n move 790 470\n press\n release\n "
+      "sidebar/sections/Measurements/fold\n click View/Overlays/Measure/\"Measure girth\"\n click \"3D view/view\"\n "
+      "key "
+      "Return\n click View/Overlays/Measure/\"Measure thickness\"\n click Coronal/view\n key Return\n click "
+      "View/Overlays/Measure/\"Measure angle\"\n click \"3D view/view\"\n click Coronal/view\n move 790 470\n press\n "
+      "release\n "
       "key "
       "Return\n wait-idle\n move \"Axial/view\"");
   check_golden("measurements", scene.picture());

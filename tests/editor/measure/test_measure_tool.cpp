@@ -62,34 +62,38 @@ std::vector<Proof> proofs_of_measuring() {
       {"measure.menu", "click \"strip/measure.menu\"\n wait-idle",
        [](Stage& s, const Seen&) { return s.editor().shown_popup == "Measure"; }, Shows::Nothing, four},
       {"measure.distance",
-       "click View/Measure/\"Measure distance\"\n click Axial/view\n click \"3D view/view\"\n key Return\n wait-idle",
+       "click View/Overlays/Measure/\"Measure distance\"\n click Axial/view\n click \"3D view/view\"\n key Return\n "
+       "wait-idle",
        has(MeasureKind::Distance), Shows::Nothing, four},
       {"measure.angle",
-       "click View/Measure/\"Measure angle\"\n click Axial/view\n click \"3D view/view\"\n click Coronal/view\n key "
+       "click View/Overlays/Measure/\"Measure angle\"\n click Axial/view\n click \"3D view/view\"\n click "
+       "Coronal/view\n key "
        "Escape\n wait-idle",
        has(MeasureKind::Angle), Shows::Nothing, four},
-      {"measure.girth", "click View/Measure/\"Measure girth\"\n click \"3D view/view\"\n key Escape\n wait-idle",
+      {"measure.girth",
+       "click View/Overlays/Measure/\"Measure girth\"\n click \"3D view/view\"\n key Escape\n wait-idle",
        has(MeasureKind::Girth), Shows::Nothing, four},
       {"measure.thickness",
-       "click View/Measure/\"Measure thickness\"\n click \"3D view/view\"\n key Escape\n wait-idle",
+       "click View/Overlays/Measure/\"Measure thickness\"\n click \"3D view/view\"\n key Escape\n wait-idle",
        has(MeasureKind::Thickness), Shows::Nothing, four},
-      {"measure.show", "click View/Measure/\"Show measurements\"\n wait-idle",
+      {"measure.show", "click View/Overlays/Measure/\"Show measurements\"\n wait-idle",
        [](Stage& s, const Seen&) { return !s.editor().measures->shown; }},
       {"measure.rename",
-       "click View/Measure/\"Rename measurement...\"\n wait-idle\n key Ctrl+A\n type Waist\n key Return\n wait-idle",
+       "click View/Overlays/Measure/\"Rename measurement...\"\n wait-idle\n key Ctrl+A\n type Waist\n key Return\n "
+       "wait-idle",
        [](Stage& s, const Seen&) {
          return s.editor().measures->chosen == "Waist" && measured(s.document()).back().name == "Waist";
        }},
-      {"measure.copy", "click View/Measure/\"Copy measurements\"\n wait-idle",
+      {"measure.copy", "click View/Overlays/Measure/\"Copy measurements\"\n wait-idle",
        [](Stage& s, const Seen&) {
          const std::string text = s.sitting.test.host->clipboard();
          return text.starts_with("name\tkind\tat rest") && text.find("\nWaist\tthickness\t") != std::string::npos;
        }},
-      {"measure.delete", "click View/Measure/\"Delete measurement\"\n wait-idle",
+      {"measure.delete", "click View/Overlays/Measure/\"Delete measurement\"\n wait-idle",
        [](Stage& s, const Seen& before) {
          return measured(s.document()).size() + 1 == measured(before.document).size();
        }},
-      {"measure.clear", "click View/Measure/\"Delete all measurements\"\n wait-idle",
+      {"measure.clear", "click View/Overlays/Measure/\"Delete all measurements\"\n wait-idle",
        [](Stage& s, const Seen&) { return !s.document().measurements; }},
       {"view.rulers", "click View/Overlays/Rulers\n wait-idle",
        [](Stage& s, const Seen&) { return s.editor().views->rulers; }},
@@ -104,7 +108,7 @@ TEST_CASE("operators: measuring, and the list of measurements") {
 
 TEST_CASE("measure tool: what is clicked in slices and in 3D is measured, to a pixel") {
   FourViews test;
-  test.play("click View/Measure/\"Measure distance\"\n wait-idle");
+  test.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle");
   click_at(test, ViewId::Axial, {-20, 10, 0});
   click_at(test, ViewId::Axial, {25, -15, 0});
   const double pixel = test.pixel(ViewId::Axial);
@@ -119,7 +123,7 @@ TEST_CASE("measure tool: what is clicked in slices and in 3D is measured, to a p
   click_at(test, ViewId::Body, {0, 0, 0});
   click_at(test, ViewId::Axial, {0, 0, meet.z});
   CHECK(std::abs(test.last_value() - 40) < 5);  // voxels of 4 x 5 x 3 mm
-  test.play("key Escape\n click View/Measure/\"Measure angle\"\n wait-idle");
+  test.play("key Escape\n click View/Overlays/Measure/\"Measure angle\"\n wait-idle");
   click_at(test, ViewId::Axial, {30, 0, meet.z});
   click_at(test, ViewId::Axial, {0, 0, meet.z});
   click_at(test, ViewId::Axial, {20, 20, meet.z});
@@ -130,12 +134,12 @@ TEST_CASE("measure tool: what is clicked in slices and in 3D is measured, to a p
 
 TEST_CASE("measure tool: a slice's girth is that of the ball's cut, and a skin's thickness that of the shell") {
   FourViews test;
-  test.play("click View/Measure/\"Measure girth\"\n wait-idle");
+  test.play("click View/Overlays/Measure/\"Measure girth\"\n wait-idle");
   click_at(test, ViewId::Axial, {0, 15, 0});
   CHECK(test.last_value() == doctest::Approx(2 * std::numbers::pi * 40).epsilon(0.03));
   for (const glm::dvec3& corner : measured(test.editor->document()).back().points)
     CHECK(std::abs(corner.z - test.editor->views->cross_hair.z) < 1e-6);
-  test.play("key Escape\n click View/Measure/\"Measure thickness\"\n wait-idle");
+  test.play("key Escape\n click View/Overlays/Measure/\"Measure thickness\"\n wait-idle");
   click_at(test, ViewId::Axial, {0, 0, 0});  // the bone, a ball of radius 12
   CHECK(test.last_value() == doctest::Approx(24).epsilon(0.25));
   // In the air there is no tissue: one clear message, and nothing is added.
@@ -148,7 +152,7 @@ TEST_CASE("measure tool: a slice's girth is that of the ball's cut, and a skin's
 
 TEST_CASE("measure tool: Backspace takes a point back, Escape ends, and undo takes a measurement back") {
   FourViews test;
-  test.play("click View/Measure/\"Measure distance\"\n wait-idle");
+  test.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle");
   click_at(test, ViewId::Axial, {-20, 10, 0});
   test.play("key Backspace\n wait-idle");
   click_at(test, ViewId::Axial, {0, 0, 0});
@@ -193,7 +197,7 @@ TEST_CASE("measurements stay on the tissue when the body is posed, and are kept 
 
 TEST_CASE("measure tool: between two clicks the view can be turned, zoomed and looked at from another side") {
   FourViews test;
-  test.play("click View/Measure/\"Measure distance\"\n wait-idle");
+  test.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle");
   click_at(test, ViewId::Body, {0, 0, 0});
   const render::Camera before = test.editor->views->body.camera;
   test.play("drag \"3D view/view\" 120 30 MMB\n wait-idle");
@@ -223,7 +227,7 @@ TEST_CASE("measure tool: in a posed body the points are those of the body at res
   REQUIRE(test.editor->views->scene.pose);
   const glm::dvec3 rest(0, 0, -25), shown = posed_from_rest(*document.armature, pose)[1] * rest;
   test.editor->views->cross_hair = shown;
-  test.play("wait-idle\n click View/Measure/\"Measure distance\"\n wait-idle");
+  test.play("wait-idle\n click View/Overlays/Measure/\"Measure distance\"\n wait-idle");
   click_at(test, ViewId::Sagittal, shown);
   click_at(test, ViewId::Sagittal, {0, 0, 20});
   const Measurements& all = measured(test.editor->document());
@@ -235,7 +239,7 @@ TEST_CASE("measure tool: in a posed body the points are those of the body at res
 
 TEST_CASE("measure tool: a dialog that opens gets the keyboard, and undo works between two measurements") {
   FourViews test;
-  test.play("click View/Measure/\"Measure distance\"\n wait-idle");
+  test.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle");
   for (const double x : {10.0, 20.0}) {
     click_at(test, ViewId::Axial, {-20, 10, 0});
     click_at(test, ViewId::Axial, {x, 10, 0});
