@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/measure/least_direction.h"
 #include "core/measure/measurement.h"
 #include "core/measure/tissue_share.h"
 
@@ -15,12 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kBeside = 2;        // voxels that the point may lie beside the body
-constexpr int kMostCells = 4096;     // upper limit on the cells of the plane along either axis
-constexpr double kFine = 0.5;        // cell size of a tape, in shortest voxel edges
-constexpr double kCoarse = 2;        // cell size while planes are compared
-constexpr int kPlanes = 64;          // planes compared at first
-constexpr double kFirstTurn = 0.12;  // first turn of the search for the least girth, radians
+constexpr double kBeside = 2;                          // voxels that the point may lie beside the body
+constexpr int kMostCells = 4096;                       // upper limit on the cells of the plane along either axis
+constexpr double kFine = 0.5;                          // cell size of a tape, in shortest voxel edges
+constexpr double kCoarse = 2;                          // cell size while planes are compared
+constexpr int kPlanes = 64;                            // planes compared at first
+constexpr double kFirstTurn = 0.12, kLastTurn = 0.01;  // turns of the search for the least girth, radians
 
 bool is_tissue(Label label) { return label != 0; }
 
@@ -211,31 +211,12 @@ glm::dvec3 middle_along(const LabelVolume& volume, const glm::dvec3& surface, co
 
 glm::dvec3 least_girth_normal(const LabelVolume& volume, const glm::dvec3& point) {
   const glm::dvec3 centre = point_in_tissue(volume, point);
-  constexpr double kNone = std::numeric_limits<double>::max();
-  double least = kNone;
-  const auto girth = [&](const glm::dvec3& normal) {
-    return length_of(PlaneCut(volume, centre, normal, kCoarse).tape(least), kNone);
-  };
-  glm::dvec3 best(0, 0, 1);
-  // Directions spread evenly over half a sphere, by a spiral of the golden angle.
-  for (int i = 0; i < kPlanes; ++i) {
-    const double z = (i + 0.5) / kPlanes, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const glm::dvec3 normal(r * std::cos(turn), r * std::sin(turn), z);
-    if (const double length = girth(normal); length < least) least = length, best = normal;
-  }
-  if (least == kNone) throw is_cut_off();
-  for (double turn = kFirstTurn; turn > 0.01; turn /= 2)
-    for (bool better = true; better;) {
-      better = false;
-      const glm::dvec3 other = std::abs(best.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-      const glm::dvec3 a = glm::normalize(glm::cross(best, other)), b = glm::cross(best, a);
-      for (const glm::dvec3& way : {a, -a, b, -b}) {
-        const glm::dvec3 normal = glm::normalize(best + std::tan(turn) * way);
-        if (const double length = girth(normal); length < least * (1 - 1e-9))
-          least = length, best = normal, better = true;
-      }
-    }
-  return best;
+  const LeastDirection least =
+      least_direction(kPlanes, kFirstTurn, kLastTurn, [&](const glm::dvec3& normal, double most) {
+        return length_of(PlaneCut(volume, centre, normal, kCoarse).tape(most), std::numeric_limits<double>::infinity());
+      });
+  if (least.length == std::numeric_limits<double>::infinity()) throw is_cut_off();
+  return least.direction;
 }
 
 }  // namespace limber

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "core/base/error.h"
+#include "core/measure/least_direction.h"
 #include "core/measure/tissue_share.h"
 
 namespace limber {
@@ -14,8 +13,8 @@ namespace limber {
 namespace {
 
 constexpr int kDirections = 400;
-constexpr double kStep = 0.25;       // step along a line, in shortest voxel edges
-constexpr double kFirstTurn = 0.08;  // first turn of the search around the best direction, radians
+constexpr double kStep = 0.25;                          // step along a line, in shortest voxel edges
+constexpr double kFirstTurn = 0.08, kLastTurn = 0.005;  // turns of the search for the least length, radians
 
 // Bundles of parallel lines through one point of a tissue.
 class LinesThrough {
@@ -81,27 +80,12 @@ std::array<glm::dvec3, 2> thickness_line(const LabelVolume& volume, const glm::i
   if (label == 0) throw Error("there is no tissue at this point", "measuring", "choose a point on the body");
   const glm::dvec3 centre = world_from_voxel(volume.grid) * glm::dvec3(voxel);
   const LinesThrough lines(volume, centre, label);
-  double least = glm::length(glm::dvec3(volume.grid.size) * volume.grid.spacing);
-  glm::dvec3 best(0, 0, 1);
-  // Directions spread evenly over half a sphere, by a spiral of the golden angle.
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = (i + 0.5) / kDirections, r = std::sqrt(1 - z * z),
-                 turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const glm::dvec3 direction(r * std::cos(turn), r * std::sin(turn), z);
-    if (const double length = lines.length(direction, least); length < least) least = length, best = direction;
-  }
-  for (double turn = kFirstTurn; turn > 0.005; turn /= 2)
-    for (bool better = true; better;) {
-      better = false;
-      const glm::dvec3 other = std::abs(best.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-      const glm::dvec3 a = glm::normalize(glm::cross(best, other)), b = glm::cross(best, a);
-      for (const glm::dvec3& way : {a, -a, b, -b}) {
-        const glm::dvec3 direction = glm::normalize(best + std::tan(turn) * way);
-        if (const double length = lines.length(direction, least); length < least * (1 - 1e-9))
-          least = length, best = direction, better = true;
-      }
-    }
-  const auto [ahead, behind] = lines.to_borders(best, least);
+  const double longest = glm::length(glm::dvec3(volume.grid.size) * volume.grid.spacing);
+  const LeastDirection found = least_direction(
+      kDirections, kFirstTurn, kLastTurn,
+      [&](const glm::dvec3& direction, double most) { return lines.length(direction, std::min(most, longest)); });
+  const glm::dvec3 best = found.direction;
+  const auto [ahead, behind] = lines.to_borders(best, std::min(found.length, longest));
   const std::array<glm::dvec3, 2> ends{centre - behind * best, centre + ahead * best};
   for (const glm::dvec3& end : ends) {
     const glm::dvec3 place = voxel_from_world(volume.grid) * end;

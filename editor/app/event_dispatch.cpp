@@ -90,16 +90,6 @@ void on_key(Editor& editor, const KeyChanged& event) {
   run_chord(editor, chord);
 }
 
-// Returns true if the pointer is over a button, handle or bar in a view. These widgets handle the left mouse button
-// themselves.
-bool over_widget(const Editor& editor) {
-  const auto& widgets = editor.widgets.widgets();
-  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
-    return widget.region == Region::Views && !widget.name.ends_with("/view") &&
-           widget.rect.contains(editor.input.pointer);
-  });
-}
-
 // Handles the press of a button in a view or the timeline. The press may become a drag.
 void on_press(Editor& editor, MouseButton button) {
   editor.list_focus = {};

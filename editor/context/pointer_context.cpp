@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/pointer_context.h"
 
+#include <algorithm>
+
 #include <imgui_internal.h>
 
 namespace limber::editor {
@@ -21,6 +23,14 @@ bool over_timeline(const Editor& editor) {
   return window && std::string_view(window->RootWindow->Name) == "##bottom" &&
          editor.timeline_area.contains(editor.input.pointer) && editor.arrangement().timeline &&
          !editor.arrangement().console;
+}
+
+bool over_widget(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
+    return widget.region == Region::Views && !widget.name.ends_with("/view") &&
+           widget.rect.contains(editor.input.pointer);
+  });
 }
 
 const ViewPlace* hovered_view(const Editor& editor) {

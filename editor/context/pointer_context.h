@@ -15,5 +15,8 @@ std::vector<std::string> contexts(const Editor& editor);
 const ViewPlace* hovered_view(const Editor& editor);
 // Returns true if the pointer is over the timeline's rows. The buttons above them do not count.
 bool over_timeline(const Editor& editor);
+// Returns true if the pointer is over a button, handle or bar in a view. These widgets handle the left mouse button
+// themselves.
+bool over_widget(const Editor& editor);
 
 }  // namespace limber::editor

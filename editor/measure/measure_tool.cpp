@@ -71,15 +71,6 @@ bool is_busy(const Editor& editor) {
          ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
-// Returns whether the pointer is over a bar, a button or a plate in a view.
-bool is_over_widget(const Editor& editor) {
-  const auto& widgets = editor.widgets.widgets();
-  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
-    return widget.region == Region::Views && !widget.name.ends_with("/view") &&
-           widget.rect.contains(editor.input.pointer);
-  });
-}
-
 // Returns the direction of the bone nearest to a point of the body at rest. Nothing without a rig.
 std::optional<glm::dvec3> along_nearest_bone(const Document& document, const glm::dvec3& point) {
   if (!document.armature) return std::nullopt;
@@ -128,7 +119,7 @@ class MeasureTool final : public Modal {
     if (editor.drag) return true;
     if (event.button == MouseButton::Right && event.down) return false;
     const ViewPlace* place = hovered_view(editor);
-    if (event.button != MouseButton::Left || !event.down || !place || is_over_widget(editor)) return true;
+    if (event.button != MouseButton::Left || !event.down || !place || over_widget(editor)) return true;
     const auto point = point_under_pointer(editor);
     const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
     if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
