@@ -97,19 +97,23 @@ BoneDistance::BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ive
 }
 
 bool BoneDistance::holds(const glm::dvec3& place) const {
-  return glm::all(glm::greaterThanEqual(place, glm::dvec3(0))) &&
-         glm::all(glm::lessThan(place, glm::dvec3(lattice_.size - 1)));
+  const glm::ivec3 last = lattice_.size - 1;
+  return place.x >= 0 && place.x < last.x && place.y >= 0 && place.y < last.y && place.z >= 0 && place.z < last.z;
 }
 
 std::optional<BoneDistance::Sample> BoneDistance::below(const glm::dvec3& point, double limit) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
   if (!holds(place) || least_[lattice_.index(glm::ivec3(place))] >= limit) return std::nullopt;
-  return at(point);
+  return sample(place);
 }
 
 std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) const {
   const glm::dvec3 place = (point - lowest_) / edge_;
   if (!holds(place)) return std::nullopt;
+  return sample(place);
+}
+
+BoneDistance::Sample BoneDistance::sample(const glm::dvec3& place) const {
   // Truncation rounds down here, since place is not negative; std::floor would be a function call.
   const glm::ivec3 low(place);
   const std::int64_t row = lattice_.size.x, slice = row * lattice_.size.y;
@@ -123,7 +127,7 @@ std::optional<BoneDistance::Sample> BoneDistance::at(const glm::dvec3& point) co
   const double dx0 = (1 - f.y) * (p[1] - p[0]) + f.y * (p[row + 1] - p[row]);
   const double dx1 = (1 - f.y) * (p[slice + 1] - p[slice]) + f.y * (p[slice + row + 1] - p[slice + row]);
   const glm::dvec3 slope(dx0 + f.z * (dx1 - dx0), (1 - f.z) * (x10 - x00) + f.z * (x11 - x01), y1 - y0);
-  return Sample{y0 + f.z * (y1 - y0), slope / edge_};
+  return {y0 + f.z * (y1 - y0), slope / edge_};
 }
 
 double BoneDistance::outside(const glm::dvec3& point) const {

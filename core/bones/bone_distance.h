@@ -40,7 +40,9 @@ class BoneDistance {
   std::vector<SurfacePoint> surface() const;
 
  private:
+  // A place is a point in lattice units, (0, 0, 0) at the lattice's first point.
   bool holds(const glm::dvec3& place) const;
+  Sample sample(const glm::dvec3& place) const;  // of a place inside the lattice
 
   glm::dvec3 lowest_;
   double edge_;

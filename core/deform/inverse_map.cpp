@@ -237,8 +237,7 @@ void RigidBones::find_pieces() {
     std::map<int, VoxelRange> ranges;
     const auto& chunk = weights_->chunk(brick);
     const std::int64_t first = tissue.bricks()[brick].first;
-    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-      if (!(*is_bone_)[volume.at(v)]) return;
+    tissue.for_each_of(brick, volume, *is_bone_, [&](std::int64_t place, const glm::ivec3& v) {
       const int bone = chunk[place - first].bone[0];
       auto [range, is_new] = ranges.try_emplace(bone, VoxelRange{v, v});
       range->second = {glm::min(range->second.low, v), glm::max(range->second.high, v)};
@@ -289,16 +288,16 @@ int RigidBones::owner(const glm::ivec3& voxel) const {
 
 LabelVolume RigidBones::numbered() const {
   const LabelVolume& volume = lattice_->volume();
+  // No large pages: bone lies in few of the pages, and the others are never touched.
   LabelVolume result{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
-  want_large_pages(result);
   const TissueVoxels& tissue = lattice_->tissue();
   for (std::int64_t last = -1; const Piece& piece : pieces_) {
     if (piece.brick == last) continue;
     last = piece.brick;
     const auto& chunk = weights_->chunk(last);
     const std::int64_t first = tissue.bricks()[last].first;
-    tissue.for_each(last, last + 1, [&](std::int64_t place, const glm::ivec3& v) {
-      if ((*is_bone_)[volume.at(v)]) result.at(v) = static_cast<Label>(chunk[place - first].bone[0] + 1);
+    tissue.for_each_of(last, volume, *is_bone_, [&](std::int64_t place, const glm::ivec3& v) {
+      result.at(v) = static_cast<Label>(chunk[place - first].bone[0] + 1);
     });
   }
   return result;

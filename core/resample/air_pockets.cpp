@@ -188,18 +188,16 @@ void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSe
 
 std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
 
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh,
-                                           const LabelSet& soft, const RestPoint& rest_point) {
-  const std::vector<AirPocket> pockets = air_pockets(posed);
-  if (pockets.empty()) return {};
-  const std::vector<AirPocket> rest_pockets = air_pockets(rest);
+std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const PocketsOfBoth& pockets,
+                                           const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
+  if (pockets.posed.empty()) return {};
   std::unordered_map<std::int64_t, int> pocket_at_rest;
-  for (size_t p = 0; p < rest_pockets.size(); ++p)
-    for (const glm::ivec3& v : rest_pockets[p]) pocket_at_rest[rest.grid.index(v)] = static_cast<int>(p);
+  for (size_t p = 0; p < pockets.rest.size(); ++p)
+    for (const glm::ivec3& v : pockets.rest[p]) pocket_at_rest[rest.grid.index(v)] = static_cast<int>(p);
   const double posed_per_rest = rest.grid.voxel_volume() / posed.grid.voxel_volume();
   std::vector<glm::ivec3> filled;
-  for (const AirPocket& pocket : pockets) {
-    const std::int64_t before = size_at_rest(pocket, posed, rest, rest_pockets, pocket_at_rest, rest_point);
+  for (const AirPocket& pocket : pockets.posed) {
+    const std::int64_t before = size_at_rest(pocket, posed, rest, pockets.rest, pocket_at_rest, rest_point);
     const Label lining = lining_of(pocket, posed, flesh, soft);
     const auto first = std::ssize(filled);
     fill(posed, pocket, std::llround(posed_per_rest * double(before)), flesh, soft, filled);

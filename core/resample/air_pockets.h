@@ -16,13 +16,18 @@ namespace limber {
 using AirPocket = std::vector<glm::ivec3>;
 std::vector<AirPocket> air_pockets(const LabelVolume& volume);
 
+struct PocketsOfBoth {
+  const std::vector<AirPocket>&posed, &rest;
+};
+
 // Shrinks every air pocket of `posed` to the volume of the hollow that the pocket's walls enclose at rest (0 if they
 // enclose none). Soft tissue fills the pocket from the walls inwards. If skin lines the walls, the tissue under the
 // skin fills the pocket, and the remaining air is lined with skin again.
-//   flesh  soft tissues without skin, by label      soft  soft tissues with skin, by label
+//   pockets  the air pockets of `posed` and of `rest`
+//   flesh    soft tissues without skin, by label      soft  soft tissues with skin, by label
 //   returns  the filled voxels, layer by layer from the walls inwards
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const LabelSet& flesh,
-                                           const LabelSet& soft, const RestPoint& rest_point);
+std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const PocketsOfBoth& pockets,
+                                           const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point);
 
 // The rest point (position at rest) of a voxel that was air and is now filled with tissue. No tissue was moved there,
 // so it is the rest point of a neighbouring tissue voxel.

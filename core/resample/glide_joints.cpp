@@ -24,7 +24,7 @@ struct Box {
   void add(const glm::dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
   bool empty() const { return !glm::all(glm::lessThanEqual(low, high)); }  // also true if a coordinate is NaN
   bool contains(const glm::dvec3& p) const {
-    return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high));
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
   }
   Box grown(double by) const { return {low - by, high + by}; }
 };
@@ -56,8 +56,8 @@ std::vector<BoneTissue> gather(const LabelVolume& volume, const TissueVoxels& ti
     for (std::int64_t brick = begin; brick < end; ++brick) {
       const auto& chunk = weights.chunk(brick);
       const std::int64_t first = tissue.bricks()[brick].first;
-      tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-        if (is_bone[volume.at(v)]) mine.push_back({bone_of[chunk[place - first].bone[0]], v});
+      tissue.for_each_of(brick, volume, is_bone, [&](std::int64_t place, const glm::ivec3& v) {
+        mine.push_back({bone_of[chunk[place - first].bone[0]], v});
       });
     }
   });
@@ -139,9 +139,18 @@ class BentJoints {
 // Returns a box around the rest positions of some voxels of a bone: those that at least one motion moves into `box`.
 Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineTransform>& motions,
                const glm::dvec3& spacing) {
+  Box from;  // holds every place that a motion moves into `box`; it rejects most voxels without a motion
+  for (const AffineTransform& motion : motions) {
+    const AffineTransform before = back(motion);
+    for (int corner = 0; corner < 8; ++corner)
+      from.add(before * glm::dvec3((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
+                                   (corner & 4 ? box.high : box.low).z));
+  }
+  from = from.grown(glm::length(spacing) / 100);  // for rounding errors
   Box around;
   for (const glm::ivec3& v : bone.voxels) {
     const glm::dvec3 place = glm::dvec3(v) * spacing;
+    if (!from.contains(place) || around.contains(place)) continue;
     const auto arrives = [&](const AffineTransform& motion) { return box.contains(motion * place); };
     if (std::any_of(motions.begin(), motions.end(), arrives)) around.add(place);
   }

@@ -39,14 +39,15 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
   return given;
 }
 
-std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,
-                              const LabelSet& bone, const LabelSet& skin, std::vector<glm::ivec3>& was_air) {
+std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<AirPocket>& enclosed,
+                              const std::vector<UnderSkin>& under_skin, const LabelSet& flesh, const LabelSet& bone,
+                              const LabelSet& skin, std::vector<glm::ivec3>& was_air) {
   std::vector<glm::ivec3> bare, over_bone;
-  std::unordered_set<std::int64_t> enclosed;
-  for (const AirPocket& pocket : air_pockets(posed))
-    for (const glm::ivec3& v : pocket) enclosed.insert(posed.grid.index(v));
+  std::unordered_set<std::int64_t> in_pocket;
+  for (const AirPocket& pocket : enclosed)
+    for (const glm::ivec3& v : pocket) in_pocket.insert(posed.grid.index(v));
   const auto is_open_air = [&](const glm::ivec3& v) {
-    return posed.grid.contains(v) && posed.at(v) == 0 && !enclosed.contains(posed.grid.index(v));
+    return posed.grid.contains(v) && posed.at(v) == 0 && !in_pocket.contains(posed.grid.index(v));
   };
   // Returns true if a face neighbour of voxel v is air that the body does not enclose, or is outside the grid.
   const auto touches_open_air = [&](const glm::ivec3& v) {

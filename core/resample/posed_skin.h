@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/resample/air_pockets.h"
 #include "core/volume/label_sampler.h"
 
 namespace limber {
@@ -38,9 +39,11 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
 // torn the skin. Flesh that was covered at rest and touches air becomes skin. Bone that touches air, but was at a seam,
 // under closed skin or deep in the body at rest, is covered: the air voxels next to it become skin. Flesh and bone next
 // to enclosed air (lungs, bowel) are not changed.
-//   was_air  out: the voxels changed from air to skin are appended
-//   returns  the number of changed voxels
-std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh,
-                              const LabelSet& bone, const LabelSet& skin, std::vector<glm::ivec3>& was_air);
+//   enclosed  air pockets that hold all enclosed air of `posed`; some of their voxels may be filled since
+//   was_air   out: the voxels changed from air to skin are appended
+//   returns   the number of changed voxels
+std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<AirPocket>& enclosed,
+                              const std::vector<UnderSkin>& under_skin, const LabelSet& flesh, const LabelSet& bone,
+                              const LabelSet& skin, std::vector<glm::ivec3>& was_air);
 
 }  // namespace limber

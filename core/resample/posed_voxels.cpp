@@ -157,10 +157,12 @@ class PosedVoxels {
     const std::int64_t closed = close_skin(posed_.volume, under_skin_, flesh_);
     posed_.report.mended_voxels =
         std::ssize(bridges) + kept + closed + thin_skin(posed_.volume, inner_skin_, closed, flesh_, labels_.skin);
-    std::vector<glm::ivec3> was_air = fill_grown_pockets(posed_.volume, volume_, flesh_, labels_.soft, rest_point);
+    const std::vector<AirPocket> pockets = air_pockets(posed_.volume);
+    std::vector<glm::ivec3> was_air = fill_grown_pockets(
+        posed_.volume, volume_, {pockets, skin_->air_pockets_at_rest()}, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
     posed_.report.new_skin_voxels =
-        cover_bare_flesh(posed_.volume, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
+        cover_bare_flesh(posed_.volume, pockets, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
     const Origins origins = origins_of(posed_.volume, was_air, rest_point);
     carry_fields(origins);
     for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;

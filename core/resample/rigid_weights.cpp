@@ -14,8 +14,8 @@ SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volu
     const auto& chunk = weights.chunk(brick);
     const std::int64_t first = tissue.bricks()[brick].first;
     bool rigid = true;
-    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-      if (is_bone[volume.at(v)]) rigid &= chunk[place - first].weight[0] == kFullWeight;
+    tissue.for_each_of(brick, volume, is_bone, [&](std::int64_t place, const glm::ivec3&) {
+      rigid &= chunk[place - first].weight[0] == kFullWeight;
     });
     return rigid;
   };

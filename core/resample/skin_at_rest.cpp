@@ -32,9 +32,10 @@ SkinAtRest::SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, co
       depth_(depth),
       soft_(soft),
       skin_(skin),
+      air_pockets_(air_pockets(volume)),
       skin_reach_(kSkinReach * std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z})),
       deep_(glm::length(volume.grid.spacing)) {
-  for (const AirPocket& pocket : air_pockets(volume))
+  for (const AirPocket& pocket : air_pockets_)
     for (const glm::ivec3& v : pocket) enclosed_air_.insert(volume.grid.index(v));
   const glm::dvec3 s = volume.grid.spacing;
   const bool has_coarse_slices = std::max({s.x, s.y, s.z}) > kCoarse * std::min({s.x, s.y, s.z});

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/deform/depth.h"
+#include "core/resample/air_pockets.h"
 #include "core/resample/neighbourhood.h"
 #include "core/volume/label_sampler.h"
 #include "core/volume/tissue_voxels.h"
@@ -34,6 +35,8 @@ class SkinAtRest {
   // itself touches air.
   Label skin_over(const glm::dvec3& rest_point) const;
 
+  const std::vector<AirPocket>& air_pockets_at_rest() const { return air_pockets_; }
+
  private:
   bool touches_outside(const glm::ivec3& voxel) const;
   bool is_deep(const glm::ivec3& voxel) const;
@@ -44,6 +47,7 @@ class SkinAtRest {
   const TissueVoxels& tissue_;
   const TissueDepth& depth_;
   const LabelSet &soft_, &skin_;
+  std::vector<AirPocket> air_pockets_;
   std::unordered_set<std::int64_t> enclosed_air_;
   // Depths below air, mm: tissue deeper than skin_reach_ does not touch skin; tissue deeper than deep_ counts as deep.
   double skin_reach_, deep_;

@@ -2,6 +2,7 @@
 #include "core/tissue/tissue_match.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/base/error.h"
 #include "core/base/text_parse.h"
@@ -20,12 +21,22 @@ std::vector<std::string> parts_of(std::string_view text) {
   return parts;
 }
 
+// Returns a bit for each letter, 'a' the lowest, that a word of the name begins with.
+std::uint32_t first_letters(const TissueWords& words) {
+  std::uint32_t letters = 0;
+  for (const std::string& word : words) letters |= std::uint32_t{1} << (word.front() - 'a');
+  return letters;
+}
+
 // Returns how many words name i of a row has (i = 0: the row's name, then its synonyms) if the tissue's name contains
 // all of these words; else 0.
-int words_met(const TissueWords& name, const TissueNames& row, std::size_t i) {
+//   letters  first_letters(name): most rows differ from the name in a first letter
+int words_met(const TissueWords& name, std::uint32_t letters, const TissueNames& row, std::size_t i) {
   const TissueWords& wanted = row.words[i];
   if (row.whole[i] && name.size() != wanted.size()) return 0;
-  const auto is_there = [&](const std::string& word) { return has_word(name, word); };
+  const auto is_there = [&](const std::string& word) {
+    return (letters >> (word.front() - 'a') & 1) && has_word(name, word);
+  };
   const bool all = std::all_of(wanted.begin(), wanted.end(), is_there);
   return all ? static_cast<int>(wanted.size()) : 0;
 }
@@ -65,6 +76,7 @@ TissueMatch match_tissue(const Tissue& tissue, std::span<const TissueNames> rows
 TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
                          const std::function<const TissueNames&(std::size_t)>& names_of) {
   const TissueWords name = words_in_tissue_name(tissue.name);
+  const std::uint32_t letters = first_letters(name);
   TissueMatch best;
   int best_score = 0;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -74,7 +86,7 @@ TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
     int words = 0;
     std::size_t found = 0;
     for (std::size_t i = 0; i < names.words.size(); ++i)
-      if (const int met = words_met(name, names, i); met > words) words = met, found = i;
+      if (const int met = words_met(name, letters, names, i); met > words) words = met, found = i;
     const int score = words > 0 ? 2 * words + 1 + same_kind : same_kind;
     if (score > best_score) {
       best_score = score;

@@ -85,6 +85,19 @@ class TissueVoxels {
         }
     }
   }
+  // Calls body(list index, voxel) for the tissue voxels of one brick whose labels are in the set, in list order.
+  template <class Body>
+  void for_each_of(std::int64_t brick, const LabelVolume& volume, const LabelSet& labels, const Body& body) const {
+    const auto& [corner, first, mask, below] = bricks_[brick];
+    for (int z = 0; z < 8; ++z) {
+      if (!mask[z]) continue;
+      const Label* slice = &volume.voxels[volume.grid.index(corner + glm::ivec3(0, 0, z))];
+      std::int64_t place = first + below[z];
+      for (std::uint64_t word = mask[z]; word; word &= word - 1, ++place)
+        if (const int bit = std::countr_zero(word); labels[slice[(bit & 7) + (bit >> 3) * volume.grid.size.x]])
+          body(place, corner + glm::ivec3(bit & 7, bit >> 3, z));
+    }
+  }
   template <class Body>
   void for_each(const Body& body) const {
     for_each(0, std::ssize(bricks_), body);

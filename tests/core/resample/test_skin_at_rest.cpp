@@ -56,7 +56,7 @@ TEST_CASE("posed skin: bone that came to the air gets skin over it where skin is
   posed.at({12, 17, 4}) = 0;     // air that the body encloses
   std::vector<UnderSkin> under{{posed.grid.index({2, 10, 4}), 0}, {posed.grid.index({12, 18, 4}), 0}};
   std::vector<glm::ivec3> was_air;
-  CHECK(cover_bare_flesh(posed, under, flesh, bone, skin, was_air) == 1);
+  CHECK(cover_bare_flesh(posed, air_pockets(posed), under, flesh, bone, skin, was_air) == 1);
   REQUIRE(was_air.size() == 1);
   CHECK(was_air[0] == glm::ivec3(1, 10, 4));
   CHECK(posed.at({1, 10, 4}) == kSkin);
