@@ -176,23 +176,58 @@ class SeamFinder {
     return bone_[place] != kSoft && limb.may_touch[bone_[place]];
   }
 
+  // Returns a byte for each brick: 1 if all its voxels belong to one bone.
+  std::vector<std::uint8_t> bricks_of_one_bone() const {
+    std::vector<std::uint8_t> is_of_one(tissue_.bricks().size());
+    parallel_for(std::ssize(is_of_one), kGrain, [&](std::int64_t begin, std::int64_t end) {
+      for (auto brick = begin; brick < end; ++brick) {
+        const auto first = bone_.begin() + tissue_.bricks()[brick].first;
+        is_of_one[brick] = std::all_of(first, first + tissue_.bricks()[brick].count(),
+                                       [&](std::uint16_t bone) { return bone == *first; });
+      }
+    });
+    return is_of_one;
+  }
+
+  // Returns true if the tissue of a brick and of the six bricks that share a face with it belongs to one bone.
+  bool is_inside_one_bone(std::int64_t brick, const std::vector<std::uint8_t>& is_of_one_bone) const {
+    if (!is_of_one_bone[brick]) return false;
+    const glm::ivec3 grid = tissue_.brick_grid(), here = tissue_.bricks()[brick].corner / TissueVoxels::kBrick;
+    for (int direction = 0; direction < 6; ++direction) {
+      glm::ivec3 there = here;
+      there[direction >> 1] += direction & 1 ? 1 : -1;
+      if (glm::any(glm::lessThan(there, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(there, grid))) continue;
+      const int beside = tissue_.brick_at(there * TissueVoxels::kBrick);
+      if (beside >= 0 &&
+          (!is_of_one_bone[beside] || bone_[tissue_.bricks()[beside].first] != bone_[tissue_.bricks()[brick].first]))
+        return false;
+    }
+    return true;
+  }
+
+  void find_borders_of(std::int64_t brick, std::vector<Border>& found) const {
+    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+      for (int direction = 0; direction < 6; ++direction) {
+        glm::ivec3 w = v;
+        w[direction >> 1] += direction & 1 ? 1 : -1;
+        const std::int64_t there = volume_.grid.contains(w) ? tissue_.index_of(w) : -1;
+        if (there < 0 || bone_[there] == bone_[place]) continue;
+        found.push_back({v, place});
+        break;
+      }
+    });
+  }
+
   // Lists the voxels that share a face with a voxel of another bone, sorted by their index among the tissue voxels. The
   // cuts change bones later, so find_band() checks each listed voxel again.
   void find_borders() {
     if (limbs_.empty()) return;
     const auto bricks = std::ssize(tissue_.bricks());
+    const std::vector<std::uint8_t> is_of_one_bone = bricks_of_one_bone();
     std::vector<std::vector<Border>> found((bricks + kGrain - 1) / kGrain);
     parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
-      tissue_.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
-        for (int direction = 0; direction < 6; ++direction) {
-          glm::ivec3 w = v;
-          w[direction >> 1] += direction & 1 ? 1 : -1;
-          const std::int64_t there = volume_.grid.contains(w) ? tissue_.index_of(w) : -1;
-          if (there < 0 || bone_[there] == bone_[place]) continue;
-          found[begin / kGrain].push_back({v, place});
-          break;
-        }
-      });
+      for (auto brick = begin; brick < end; ++brick)
+        if (!is_inside_one_bone(brick, is_of_one_bone)) find_borders_of(brick, found[begin / kGrain]);
     });
     for (const std::vector<Border>& some : found) borders_.insert(borders_.end(), some.begin(), some.end());
   }
