@@ -15,6 +15,8 @@ namespace {
 // Two posed neighbours count as neighbours at rest if they were closer there than this, in voxel edges of the posed
 // grid.
 constexpr double kNeighbours = 3;
+// A bone 1 m away from tissue must fit the tissue's motion by this many metres better than a bone in it.
+constexpr double kShareOfDistance = 0.05;
 constexpr int kArcSteps = 16;  // number of steps in which a joint's arc (its turn from rest to the pose) is sampled
 
 struct Joint {
@@ -161,18 +163,18 @@ StretchedVoxels unexplained(const JudgedPose& pose, const RestGradient& gradient
   return all;
 }
 
-// Returns the rig bone that most likely moved the tissue from its rest position to its posed position. A bone may be
-// the one if its motion misses the posed position by at most a voxel edge more than the best bone's. Of these bones,
-// returns the one that is nearest to the tissue at rest.
+// Returns the rig bone that most likely moved the tissue from its rest position to its posed position: the bone whose
+// motion comes nearest to the posed position. Distance from the bone at rest counts too, because the blended motion of
+// tissue may by chance resemble the motion of a bone far away.
 int bone_that_carries(const JudgedPose& pose, const glm::dvec3& rest, const glm::dvec3& posed) {
-  const auto off = [&](std::size_t b) { return glm::distance(pose.applied[b] * rest, posed); };
-  double least = std::numeric_limits<double>::infinity(), nearest = least;
-  for (std::size_t b = 0; b < pose.applied.size(); ++b) least = std::min(least, off(b));
-  const double edge = std::max({pose.posed.grid.spacing.x, pose.posed.grid.spacing.y, pose.posed.grid.spacing.z});
+  const auto& bones = pose.armature->bones;
+  double least = std::numeric_limits<double>::infinity();
   int best = 0;
-  for (std::size_t b = 0; b < pose.applied.size(); ++b)
-    if (const double away = distance_to_bone(pose.armature->bones[b], rest); off(b) <= least + edge && away < nearest)
-      nearest = away, best = static_cast<int>(b);
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    const double off =
+        glm::distance(pose.applied[b] * rest, posed) + kShareOfDistance * distance_to_bone(bones[b], rest);
+    if (off < least) least = off, best = static_cast<int>(b);
+  }
   return best;
 }
 

@@ -88,6 +88,16 @@ TEST_CASE(
   CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
 }
 
+TEST_CASE("bands: a bone far away is none of the two, though it moves as the pulled tissue does") {
+  PulledBar bar = pulled_bar(140, 16, 3, {15, 15, 20});
+  const glm::dvec3 far(15, 1500, 20);
+  bar.armature.bones.push_back(bone_between("Far", 0, far, far + glm::dvec3(0, 0, 40)));
+  bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});  // half of Upper's: half of the band moves more like it
+  const auto bands = bands_of(bar);
+  REQUIRE(bands.size() == 1);
+  CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
+}
+
 TEST_CASE("bands: the same pull around the joint that makes it is none, and neither is a pull of less than twice") {
   CHECK(bands_of(pulled_bar(92, 16, 3, {15, 15, 100})).empty());
   CHECK(bands_of(pulled_bar(140, 16, 1.9, {15, 15, 20})).empty());
