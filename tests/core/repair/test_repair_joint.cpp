@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The volumes that these tests judge are counted in resampled bodies, also at angles between those that the repair
 // itself has looked at, and never predicted.
+#include "core/prepare/prepare.h"
 #include "core/repair/repair_joint.h"
 
 #include <cmath>
@@ -46,9 +47,11 @@ Limb phantom_arm(double spacing) {
   return {std::move(phantom.volume), std::move(phantom.tissues), std::move(phantom.armature), "Forearm"};
 }
 
-Limb shared_limb(const std::string& volume, const std::string& rig, const std::string& tissues,
-                 const std::string& bone) {
+//   spacing  of the volume that is used, mm; none: the file's
+Limb shared_limb(const std::string& volume, const std::string& rig, const std::string& tissues, const std::string& bone,
+                 std::optional<double> spacing = {}) {
   VolumeFile file = read_volume(shared_path(volume));
+  if (spacing) file.volume = regrid(file.volume, glm::dvec3(*spacing));
   std::optional<TissueTable> table;
   if (!tissues.empty()) table = read_tissue_table(shared_path(tissues));
   TissueTable merged = merge_tissue_tables(file.tissues, table ? &*table : nullptr);
@@ -255,7 +258,7 @@ TEST_CASE("repair joint: knee, hip and shoulder of a whole body change less and 
   for (const auto& [name, share] : {std::pair{"LeftShank", 0.5}, {"LeftThigh", 0.5}, {"LeftUpperArm", 0.8}}) {
     const std::string bone = name;
     const Limb body = shared_limb("data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json",
-                                  "data/bp3d/tissue.labels.json", bone);
+                                  "data/bp3d/tissue.labels.json", bone, 4);
     const JointRepair repair = repair_joint(body.body(), body.heat, body.bone, {.blend = Blend::DualQuaternion});
     REQUIRE(repair.is_better);
     const Counted heat = mean_counted(body, body.heat, Blend::DualQuaternion),
