@@ -6,13 +6,13 @@
 #include <limits>
 #include <map>
 #include <queue>
-#include <set>
 #include <tuple>
 #include <utility>
 
 #include "core/bones/bone_watershed.h"
 #include "core/bones/gather_parts.h"
 #include "core/bones/hugging.h"
+#include "core/bones/lonely_piece.h"
 #include "core/bones/named_bones.h"
 #include "core/bones/shoulder_girdles.h"
 
@@ -202,7 +202,8 @@ class Pieces {
       for (auto [p, b] : found) bone_[p] = b, settled = true;
     }
   }
-  int nearest_bone(std::int32_t p) const { return best(cluster_[root(p)]); }
+  // Returns the mean distance from a piece's voxels to each rig bone, mm.
+  const std::vector<float>& distances(std::int32_t p) const { return cluster_[root(p)].distance; }
 
  private:
   // Least height of the pass between two basins that may be joined, as a share of the lower basin's summit. A lower
@@ -362,9 +363,7 @@ class Pieces {
   std::map<std::int32_t, std::vector<int>> before_;  // for each basin, the rig bones of shoulders that it cannot follow
 };
 
-// Returns the rig bone of every basin. A piece that touches no piece with a rig bone gets the rig bone of the nearest
-// bone voxel that can be reached through tissue. If that voxel is too far away, the piece gets the rig bone that is
-// nearest in space.
+// Returns the rig bone of every basin.
 std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
                                  const std::vector<std::int32_t>& basin, const Pieces& pieces) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
@@ -374,33 +373,14 @@ std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tis
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (bone[basin[i]] < 0) lonely[pieces.root(basin[i])].push_back(graph.voxel[i]);
 
+  const auto bone_at = [&](std::int64_t place) {
+    const auto at = std::lower_bound(graph.place.begin(), graph.place.end(), place);
+    return at != graph.place.end() && *at == place ? bone[basin[at - graph.place.begin()]] : -1;
+  };
   std::vector<int> found(basins, -1);
   std::int64_t budget = 20'000'000;  // upper limit on the number of voxels that all searches together may visit
-  for (auto& [piece, front] : lonely) {
-    found[piece] = pieces.nearest_bone(piece);
-    std::set<std::int64_t> seen;
-    for (const glm::ivec3& v : front) seen.insert(tissue.index_of(v));
-    bool searching = true;
-    while (searching && !front.empty() && budget > 0 && seen.size() < 200'000) {
-      std::vector<glm::ivec3> next;
-      for (const glm::ivec3& v : front)
-        for (int direction = 0; direction < 6 && searching; ++direction) {
-          glm::ivec3 w = v;
-          w[direction >> 1] += direction & 1 ? 1 : -1;
-          if (volume.at_or_air(w) == 0) continue;
-          const std::int64_t place = tissue.index_of(w);
-          if (!seen.insert(place).second) continue;
-          --budget;
-          const auto at = std::lower_bound(graph.place.begin(), graph.place.end(), place);
-          if (at != graph.place.end() && *at == place && bone[basin[at - graph.place.begin()]] >= 0) {
-            found[piece] = bone[basin[at - graph.place.begin()]];
-            searching = false;
-          }
-          next.push_back(w);
-        }
-      front = std::move(next);
-    }
-  }
+  for (auto& [piece, voxels] : lonely)
+    found[piece] = bone_of_lonely_piece(volume, tissue, std::move(voxels), pieces.distances(piece), bone_at, budget);
   for (std::int32_t p = 0; p < basins; ++p)
     if (bone[p] < 0) bone[p] = found[pieces.root(p)];
   return bone;
