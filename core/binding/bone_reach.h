@@ -15,12 +15,13 @@
 
 namespace limber {
 
-// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance beyond
-// `reach` is multiplied by `share`.
+// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance within
+// `reach` is multiplied by `within`, the part beyond it by `share`.
 struct BoneReach {
   float reach = std::numeric_limits<float>::infinity();  // mm
   float share = 1;
-  float operator()(float way) const { return way <= reach ? way : reach + share * (way - reach); }
+  float within = 1;
+  float operator()(float way) const { return way <= reach ? within * way : within * reach + share * (way - reach); }
 };
 
 // Returns the correction for each bone of the armature. The last bone of a chain counts as nearer than it is, and a

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/binding/cell_heat.h"
 #include "core/binding/cell_interpolation.h"
+#include "core/binding/chest_reach.h"
 #include "core/binding/cover_islands.h"
 #include "core/binding/flesh_graph.h"
 #include "core/binding/joint_heat.h"
@@ -154,7 +155,7 @@ void diffuse_in_cells(const HeatBody& body, const HeatDiffusion& settings, const
   const BrickWindow::Source source{body.volume, body.tissue, body.held_by, law.conductivity};
   HeatCells cells = make_heat_cells(source, law, shift);
   progress.update("weights", 0.1);
-  const std::vector<BoneReach> reaches = reaches_of_bones(body.armature);
+  const std::vector<BoneReach> reaches = reaches_in_body(body.volume.grid, body.tissue, body.armature, body.held_by);
   const std::vector<CellPath> paths = paths_to_cells(body.volume.grid, body.tissue, cells, reaches);
   progress.update("weights", 0.2);
   const double block_bytes = kBlockBytes * body.tissue.size();

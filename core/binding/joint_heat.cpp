@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
+#include "core/binding/chest_reach.h"
 
 namespace limber {
 
@@ -64,7 +65,7 @@ std::vector<std::vector<std::int32_t>> bricks_with_weight(const std::vector<std:
 // Returns the nearest bone of the voxels of some bricks, along the paths to their cells. Other voxels have no entries.
 NearestBone nearest_along_paths(const HeatBody& body, const std::vector<std::int32_t>& bricks,
                                 const SolvedCells& solved) {
-  const std::vector<BoneReach> reaches = reaches_of_bones(body.armature);
+  const std::vector<BoneReach> reaches = reaches_in_body(body.volume.grid, body.tissue, body.armature, body.held_by);
   const PathsToVoxels paths(body.volume.grid, solved.cells, solved.paths, body.armature, reaches);
   NearestBone nearest;
   nearest.bone.resize(body.tissue.size());

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/base/parallel.h"
-#include "core/binding/bone_reach.h"
+#include "core/binding/chest_reach.h"
 #include "core/binding/geodesic_front.h"
 
 namespace limber {
@@ -125,7 +125,8 @@ NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, 
 
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const ZeroedVector<std::uint16_t>& held_by) {
-  NearestBone nearest = spread_from_bones(volume, tissue, held_by, reaches_of_bones(armature));
+  NearestBone nearest =
+      spread_from_bones(volume, tissue, held_by, reaches_in_body(volume.grid, tissue, armature, held_by));
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   parallel_for(std::ssize(tissue.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Finds chests without ribs. Ribs hold the flesh of a chest together. Where a volume has no bone tissue for them (only
+// a spine, or only rods along the rig), the flanks lie nearer to the raised arm than to the spine, and would follow it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/zeroed_vector.h"
+#include "core/binding/bone_reach.h"
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+// Returns the correction for each bone, as reaches_of_bones() does. In addition, a bone of a chest without ribs counts
+// as nearer within the width that a rib cage would have. Needs a rig whose spine and upper arms are recognized by name.
+//   held_by  the bone that holds each tissue voxel, from fixed_bone()
+std::vector<BoneReach> reaches_in_body(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
+                                       const ZeroedVector<std::uint16_t>& held_by);
+
+}  // namespace limber
