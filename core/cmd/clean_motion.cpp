@@ -12,8 +12,8 @@
 #include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
 #include "core/motion/bvh.h"
+#include "core/motion/clean_motion.h"
 #include "core/motion/motion_edit.h"
-#include "core/motion/plants.h"
 #include "core/motion/pose_filter.h"
 #include "core/rig_io/rig_io.h"
 
@@ -119,19 +119,13 @@ void clean(const Options& options) {
     throw Error("no arm or leg of the rig is known by its name", options.rig, "name its bones as in \"LeftForearm\"");
   if (options.plant_feet && !has_legs)
     throw Error("no leg of the rig is known by its name", options.rig, "name its bones as in \"LeftThigh\"");
-  std::vector<Plant> plants;
-  const int ease = static_cast<int>(std::lround(std::min(options.ease * rate, double(smooth.size()))));
-  if (options.plant_feet) plants = plants_of_feet(rig, limbs, smooth, rate);
-  if (options.plant_feet && plants.empty())
-    warn("no foot was found to stand: none is low and slow for a tenth of a second");
   std::vector<Plant> holds;
-  for (const std::string& value : options.holds) {
-    holds.push_back(hold_of(value, limbs, rig, smooth));
-    plants = without_held(plants, holds.back(), ease);
-  }
-  plants.insert(plants.end(), holds.begin(), holds.end());
-  const std::vector<Pose> cleaned = planted(rig, limbs, smooth, plants, ease);
-  write_bvh(motion_of_poses(rig, static_cast<int>(cleaned.size()), rate, [&](int frame) { return cleaned[frame]; }),
+  for (const std::string& value : options.holds) holds.push_back(hold_of(value, limbs, rig, smooth));
+  const auto [cleaned, plants] = clean_motion(rig, limbs, smooth, rate, options.plant_feet, holds, options.ease);
+  if (options.plant_feet && plants.size() == holds.size())
+    warn("no foot was found to stand: none is low and slow for a tenth of a second");
+  const std::vector<Pose>& written = cleaned;
+  write_bvh(motion_of_poses(rig, static_cast<int>(written.size()), rate, [&](int frame) { return written[frame]; }),
             options.output);
   print_plants(plants, rig, limbs, recorded, cleaned);
   warn_of_short_limbs(plants, rig, limbs, cleaned);

@@ -36,6 +36,7 @@ std::vector<Operator> bone_table_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
+std::vector<Operator> motion_clean_operators();
 std::vector<Operator> motion_clip_operators();
 std::vector<Operator> resample_operators();
 std::vector<Operator> help_operators();
@@ -73,6 +74,7 @@ std::vector<Operator> gather_operators() {
                     rig_operators,
                     pose_operators,
                     motion_operators,
+                    motion_clean_operators,
                     motion_clip_operators,
                     resample_operators,
                     help_operators})

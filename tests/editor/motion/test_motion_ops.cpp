@@ -29,6 +29,22 @@ std::function<void(Stage&)> point_at(int frame) {
   };
 }
 
+// The same limb at frame 20, with names for its bones that tell what they are.
+std::function<void(Stage&)> stand_with_names(const std::string& upper, const std::string& fore) {
+  return [=](Stage& s) {
+    stand_at(20)(s);
+    Document document = s.document();
+    Armature rig = *document.armature;
+    rig.bones[0].name = upper, rig.bones[1].name = fore;
+    document.armature = std::make_shared<const Armature>(rig);
+    Clip clip = *document.clips[0];
+    clip.motion = std::make_shared<const Motion>(bending_motion(rig));
+    document.clips[0] = std::make_shared<const Clip>(clip);
+    s.editor().history.reset(std::move(document), "Open limb");
+    s.play("wait-idle");
+  };
+}
+
 std::function<void(Stage&)> with_keys(int frame, std::vector<int> at) {
   return [=](Stage& s) {
     point_at(0)(s);
@@ -295,6 +311,14 @@ std::vector<Proof> proofs_of_clips() {
                 shown_clip(s.editor())->motion->frame_count == 121;
        },
        Shows::Nothing, "", stand_at(20)},
+      {"motion.clean", "click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         return s.document().clips.size() == 2 && s.is("clip", "bending clean") && edit_is("Clean clip")(s, b);
+       },
+       Shows::Nothing, "", stand_at(20)},
+      {"motion.hold", "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) { return s.is("clip", "bending") && edit_is("Hold limb")(s, b); }, Shows::Nothing,
+       "", stand_with_names("LeftArm", "LeftForeArm")},
       {"motion.delete_clip", "click \"Motion/Clip/Delete clip\"",
        [](Stage& s, const Seen&) { return s.document().clips.empty() && s.is("edit", "Delete clip bending"); },
        Shows::Nothing, "", stand_at(20)},

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators that clean the shown clip: they filter out tremble, keep feet in place while they stand, and hold a hand or
+// foot at a place. The cleaned motion is recorded on the rig, with the clip's keys, for the frames that play.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/motion/clean_motion.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/pose_filter.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kOff = 3;                 // mm: a limb that stays further off its place does not reach it
+constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are cleaned at once
+
+enum class Becomes { NewClip, SameClip };
+
+// How the shown clip is cleaned. Frames of a hold are counted from the first frame that plays.
+struct Cleaning {
+  std::string label, made;  // the name of the edit, and what the new clip's name ends with
+  double smooth = 0;        // Hz; 0: not filtered
+  bool plants_feet = false;
+  std::optional<Plant> hold;
+  bool stays_where_it_is = false;  // the hold's place is where the limb is in the hold's first frame
+  double ease = 0.15;              // s
+  Becomes becomes = Becomes::NewClip;
+};
+
+FormField becomes_field(Becomes usual) {
+  return choice_of("Result", "Whether the cleaned motion becomes a clip of its own or replaces the shown clip.",
+                   {"New clip", "Same clip"}, static_cast<int>(usual));
+}
+FormField ease_field() {
+  return number_of("Ease", "Time over which a limb comes to its place and leaves it.", 0.15, 0, 10, "%.2f", "s");
+}
+
+std::string needs_clip_and_rig(const Editor& editor) {
+  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+
+std::string needs_limb(const Editor& editor) {
+  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
+  return planted_limbs(*editor.document().armature).empty()
+             ? "The rig needs arms or legs with known names, such as LeftForearm"
+             : "";
+}
+
+std::string frames_text(int first, int last) {
+  return "frames " + std::to_string(first) + " to " + std::to_string(last);
+}
+
+// Returns the clip that plays the cleaned poses as they are.
+Clip recorded_clip(const Document& document, const Clip& source, const std::vector<Pose>& poses, int start,
+                   const std::string& name) {
+  auto motion = std::make_shared<const Motion>(motion_of_poses(*document.armature, static_cast<int>(poses.size()),
+                                                               source.rate, [&](int frame) { return poses[frame]; }));
+  Clip clip = clip_for(document, std::move(motion), name, start);
+  clip.rate = source.rate;
+  clip.markers = source.markers;
+  return clip;
+}
+
+struct Result {
+  std::vector<Pose> poses;
+  std::string line, detail;  // what is told to the user
+  bool is_short = false;     // a limb does not reach its place
+};
+
+std::string mm_text(double mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, mm < 10 ? "%.1f mm" : "%.0f mm", mm);
+  return text;
+}
+
+void tell_of_plants(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& before,
+                    const CleanedMotion& cleaned, bool holds, Result& result) {
+  double slid = 0, slides = 0, off = 0;
+  for (const Plant& plant : cleaned.plants) {
+    slid = std::max(slid, error_of(plant, rig, limbs, before).slide);
+    const PlantError error = error_of(plant, rig, limbs, cleaned.poses);
+    slides = std::max(slides, error.slide);
+    off = std::max(off, error.from_place);
+  }
+  result.is_short = off > kOff;
+  if (holds) {
+    result.detail = "It is " + mm_text(off) + " off its place at most";
+  } else if (cleaned.plants.empty()) {
+    result.detail = "No foot was found to stand: none is low and slow for a tenth of a second";
+  } else {
+    result.detail = "Feet stand " + std::to_string(cleaned.plants.size()) + " times; there they slid by up to " +
+                    mm_text(slid) + ", and now by " + mm_text(slides);
+  }
+  if (result.is_short) result.detail += holds ? ": it does not reach" : "; a leg is too short for its place";
+}
+
+Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Progress& progress) {
+  const Armature& rig = *clip.armature();
+  const double rate = clip.clip()->rate;
+  std::vector<Pose> recorded;
+  for (int frame = first; frame <= last; ++frame) {
+    if (progress.cancelled()) throw Cancelled();
+    recorded.push_back(clip.at(frame));
+  }
+  const std::vector<Pose> smooth = cleaning.smooth > 0 ? smoothed(recorded, rate, cleaning.smooth) : recorded;
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  std::vector<Plant> holds;
+  if (cleaning.hold) {
+    Plant& hold = *cleaning.hold;
+    if (cleaning.stays_where_it_is) hold.place = place_of(limbs[hold.limb], hold.point, rig, smooth[hold.first]);
+    holds.push_back(hold);
+  }
+  Result result;
+  if (cleaning.plants_feet || cleaning.hold) {
+    CleanedMotion cleaned = clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease);
+    tell_of_plants(rig, limbs, recorded, cleaned, cleaning.hold.has_value(), result);
+    result.poses = std::move(cleaned.poses);
+  } else {
+    result.poses = smooth;
+  }
+  result.line = std::to_string(result.poses.size()) + " frames cleaned";
+  return result;
+}
+
+void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
+             const Result& result) {
+  settle_frame(editor);
+  Document next = editor.document();
+  const auto place = std::find(next.clips.begin(), next.clips.end(), source);
+  if (place == next.clips.end() || !next.armature)
+    throw Error("the clip was changed while it was cleaned", source->name, "clean it again");
+  const bool is_new = cleaning.becomes == Becomes::NewClip;
+  Clip clip = recorded_clip(next, *source, result.poses, first, is_new ? source->name + cleaning.made : source->name);
+  const int frame = std::clamp(next.frame, clip.range_start, clip.range_end);
+  if (is_new) {
+    add_clip(next, std::move(clip));
+  } else {
+    next.clip = static_cast<int>(place - next.clips.begin());
+    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
+  }
+  next.frame = frame;
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  commit(editor, cleaning.label, std::move(next));
+  if (result.is_short) editor.messages.warn(result.line, result.detail);
+  else editor.messages.ok(result.line, result.detail);
+}
+
+// Cleans the frames of the shown clip that play, in the background.
+void start_cleaning(Editor& editor, const Cleaning& cleaning) {
+  stop_playing(editor);
+  const auto [first, last] = playing_range(editor);
+  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  start_task(editor, cleaning.label,
+             [source, rig = editor.document().armature, cleaning, first, last](Progress& progress) -> Finish {
+               const ClipOnRig clip(source, rig);
+               if (!clip.problem().empty()) throw Error("the clip cannot be cleaned", source->name, clip.problem());
+               const auto result = std::make_shared<const Result>(clean(clip, first, last, cleaning, progress));
+               return [=](Editor& e) { take_in(e, source, first, cleaning, *result); };
+             });
+}
+
+bool has_legs(const std::vector<PlantedLimb>& limbs) {
+  return std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
+}
+
+// Throws Error if there is no clip any more, or if too many frames play.
+void require_frames(const Editor& editor) {
+  if (!shown_clip(editor) || !editor.document().armature)
+    throw Error("there is no clip any more", "clean", "open this again");
+  const auto [first, last] = playing_range(editor);
+  if (std::int64_t{last} - first >= kMostFrames)
+    throw Error("too many frames play", frames_text(first, last), "set a shorter range");
+}
+
+void ask_cleaning(Editor& editor) {
+  const bool feet = has_legs(planted_limbs(*editor.document().armature));
+  const double rate = shown_clip(editor)->rate, most = 0.39 * rate;
+  const auto cleaning_of = [](const std::vector<FormField>& fields) {
+    Cleaning cleaning{.label = "Clean clip", .made = " clean"};
+    cleaning.smooth = fields[0].value;
+    cleaning.plants_feet = fields[1].chosen == 1;
+    cleaning.ease = fields[2].value;
+    cleaning.becomes = static_cast<Becomes>(fields[3].chosen);
+    return cleaning;
+  };
+  editor.open_dialog(make_form(
+      {"Clean clip",
+       "Takes the tremble out of the frames that play, and keeps feet in place while they stand.",
+       "Clean",
+       {number_of("Smooth", "Filters out movement faster than this; 6 Hz suits walking. 0: no filter.",
+                  std::min(6.0, most), 0, most, "%.1f", "Hz"),
+        choice_of("Feet", "Whether feet that stand on the ground are kept in place.", {"As they are", "Planted"},
+                  feet ? 1 : 0),
+        ease_field(), becomes_field(Becomes::NewClip)},
+       [feet, cleaning_of](const Editor& e, const std::vector<FormField>& fields) {
+         require_frames(e);
+         const Cleaning cleaning = cleaning_of(fields);
+         if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set a filter, or plant the feet."};
+         if (cleaning.plants_feet && !feet)
+           throw Error("no leg of the rig is known by its name", "feet", "name its bones as in \"LeftThigh\"");
+         const auto [first, last] = playing_range(e);
+         const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
+         return "Cleans " + frames_text(first, last) + ". Keys of the clip become part of the motion." +
+                (cleaning.plants_feet && is_locked
+                     ? " The body stays in place here, so few feet stand: set Root motion to Free first."
+                     : "");
+       },
+       [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));
+}
+
+void ask_hold(Editor& editor) {
+  std::vector<std::string> names;
+  for (const PlantedLimb& limb : planted_limbs(*editor.document().armature)) names.push_back(limb.name);
+  const auto [low, high] = playing_range(editor);
+  const int frame = std::clamp(shown_frame(editor), low, high);
+  const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
+  editor.open_dialog(
+      make_form({"Hold a hand or foot",
+                 "Keeps the tip of a limb in place for some frames; elbow or knee bend so that it does.",
+                 "Hold",
+                 {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
+                  number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
+                  number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
+                  choice_of("Place",
+                            "Where it is held: where it is in the first of these frames, or at the cross-hair of the "
+                            "slices.",
+                            {"Where it is", "Cross-hair"}),
+                  ease_field(), becomes_field(Becomes::SameClip)},
+                 [names](const Editor& e, const std::vector<FormField>& fields) {
+                   require_frames(e);
+                   if (fields[2].value < fields[1].value) throw NotYet{"The last frame comes before the first one."};
+                   const int first = static_cast<int>(fields[1].value), last = static_cast<int>(fields[2].value);
+                   return "Holds the " + names[static_cast<std::size_t>(fields[0].chosen)] + " in " +
+                          frames_text(first, last) + ".";
+                 },
+                 [](Editor& e, const std::vector<FormField>& fields) {
+                   const int low = playing_range(e).low;
+                   Cleaning cleaning{.label = "Hold limb", .made = " held"};
+                   cleaning.hold = Plant{.limb = fields[0].chosen,
+                                         .first = static_cast<int>(std::lround(fields[1].value)) - low,
+                                         .last = static_cast<int>(std::lround(fields[2].value)) - low,
+                                         .place = e.views->cross_hair};
+                   cleaning.stays_where_it_is = fields[3].chosen == 0;
+                   cleaning.ease = fields[4].value;
+                   cleaning.becomes = static_cast<Becomes>(fields[5].chosen);
+                   start_cleaning(e, cleaning);
+                 }}));
+}
+
+}  // namespace
+
+std::vector<Operator> motion_clean_operators() {
+  return {
+      {"motion.clean", "Clean clip...", "", "Motion",
+       "Take the tremble out of the clip, and keep feet in place while they stand.", ask_cleaning, needs_clip_and_rig},
+      {"motion.hold", "Hold a hand or foot...", "", "Motion",
+       "Keep a hand or foot in place for some frames of the clip.", ask_hold, needs_limb},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Clips that are cleaned in the editor: what plays afterwards is what was computed, and undo gives back what was.
+#include <doctest/doctest.h>
+
+#include "core/motion/clean_motion.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/pose_filter.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
+#include "tests/editor/small_editor.h"
+#include "tests/support/sliding_walker.h"
+
+using namespace limber;
+using namespace limber::test;
+using namespace limber::editor;
+
+namespace {
+
+constexpr int kFrames = 120, kStart = 5;
+constexpr double kRate = 60;
+
+// The editor with a walker and a clip in which its feet slide. The clip begins at frame 5.
+struct WalkerEditor : SmallEditor {
+  WalkerEditor() : SmallEditor({1280, 720}, {}, false) {
+    Document document = small_body();
+    document.armature = std::make_shared<const Armature>(rig);
+    Clip clip = clip_for(
+        document,
+        std::make_shared<const Motion>(motion_of_poses(rig, kFrames, kRate, [&](int frame) { return poses[frame]; })),
+        "steps", kStart);
+    add_clip(document, std::move(clip));
+    editor->history.reset(std::move(document), "Open walker");
+    editor->name = "walker";
+    frame_all(*editor, false);
+    play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
+  }
+
+  // The poses of the shown clip, from its first frame.
+  std::vector<Pose> played() {
+    std::vector<Pose> all;
+    const ClipOnRig* clip = clip_on_rig(*editor);
+    REQUIRE(clip);
+    CHECK(clip->problem() == "");
+    for (int frame = 0; frame < kFrames; ++frame) all.push_back(clip->at(kStart + frame));
+    return all;
+  }
+  double largest_slide(const std::vector<Plant>& plants, const std::vector<Pose>& of) const {
+    double most = 0;
+    for (const Plant& plant : plants) most = std::max(most, error_of(plant, rig, limbs, of).slide);
+    return most;
+  }
+
+  const Armature rig = walker();
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  const std::vector<Pose> poses = sliding_steps(rig, kFrames, 0.02);
+};
+
+// Returns the largest distance of a limb's tip between two lists of poses, mm.
+double largest_distance(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& a,
+                        const std::vector<Pose>& b) {
+  double most = 0;
+  for (std::size_t f = 0; f < a.size(); ++f)
+    for (const PlantedLimb& limb : limbs)
+      most = std::max(
+          most, glm::distance(place_of(limb, PlantPoint::Tip, rig, a[f]), place_of(limb, PlantPoint::Tip, rig, b[f])));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("cleaning clips: feet stand, the new clip plays what was computed, and undo gives back the old one") {
+  WalkerEditor test;
+  const std::vector<Pose> before = test.played();
+  CHECK(largest_distance(test.rig, test.limbs, before, test.poses) < 0.01);
+  const auto wanted = clean_motion(test.rig, test.limbs, smoothed(before, kRate, 6), kRate, true, {}, 0.15);
+  REQUIRE(wanted.plants.size() >= 4);
+  CHECK(test.largest_slide(wanted.plants, before) > 10);
+
+  const Document old = test.editor->document();
+  test.play("click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
+  REQUIRE(test.editor->document().clips.size() == 2);
+  CHECK(test.fact("clip") == "steps clean");
+  CHECK(test.editor->document().frame == old.frame);
+  const std::vector<Pose> after = test.played();
+  CHECK(largest_distance(test.rig, test.limbs, after, wanted.poses) < 0.05);
+  CHECK(test.largest_slide(wanted.plants, after) < 2);
+
+  test.play("key Ctrl+Z\n wait-idle");
+  CHECK(test.editor->document().clips == old.clips);
+  CHECK(*test.editor->document().pose == *old.pose);
+  test.play("key Shift+Ctrl+Z\n wait-idle");
+  CHECK(largest_distance(test.rig, test.limbs, test.played(), after) == 0);
+}
+
+TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with the clip's keys kept in the motion") {
+  WalkerEditor test;
+  // A key that turns the head's chain: the spine.
+  go_to_frame(*test.editor, kStart + 60);
+  edit_clip(*test.editor, "Key", PoseThen::FromClip,
+            [&](Clip& clip) { clip.keys.bones["Spine"][kStart + 60] = glm::angleAxis(0.2, glm::dvec3(0, 0, 1)); });
+  const std::vector<Pose> before = test.played();
+  const PlantedLimb& right = test.limbs[3];
+  REQUIRE(right.name == "right hand");
+  const glm::dvec3 shoulder = test.rig.bones[right.upper].head,
+                   hand = place_of(right, PlantPoint::Tip, test.rig, before[60]);
+  test.editor->views->cross_hair = hand + 0.3 * (shoulder - hand) + glm::dvec3(0, -60, 0);
+  test.play(
+      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Cross-hair\"\n click \"Result/New "
+      "clip\"\n double-click \"To frame/value\"\n key Ctrl+A\n type 75\n key Tab\n wait-idle\n click Hold\n wait-job\n "
+      "wait-idle");
+  REQUIRE(test.editor->document().clips.size() == 2);
+  CHECK(test.fact("clip") == "steps held");
+  CHECK(shown_clip(*test.editor)->keys.empty());
+  const std::vector<Pose> after = test.played();
+  for (int f = 60; f <= 70; ++f)
+    CHECK(glm::distance(place_of(right, PlantPoint::Tip, test.rig, after[f]), test.editor->views->cross_hair) < 3);
+  // Long before and after, and in the other limbs, nothing has changed.
+  for (const int f : {0, 30, 100, kFrames - 1})
+    CHECK(glm::distance(place_of(right, PlantPoint::Tip, test.rig, after[f]),
+                        place_of(right, PlantPoint::Tip, test.rig, before[f])) < 0.05);
+  const PlantedLimb& left = test.limbs[2];
+  for (int f = 0; f < kFrames; ++f)
+    CHECK(glm::distance(place_of(left, PlantPoint::Tip, test.rig, after[f]),
+                        place_of(left, PlantPoint::Tip, test.rig, before[f])) < 0.05);
+}
+
+TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
+  WalkerEditor test;
+  const Document old = test.editor->document();
+  // No filter and feet as they are: there is nothing to do.
+  test.play(
+      "click \"Motion/Clip/Clean clip...\"\n wait-idle\n click \"Feet/As they are\"\n double-click "
+      "\"Smooth/value\"\n key Ctrl+A\n type 0\n key Tab\n wait-idle\n click Clean\n wait-idle");
+  CHECK(test.editor->dialog);
+  test.play("key Escape\n wait-idle");
+  CHECK(test.editor->document().clips == old.clips);
+
+  // A rig without known limbs has nothing to hold.
+  Document nameless = old;
+  Armature rig = *old.armature;
+  for (Bone& bone : rig.bones) bone.name = "b" + std::to_string(&bone - rig.bones.data());
+  nameless.armature = std::make_shared<const Armature>(rig);
+  test.editor->history.reset(std::move(nameless), "Open");
+  CHECK(find_operator(*test.editor, "motion.hold")->disabled_reason(*test.editor).find("known names") !=
+        std::string::npos);
+}
