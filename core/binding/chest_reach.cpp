@@ -111,15 +111,24 @@ std::vector<double> distances_of_tissue(const Grid& grid, const TissueVoxels& ti
 }
 }  // namespace
 
+bool widen_chest(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
+                 const ZeroedVector<std::uint16_t>& held_by, std::vector<BoneReach>& reaches) {
+  const Chest chest = chest_of(armature);
+  if (chest.bones.empty()) return false;
+  bool is_bare = false;
+  const std::vector<double> distances = distances_of_tissue(grid, tissue, armature, held_by, chest);
+  for (std::size_t k = 0; k < chest.bones.size(); ++k)
+    if (distances[k] < kHasRibs * chest.half_width) {
+      reaches[chest.bones[k]] = {static_cast<float>(chest.half_width), 1, kInCage};
+      is_bare = true;
+    }
+  return is_bare;
+}
+
 std::vector<BoneReach> reaches_in_body(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
                                        const ZeroedVector<std::uint16_t>& held_by) {
   std::vector<BoneReach> reaches = reaches_of_bones(armature);
-  const Chest chest = chest_of(armature);
-  if (chest.bones.empty()) return reaches;
-  const std::vector<double> distances = distances_of_tissue(grid, tissue, armature, held_by, chest);
-  for (std::size_t k = 0; k < chest.bones.size(); ++k)
-    if (distances[k] < kHasRibs * chest.half_width)
-      reaches[chest.bones[k]] = {static_cast<float>(chest.half_width), 1, kInCage};
+  widen_chest(grid, tissue, armature, held_by, reaches);
   return reaches;
 }
 

@@ -12,9 +12,14 @@
 
 namespace limber {
 
-// Returns the correction for each bone, as reaches_of_bones() does. In addition, a bone of a chest without ribs counts
-// as nearer within the width that a rib cage would have. Needs a rig whose spine and upper arms are recognized by name.
+// Makes the bones of a chest without ribs count as nearer, within the width that a rib cage would have. Needs a rig
+// whose spine and upper arms are recognized by name. Returns true if it has changed a correction.
 //   held_by  the bone that holds each tissue voxel, from fixed_bone()
+//   reaches  the correction for each bone
+bool widen_chest(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
+                 const ZeroedVector<std::uint16_t>& held_by, std::vector<BoneReach>& reaches);
+
+// Returns the corrections of reaches_of_bones(), with those of widen_chest().
 std::vector<BoneReach> reaches_in_body(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
                                        const ZeroedVector<std::uint16_t>& held_by);
 

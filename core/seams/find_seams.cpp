@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/parallel.h"
+#include "core/binding/chest_reach.h"
 #include "core/binding/flesh_graph.h"
 #include "core/binding/geodesic_front.h"
 #include "core/seams/cheapest_cut.h"
@@ -83,9 +84,18 @@ class SeamFinder {
     return !named_[label] || !limb_of_bone_[bone] || *named_[label] == *limb_of_bone_[bone];
   }
 
-  // Assigns every tissue voxel to the nearest bone, along paths through tissue. If the name of a tissue contains a limb
-  // ("Muscle, arms"), only bones of that limb count.
+  // Assigns every tissue voxel to the nearest bone, along paths through tissue. The flanks of a chest without ribs are
+  // nearest to the spine. If the name of a tissue contains a limb ("Muscle, arms"), only bones of that limb count.
   void spread_bones() {
+    std::vector<BoneReach> reaches(armature_.bones.size());
+    if (widen_chest(volume_.grid, tissue_, armature_, held_by_, reaches))
+      spread_bones([&](std::uint16_t bone, float way) { return reaches[bone](way); });
+    else spread_bones([](std::uint16_t, float way) { return way; });
+  }
+
+  //   corrected  a function (bone, length of a path) -> the length that is compared
+  template <class Corrected>
+  void spread_bones(const Corrected& corrected) {
     bone_.resize(tissue_.size());
     ZeroedVector<float> distance(tissue_.size());
     ZeroedVector<Label> label;  // label of each tissue voxel; empty when no label names a limb
@@ -102,10 +112,10 @@ class SeamFinder {
     front.spread(
         distance,
         [&](std::uint16_t bone, std::int64_t to, float way) {
-          return way < distance[to] && (label.empty() || may_hold(bone, label[to]));
+          return corrected(bone, way) < distance[to] && (label.empty() || may_hold(bone, label[to]));
         },
         [&](std::uint16_t bone, std::int64_t to, float way) {
-          distance[to] = way;
+          distance[to] = corrected(bone, way);
           bone_[to] = bone;
         });
   }

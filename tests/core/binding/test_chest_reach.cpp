@@ -8,6 +8,7 @@
 #include "core/binding/flesh_graph.h"
 #include "core/binding/heat_diffusion.h"
 #include "core/bones/bone_parts.h"
+#include "core/seams/find_seams.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;
@@ -20,10 +21,15 @@ constexpr double kVoxel = 8;  // mm
 double away(const Bone& bone, const glm::dvec3& at) { return distance_to_bone(bone, at); }
 
 enum class Ribs { None, Cage };
+enum class Arms { Apart, Beside };
 
-// A trunk of elliptic section, 300 x 200 mm, and two arms that hang away from it. Rods of bone lie along the rig; a
-// cage is a shell of bone within the chest. Lengths in mm, z upwards; the shoulders are at z = 560, the hips at z = 80.
-SmallBody trunk_with_arms(Ribs ribs) {
+// Half of the trunk's width, mm.
+double half_width(Arms arms) { return arms == Arms::Apart ? 150 : 190; }
+
+// A trunk of elliptic section, 300 or 380 mm x 200 mm, and two arms that hang away from it, or beside it so that they
+// touch it. Rods of bone lie along the rig; a cage is a shell of bone within the chest. Lengths in mm, z upwards; the
+// shoulders are at z = 560, the hips at z = 80.
+SmallBody trunk_with_arms(Ribs ribs, Arms arms = Arms::Apart) {
   SmallBody body;
   body.tissues = muscle_and_bone();
   Armature& rig = body.armature;
@@ -31,9 +37,11 @@ SmallBody trunk_with_arms(Ribs ribs) {
                bone_between("Chest", 1, {0, 0, 360}, {0, 0, 560}), bone_between("Neck", 2, {0, 0, 560}, {0, 0, 640})};
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "Left" : "Right";
-    rig.bones.push_back(bone_between((name + "Arm").c_str(), 2, {side * 180, 0, 560}, {side * 340, 0, 360}));
+    const glm::dvec3 hand = arms == Arms::Apart ? glm::dvec3(side * 340, 0, 360) : glm::dvec3(side * 260, 0, 280);
+    rig.bones.push_back(bone_between((name + "Arm").c_str(), 2, {side * (half_width(arms) + 30), 0, 560}, hand));
     rig.bones.push_back(bone_between((name + "UpLeg").c_str(), 0, {side * 90, 0, 80}, {side * 100, 0, -40}));
   }
+  const double half = half_width(arms);
   LabelVolume& volume = body.volume;
   volume.grid.size = {96, 32, 90};
   volume.grid.spacing = glm::dvec3(kVoxel);
@@ -44,7 +52,7 @@ SmallBody trunk_with_arms(Ribs ribs) {
     for (int y = 0; y < volume.grid.size.y; ++y)
       for (int x = 0; x < volume.grid.size.x; ++x) {
         const glm::dvec3 at = world * glm::dvec3(x, y, z);
-        const double section = std::hypot(at.x / 150, at.y / 100);
+        const double section = std::hypot(at.x / half, at.y / 100);
         bool is_flesh = section < 1 && at.z > -30 && at.z < 590, is_bone = false;
         for (const Bone& bone : rig.bones) {
           const bool is_arm = bone.name.ends_with("Arm");
@@ -132,4 +140,20 @@ TEST_CASE("chest: a rib cage in one piece that touches no other bone follows the
   });
   CHECK(of_cage > 1000);
   CHECK(astray == 0);
+}
+
+TEST_CASE("chest: no seam is cut through the flank of a body without ribs") {
+  const SmallBody body = trunk_with_arms(Ribs::None, Arms::Beside);
+  const TissueVoxels tissue(body.volume);
+  const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
+  const Seams seams = find_seams(body.volume, tissue, body.tissues, body.armature, parts, no_progress());
+  const AffineTransform world = world_from_voxel(body.volume.grid);
+  std::int64_t cut = 0;
+  tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
+    const glm::dvec3 at = world * glm::dvec3(v);
+    if (std::hypot(at.x / half_width(Arms::Beside), at.y / 100) > 0.8 || at.z < 200) return;
+    for (int direction = 0; direction < 6; ++direction) cut += seams.is_cut_towards(v, direction);
+  });
+  CHECK(cut == 0);
+  CHECK(seams.size() > 0);  // the arms are parted from the trunk beside it
 }
