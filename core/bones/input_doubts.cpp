@@ -20,6 +20,10 @@ namespace {
 // mirrored rig fits better if its share is larger by kFitsMuchBetter. A rig that fits has nine tenths of its length in
 // tissue; a hand's rig, which runs along thin fingers, has less.
 constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
+// A body that the volume's border cuts (a scan of the trunk) has a rig that reaches beyond the border. At least
+// kLeastPart of the rig's length must lie within the volume, kMostlyInside of this in tissue, and most bones that leave
+// the volume must leave it through tissue.
+constexpr double kLeastPart = 0.1, kMostlyInside = 0.7, kLeaveInTissue = 0.75;
 constexpr int kPoints = 32;  // points examined along each rig bone
 // Radius within which tissue counts as lying along a rig bone, as a share of the bone's length.
 constexpr double kShaftRadius = 0.1;
@@ -54,9 +58,50 @@ std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const Tis
   return "this looks like a grey image, not a label volume: " + *doubt + "; give the labels, and the image with --with";
 }
 
+// How the points along a rig's bones lie to a volume: mm of the rig's length, and the number of times that a bone
+// leaves the volume.
+struct PlaceOfRig {
+  double length = 0, in_volume = 0, in_tissue = 0;
+  int leaves = 0, leaves_in_tissue = 0;
+
+  double share() const { return length > 0 ? in_tissue / length : 1; }
+  bool is_cut_with_body() const {
+    return in_volume >= kLeastPart * length && in_tissue >= kMostlyInside * in_volume && leaves > 0 &&
+           leaves_in_tissue >= kLeaveInTissue * leaves;
+  }
+};
+
+PlaceOfRig place_of_rig(const LabelVolume& volume, const Armature& armature) {
+  const AffineTransform from_world = voxel_from_world(volume.grid);
+  PlaceOfRig place;
+  for (const Bone& bone : armature.bones) {
+    const double own = glm::distance(bone.head, bone.tail);
+    if (!(own > 0)) continue;
+    place.length += own;
+    bool was_in = false, was_in_tissue = false;
+    for (int k = 0; k < kPoints; ++k) {
+      const glm::dvec3 at =
+          glm::floor(from_world * glm::mix(bone.head, bone.tail, 0.1 + 0.8 * (k + 0.5) / kPoints) + 0.5);
+      const bool is_in = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) &&
+                         glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
+      const bool is_in_tissue = is_in && volume.at(glm::ivec3(at)) != 0;
+      if (is_in) place.in_volume += own / kPoints;
+      if (is_in_tissue) place.in_tissue += own / kPoints;
+      if (k > 0 && is_in != was_in) {
+        ++place.leaves;
+        place.leaves_in_tissue += is_in ? is_in_tissue : was_in_tissue;
+      }
+      was_in = is_in;
+      was_in_tissue = is_in_tissue;
+    }
+  }
+  return place;
+}
+
 std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Armature& armature) {
-  const double inside = share_in_tissue(volume, armature);
-  if (inside >= kMostlyOutside) return std::nullopt;
+  const PlaceOfRig place = place_of_rig(volume, armature);
+  const double inside = place.share();
+  if (inside >= kMostlyOutside || place.is_cut_with_body()) return std::nullopt;
   const Extent extent = extent_of(volume.grid);
   const glm::dvec3 twice_middle = extent.low + extent.high;
   const double turned =
@@ -278,21 +323,7 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
 }  // namespace
 
 double share_in_tissue(const LabelVolume& volume, const Armature& armature) {
-  const AffineTransform from_world = voxel_from_world(volume.grid);
-  double length = 0, inside = 0;
-  for (const Bone& bone : armature.bones) {
-    const double own = glm::distance(bone.head, bone.tail);
-    if (!(own > 0)) continue;
-    length += own;
-    for (int k = 0; k < kPoints; ++k) {
-      const glm::dvec3 at =
-          glm::floor(from_world * glm::mix(bone.head, bone.tail, 0.1 + 0.8 * (k + 0.5) / kPoints) + 0.5);
-      const bool in_grid = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) &&
-                           glm::all(glm::lessThan(at, glm::dvec3(volume.grid.size)));
-      if (in_grid && volume.at(glm::ivec3(at)) != 0) inside += own / kPoints;
-    }
-  }
-  return length > 0 ? inside / length : 1;
+  return place_of_rig(volume, armature).share();
 }
 
 std::vector<std::string> input_doubts(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature) {

@@ -75,6 +75,26 @@ TEST_CASE("input doubts: a rig beside the body, in RAS axes or mirrored is told 
   CHECK(doubts(mirrored, "mirror its x"));
 }
 
+TEST_CASE("input doubts: a rig that reaches beyond a scan which cuts its body raises none") {
+  // Only the upper quarter of the thighs is in the volume.
+  SmallBody cut = legs();
+  const LabelVolume whole = cut.volume;
+  cut.volume.grid.size.z = 20;
+  cut.volume.grid.origin.z += 62;
+  cut.volume.voxels.assign(cut.volume.grid.voxel_count(), 0);
+  for (int z = 0; z < 20; ++z)
+    for (int y = 0; y < 12; ++y)
+      for (int x = 0; x < 60; ++x) cut.volume.at({x, y, z}) = whole.at({x, y, z + 62});
+  CHECK(share_in_tissue(cut.volume, cut.armature) < 0.3);
+  CHECK_FALSE(doubts(cut, "outside the body"));
+  // The same rig beside the legs, or below them, is no such rig.
+  for (const glm::dvec3& shift : {glm::dvec3(15, 0, 0), glm::dvec3(0, 0, -60), glm::dvec3(0, 9, 0)}) {
+    SmallBody aside = cut;
+    for (Bone& bone : aside.armature.bones) bone.head += shift, bone.tail += shift;
+    CHECK(doubts(aside, "outside the body"));
+  }
+}
+
 TEST_CASE("input doubts: a rig whose left is the labels' right is told") {
   SmallBody body = legs();
   CHECK_FALSE(doubts(body, "swapped"));
