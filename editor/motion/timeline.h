@@ -27,6 +27,7 @@ namespace limber::editor {
 enum class AtEnd { Stop, Loop, PingPong };
 
 struct OnionOutlines;
+struct MotionPaths;
 
 struct Timeline {
   // The previewed frame that replaces the document's frame while the user scrubs or the clip plays.
@@ -50,6 +51,10 @@ struct Timeline {
     int count = 3, step = 10;
     std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
   } onion;
+  struct {  // the paths of the selected bones' tips
+    bool on = false;
+    std::shared_ptr<MotionPaths> kept;  // the computed points; null: none yet
+  } paths;
   bool seconds = false;       // whether the ruler counts seconds instead of frames
   std::set<int> chosen;       // frames of the selected keys
   std::map<int, int> moving;  // while keys are dragged: shown frame of each selected key, by its stored frame

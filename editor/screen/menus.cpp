@@ -181,7 +181,7 @@ std::vector<Menu> menus() {
         "> Markers", "motion.marker", "motion.rename_marker", "motion.delete_marker", "<",
         "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range",
         "motion.view_all", "motion.view_selected", "motion.show_seconds", "<",
-        "> Onion skin", "motion.onion_skin", "motion.onion_frames", "<",
+        "> Onion skin and paths", "motion.onion_skin", "motion.onion_frames", "-", "motion.paths", "<",
         "-",
         "> Export", "file.export_motion", "<"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console",

@@ -322,7 +322,7 @@ TEST_CASE("replay: while a number is typed its field shows digits alone, and no 
   test.play("key Ctrl+3\nwait-idle\nmove view.four\nwait 2");
   CHECK(test.editor->tip.widget == "Four views");  // tips come while nothing is typed,
   CHECK(test.fact("text:Four views") == "shown");
-  test.play("click \"Motion/Onion skin/Onion frames...\"\nwait-idle\nmove \"Ghosts per side/value\"\nwait 2");
+  test.play("click \"Motion/Onion skin and paths/Onion frames...\"\nwait-idle\nmove \"Ghosts per side/value\"\nwait 2");
   CHECK(test.editor->tip.widget.empty());  // but this dialog's first field has the keyboard
   const editor::Rect field = test.editor->widgets.find("Ghosts per side/value")->rect;
   const auto beside = [&] {

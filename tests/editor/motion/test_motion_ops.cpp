@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Through time: each operator of the timeline and of clips.
+#include "editor/motion/motion_path_overlay.h"
 #include "editor/pose/pose_edits.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/editor/small_clip.h"
@@ -152,10 +153,20 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.play_at_file_rate", "key Shift+Space", speed_is(1), Shows::Nothing, "key +", point_at(0)},
       {"motion.show_seconds", "key Shift+T", [](Stage& s, const Seen&) { return s.editor().timeline->seconds; },
        Shows::Nothing, "", point_at(0)},
+      {"motion.paths", "click \"Motion/Onion skin and paths/Motion paths\"",
+       [](Stage& s, const Seen&) { return s.editor().timeline->paths.on && motion_paths(s.editor()) != nullptr; },
+       Shows::Nothing, "",
+       [](Stage& s) {
+         stand_at(20)(s);
+         s.editor().timeline->paths.on = false;
+         s.editor().selection.bone = 1;
+         s.editor().selection.bones = {1};
+       }},
       {"motion.onion_skin", "key Shift+O", [](Stage& s, const Seen&) { return s.editor().timeline->onion.on; },
        Shows::Nothing, "", stand_at(20)},
       {"motion.onion_frames",
-       "click \"Motion/Onion skin/Onion frames...\"\n double-click \"Frames apart/value\"\n type \"4\"\n key Return\n "
+       "click \"Motion/Onion skin and paths/Onion frames...\"\n double-click \"Frames apart/value\"\n type \"4\"\n key "
+       "Return\n "
        "key Return",
        [](Stage& s, const Seen&) { return s.editor().timeline->onion.step == 4; }, Shows::Nothing, "", stand_at(20)},
       {"motion.zoom", "wheel lane 2", [](Stage& s, const Seen&) { return s.editor().timeline->window.count < 50; },

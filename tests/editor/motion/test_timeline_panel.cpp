@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/view_projection.h"
+#include "editor/motion/motion_path_overlay.h"
 #include "editor/motion/onion_skin_overlay.h"
 #include "editor/motion/timeline.h"
 #include "editor/motion/timeline_tool.h"
@@ -324,6 +325,34 @@ TEST_CASE("onion skin: the body's outline is drawn at the frames before and afte
   test.play("key Num3\n wait-idle");
   CHECK(onion.outlines->lines.size() == 2);
   test.play("key Shift+O\n wait-idle");
+}
+
+TEST_CASE("motion paths: the tip of a bending bone runs along an arc, drawn over the view, and follows the clip") {
+  LimbEditor test;
+  test.editor->history.reset(bending_limb(), "Open limb");
+  test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
+  CHECK(motion_paths(*test.editor) == nullptr);
+  test.editor->timeline->paths.on = true;
+  CHECK(motion_paths(*test.editor) == nullptr);  // no bone is selected
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.play("wait-idle");
+  const MotionPaths* paths = motion_paths(*test.editor);
+  REQUIRE(paths);
+  REQUIRE(paths->tips.size() == 61);
+  for (int frame = 0; frame < 61; ++frame) {
+    // The bone hangs 36 mm along -z from the joint at the origin, and turns about x by a degree a frame.
+    const double angle = glm::radians(double(frame));
+    CHECK(glm::distance(paths->tips[frame][0], glm::dvec3(0, 36 * std::sin(angle), -36 * std::cos(angle))) < 1e-3);
+  }
+  // A key changes the path.
+  go_to_frame(*test.editor, 60);
+  edit_clip(*test.editor, "Key", PoseThen::FromClip,
+            [](Clip& clip) { clip.keys.bones["Fore"][60] = glm::dquat(1, 0, 0, 0); });
+  test.play("wait-idle");
+  paths = motion_paths(*test.editor);
+  REQUIRE(paths);
+  CHECK(glm::distance(paths->tips[60][0], glm::dvec3(0, 0, -36)) < 1e-3);
 }
 
 }  // namespace limber::test

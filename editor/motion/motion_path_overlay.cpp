@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/motion_path_overlay.h"
+
+#include <chrono>
+
+#include "editor/context/view_projection.h"
+#include "editor/motion/timeline.h"
+#include "editor/ui/draw.h"
+
+namespace limber::editor {
+
+namespace {
+
+// Colours of the path before and after the shown frame, those of the onion skin's ghosts; in ABGR (in RGB: 4B8EF5,
+// 5AD19A). The keys' diamonds have the colour of the timeline's (in RGB: F5A623).
+constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
+constexpr int kMostFrames = 100'000;           // longer playing ranges have paths only for their first frames
+constexpr std::size_t kMostBones = 8;          // where more bones are selected, only the active one has a path
+constexpr float kRoom = 5;                     // least distance between two frames' dots, pixels at scale 1
+constexpr std::chrono::milliseconds kTime{8};  // time limit for new points in one drawn frame
+
+void add_points(const ClipOnRig& clip, MotionPaths& paths) {
+  const auto began = std::chrono::steady_clock::now();
+  while (paths.first + std::ssize(paths.tips) <= paths.last && std::chrono::steady_clock::now() - began < kTime) {
+    const auto posed = posed_from_rest(*paths.armature, clip.at(paths.first + static_cast<int>(paths.tips.size())));
+    std::vector<glm::dvec3>& tips = paths.tips.emplace_back();
+    for (const int bone : paths.bones) tips.push_back(posed[bone] * paths.armature->bones[bone].tail);
+  }
+}
+
+bool has_key(const Clip& clip, const std::string& bone, int frame) {
+  const auto keys = clip.keys.bones.find(bone);
+  return keys != clip.keys.bones.end() && keys->second.contains(frame);
+}
+
+void draw_diamond(ImDrawList& canvas, const glm::vec2& at, float half, Colour colour) {
+  canvas.AddQuadFilled(im(at - glm::vec2(half, 0)), im(at - glm::vec2(0, half)), im(at + glm::vec2(half, 0)),
+                       im(at + glm::vec2(0, half)), colour);
+}
+
+// Draws the path of one bone's tip.
+//   number  index of the bone in the paths' list
+void draw_path(Editor& editor, const ViewProjection& view, const MotionPaths& paths, std::size_t number) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  const float scale = editor.look.scale;
+  const int now = shown_frame(editor);
+  const std::string& name = paths.armature->bones[paths.bones[number]].name;
+  std::optional<glm::dvec2> before, dot;
+  for (std::size_t k = 0; k < paths.tips.size(); ++k) {
+    const int frame = paths.first + static_cast<int>(k);
+    const auto pixel = view.pixel_of(paths.tips[k][number]);
+    const Colour colour = frame <= now ? kPast : kComing;
+    if (pixel && before) canvas.AddLine(im(glm::vec2(*before)), im(glm::vec2(*pixel)), colour, 1.5f * scale);
+    if (pixel && (!dot || glm::distance(*dot, *pixel) >= kRoom * scale)) {
+      canvas.AddCircleFilled(im(glm::vec2(*pixel)), 2 * scale, colour);
+      dot = pixel;
+    }
+    before = pixel;
+  }
+  for (std::size_t k = 0; k < paths.tips.size(); ++k) {
+    const int frame = paths.first + static_cast<int>(k);
+    const auto pixel = view.pixel_of(paths.tips[k][number]);
+    if (!pixel) continue;
+    if (has_key(*paths.clip, name, frame)) draw_diamond(canvas, glm::vec2(*pixel), 5 * scale, kKey);
+    if (frame == now) canvas.AddCircle(im(glm::vec2(*pixel)), 5 * scale, editor.look.theme.text, 0, 1.5f * scale);
+  }
+}
+
+}  // namespace
+
+const MotionPaths* motion_paths(Editor& editor) {
+  const ClipOnRig* clip =
+      editor.timeline->paths.on && editor.workspace == Workspace::Pose ? clip_on_rig(editor) : nullptr;
+  std::vector<int> bones(editor.selection.bones.begin(), editor.selection.bones.end());
+  if (bones.size() > kMostBones) bones.assign(editor.selection.bone ? 1 : 0, editor.selection.bone.value_or(0));
+  if (!clip || bones.empty()) return nullptr;
+  auto& kept = editor.timeline->paths.kept;
+  const auto [low, high] = playing_range(editor);
+  const int last = std::min(high, low + kMostFrames - 1);
+  if (!kept || kept->clip != clip->clip() || kept->armature != clip->armature() || kept->bones != bones ||
+      kept->first != low || kept->last != last)
+    kept = std::make_shared<MotionPaths>(MotionPaths{clip->clip(), clip->armature(), bones, low, last, {}});
+  add_points(*clip, *kept);
+  if (kept->first + std::ssize(kept->tips) <= kept->last) editor.touch();
+  return kept.get();
+}
+
+void draw_motion_paths(Editor& editor) {
+  const MotionPaths* paths = motion_paths(editor);
+  const std::optional<ViewProjection> view = paths ? body_seen(editor) : std::nullopt;
+  if (!view) return;
+  for (std::size_t number = 0; number < paths->bones.size(); ++number) draw_path(editor, *view, *paths, number);
+}
+
+}  // namespace limber::editor
