@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Splits a label in two by a cut, like a knife: a strip of a plane, as wide as the line that the user drew across the
+// tissue and without end along the line of sight. Voxels of the label that share a face are joined unless the cut lies
+// between their centres. If the cut divides the pieces that it meets, those on one side become a new label; pieces that
+// it does not meet keep theirs. So a cut across one knee does not divide the other leg.
+#pragma once
+
+#include "core/label_edit/label_change.h"
+
+namespace limber {
+
+struct LabelCut {
+  glm::dvec3 from{0}, to{0};  // the line's ends, world, mm
+  glm::dvec3 sight{0, 0, 1};  // direction of the line of sight, world, unit length, not along the line
+};
+
+// Returns the change that gives the label `into` to the smaller side of the cut. Throws Error if the cut meets no voxel
+// of the label, or if the label is still connected around it.
+LabelChange split_label(const LabelVolume& volume, Label label, const LabelCut& cut, Label into);
+
+}  // namespace limber

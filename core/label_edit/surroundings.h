@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Decides which labels take the place of voxels that lose theirs: the labels around them. The voxels are filled from
+// their border inwards, layer by layer. In each layer a voxel gets the most frequent label of those of its 26
+// neighbours that kept their label or were filled in an earlier layer; air counts as a label. Ties go to the label with
+// more neighbours that share a face, then to the smaller label. So the result does not depend on the order of the
+// voxels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/label_edit/label_change.h"
+
+namespace limber {
+
+// What erased voxels become.
+enum class Erased {
+  Surroundings,  // the labels around them
+  Air,
+};
+
+// Returns the change that replaces the voxels, which all have the label `label`, by what surrounds them. Voxels of the
+// same label that stay do not count as surroundings. Voxels whose connected group touches no other label become air.
+//   voxels  indices in the volume, ascending
+LabelChange filled_from_around(const LabelVolume& volume, const std::vector<std::int64_t>& voxels, Label label);
+
+// Returns the change that erases the voxels, which all have the label `label`.
+LabelChange erased_voxels(const LabelVolume& volume, const std::vector<std::int64_t>& voxels, Label label,
+                          Erased erased);
+
+}  // namespace limber
