@@ -32,6 +32,8 @@ std::vector<Operator> test_pose_operators();
 std::vector<Operator> weight_problem_operators();
 std::vector<Operator> joint_repair_operators();
 std::vector<Operator> seam_operators();
+std::vector<Operator> label_edit_operators();
+std::vector<Operator> label_brush_operators();
 std::vector<Operator> bone_table_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
@@ -70,6 +72,8 @@ std::vector<Operator> gather_operators() {
                     weight_problem_operators,
                     joint_repair_operators,
                     seam_operators,
+                    label_edit_operators,
+                    label_brush_operators,
                     bone_table_operators,
                     rig_operators,
                     pose_operators,

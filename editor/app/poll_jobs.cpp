@@ -12,15 +12,29 @@ void tell_of_ended(Editor& editor, const JobStatus& job) {
   if (job.state == JobState::Cancelled) editor.messages.info(job.label, "cancelled");
 }
 
+// Deselects the tissues that the document does not have.
+void keep_present_tissues(Editor& editor) {
+  Selection& selection = editor.selection;
+  const auto tissues = editor.document().tissues;
+  std::erase_if(selection.tissues, [&](Label label) { return !tissues || !tissues->find(label); });
+  if (selection.tissue && (!tissues || !tissues->find(*selection.tissue))) selection.tissue.reset();
+}
+
 }  // namespace
 
 bool poll_jobs(Editor& editor) {
   const auto volume_before = editor.document().volume;
   const bool changed = editor.jobs.poll(editor.history);
   if (!changed) return false;
-  if (editor.document().volume != volume_before) {
-    editor.selection = {};
-    frame_all(editor, false);
+  const auto volume = editor.document().volume;
+  if (volume != volume_before) {
+    // An edit of labels changes a body in its place: what is looked at and selected stays.
+    if (volume && volume_before && volume->grid == volume_before->grid) {
+      keep_present_tissues(editor);
+    } else {
+      editor.selection = {};
+      frame_all(editor, false);
+    }
   }
   for (const JobStatus& job : editor.jobs.statuses()) {
     if (job.active()) continue;

@@ -98,7 +98,11 @@ std::vector<Menu> menus() {
         "-", "edit.rename", "-",
         "> Prepare volume", "prepare.regrid", "prepare.flip_x", "prepare.flip_y", "prepare.flip_z",
         "prepare.orient", "prepare.crop", "prepare.crop_to_clip_box", "prepare.pad", "prepare.merge",
-        "prepare.specks", "prepare.statistics", "-", "image.labels", "<",
+        "prepare.specks", "prepare.statistics", "-", "image.labels",
+        "> Labels", "labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink", "labels.split", "-",
+        "labels.brush", "labels.new_tissue", "labels.pick", "-",
+        "labels.over_all", "labels.over_air", "labels.over_tissue", "labels.over_underneath", "-",
+        "labels.erase_to_surroundings", "labels.erase_to_air", "-", "labels.flat", "labels.in_range", "<", "<",
         "> Rig", "rig.auto_fit", "rig.templates", "-", "rig.fit_joint_axis", "rig.joint_fit_before",
         "rig.joint_fit_after", "rig.take_joint_fit", "rig.leave_joint_fit", "-", "rig.next_leaving",
         "pose.apply_as_rest", "-", "rig.colour_bones", "rig.clear_bone_map", "<",
@@ -243,7 +247,11 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Tissue")
     return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-",
         "skin.assign_tissue", "-",
-        "edit.rename", "prepare.merge"}};
+        "edit.rename", "prepare.merge",
+        "> Labels", "labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink", "labels.split", "-",
+        "labels.new_tissue", "<"}};
+  if (name == "Edit labels") return {name, {"labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink",
+        "labels.split", "-", "labels.new_tissue", "labels.pick", "-", "prepare.merge", "prepare.specks"}};
   if (name == "Volume") return {name, {"view.reveal", "-", "prepare.regrid", "prepare.orient", "prepare.crop",
         "prepare.pad", "prepare.specks",
         "prepare.statistics", "-", "file.export_volume", "file.export_tissues"}};

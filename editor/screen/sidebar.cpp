@@ -7,6 +7,7 @@
 #include "editor/pose/pose_library.h"
 #include "editor/screen/steady.h"
 #include "editor/skin/joint_repair.h"
+#include "editor/skin/label_strokes.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
@@ -42,6 +43,7 @@ void draw_sidebar(Editor& editor) {
     Column column(editor, "sections", rect);
     column.space(shift);
     draw_steps(editor, column);
+    if (editor.workspace == Workspace::Skin) draw_label_brush_section(editor, column);
     if (editor.workspace == Workspace::Skin) draw_bones(editor, column);
     if (editor.workspace == Workspace::Resample) {
       draw_running(editor, column);

@@ -9,12 +9,14 @@
 #include "core/platform/local_time.h"
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
+#include "editor/labels/label_brush.h"
 #include "editor/pose/live_preview.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/fem_overlay.h"
 #include "editor/seams/seam_view.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/paint_region.h"
+#include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
 #include "editor/volume/tissue_edits.h"
@@ -63,6 +65,10 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},
                  {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},
                  {"motion.marker", "Marker"},       {"motion.play", "Play"}};
+  else if (view && editor.workspace == Workspace::Skin && editor.skin->painting->labels->on)
+    operators = {{"skin.paint", "Paint"},        {"skin.paint_subtract", "Erase"}, {"skin.radius", "Radius"},
+                 {"skin.sample", "Pick tissue"}, {"slice.step", "Slice"},          {"edit.undo", "Undo"},
+                 {"skin.brush_pie", "Brushes"}};
   else if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
     operators = {{"skin.paint", "Cut a seam"},
                  {"skin.paint_subtract", "Erase"},

@@ -3,9 +3,11 @@
 // the workspace, clipping, and the layout of the views.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/labels/label_brush.h"
 #include "editor/resample/resample_job.h"
 #include "editor/screen/menus.h"
 #include "editor/skin/brush_settings.h"
+#include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
@@ -189,11 +191,27 @@ class Header {
   std::vector<std::string> dropped_;
 };
 
+// Draws the settings of the label brush.
+void put_label_brush(Editor& editor, Header& header) {
+  header.menu("Edit labels", "Labels");
+  if (header.fits(140, {"skin.radius"}))
+    header.number("Radius", editor.skin->painting->radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm",
+                  80);
+  const auto kOver = {"labels.over_all", "labels.over_air", "labels.over_tissue", "labels.over_underneath"};
+  if (header.fits(150, kOver)) header.choice("Paint over", kOver);
+  const auto kErased = {"labels.erase_to_surroundings", "labels.erase_to_air"};
+  if (header.fits(190, kErased)) header.choice("Erase to", kErased);
+  if (header.fits(90, {"labels.flat"})) header.toggle("labels.flat");
+  if (editor.views->image && header.fits(160, {"labels.in_range"})) header.toggle("labels.in_range");
+  header.line();
+}
+
 // Draws the buttons for the display of the body and for the options of the workspace.
 void put_options(Editor& editor, Header& header) {
   header.layouts();
   header.to_left();
-  const bool paints = editor.workspace == Workspace::Skin && editor.document().weights;
+  const bool labels = editor.workspace == Workspace::Skin && editor.skin->painting->labels->on;
+  const bool paints = editor.workspace == Workspace::Skin && editor.document().weights && !labels;
   if (!paints) {
     if (editor.views->image) header.segments({"view.solid", "view.xray_display", "view.tissue", "view.image_display"});
     else header.segments({"view.solid", "view.xray_display", "view.tissue"});
@@ -212,11 +230,12 @@ void put_options(Editor& editor, Header& header) {
       header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
-  if (editor.workspace == Workspace::Skin && editor.document().armature && !paints) {
+  if (editor.workspace == Workspace::Skin && editor.document().armature && !paints && !labels) {
     header.action("skin.heat");
     if (header.fits(150, {"skin.compute"})) header.plain("skin.compute");
     header.line();
   }
+  if (labels) put_label_brush(editor, header);
   if (paints) {
     Painting& painting = *editor.skin->painting;
     header.menu("Edit weights", "Weights");

@@ -23,8 +23,8 @@ void draw_tool_strip(Editor& editor) {
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.reach",
              "-",           "pose.breakdown",  "-", "view.clip_box", "view.clip_plane", "measure.menu"};
   if (editor.workspace == Workspace::Skin)
-    tools = with_brushes({"*", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "skin.pick_bone", "-",
-                          "view.clip_box", "view.clip_plane", "measure.menu"});
+    tools = with_brushes({"*", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "labels.brush",
+                          "skin.pick_bone", "-", "view.clip_box", "view.clip_plane", "measure.menu"});
   if (editor.workspace == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.scale",  "-",
              "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane", "measure.menu"};

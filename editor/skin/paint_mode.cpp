@@ -11,6 +11,7 @@
 #include "editor/context/pointer_context.h"
 #include "editor/context/transform_settings.h"
 #include "editor/skin/brush_cursor.h"
+#include "editor/skin/label_strokes.h"
 #include "editor/skin/seam_brush.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
@@ -213,14 +214,19 @@ int dabs_of_stroke(const Editor& editor) {
 void follow_brush(Editor& editor) {
   Painting& painting = *editor.skin->painting;
   editor.skin->ring = 0;
-  if (!painting.running) {
+  LabelBrush& labels = *painting.labels;
+  if (editor.seams->brush) labels.on = false;  // the seam brush was selected after the label brush
+  if (!painting.running && !labels.running) {
     painting.place.reset();
     const ViewPlace* view = hovered_view(editor);
-    const bool works = editor.seams->brush ? why_not_cut(editor).empty() : why_not_paint(editor).empty();
+    const bool works = labels.on             ? why_not_paint_labels(editor).empty()
+                       : editor.seams->brush ? why_not_cut(editor).empty()
+                                             : why_not_paint(editor).empty();
     if (editor.workspace != Workspace::Skin || !view || (editor.drag && !editor.seams->running) || editor.dialog ||
         !works)
       return;
-    painting.place = brush_place(editor, *view, editor.input.pointer);
+    painting.place = labels.on ? label_brush_place(editor, *view, editor.input.pointer)
+                               : brush_place(editor, *view, editor.input.pointer);
   }
   if (!painting.place) return;
   for (const ViewPlace& view : editor.layout.view_places)
@@ -269,7 +275,8 @@ void draw_brush(Editor& editor, const ViewPlace& view) {
     painter.line(place.seen,
                  place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)),
                  with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
-  if (editor.transform_settings->x_mirror && !editor.views->scene.pose && !editor.seams->brush) {
+  if (editor.transform_settings->x_mirror && !editor.views->scene.pose && !editor.seams->brush &&
+      !painting.labels->on) {
     const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
     if (seen.shows(other)) ring(other, 0.5f);
   }

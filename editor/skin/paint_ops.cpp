@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "editor/skin/brush_tools.h"
+#include "editor/skin/label_strokes.h"
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/seam_brush.h"
 #include "editor/skin/weight_display.h"
@@ -17,7 +18,13 @@ namespace {
 
 constexpr double kGrowth = 1.15, kStep = 0.05;  // per key press: factor of the radius, change of strength
 
+bool paints_labels(const Editor& editor) { return editor.skin->painting->labels->on; }
+
 std::string needs_paint_below(const Editor& editor) {
+  if (paints_labels(editor)) {
+    const std::string why = why_not_paint_labels(editor);
+    return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
+  }
   if (editor.seams->brush) {
     const std::string why = why_not_cut(editor);
     return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
@@ -45,8 +52,14 @@ std::vector<Operator> brush_operators() {
   std::vector<Operator> all;
   for (const BrushRule& rule : brush_rules())
     all.push_back({operator_of(rule), rule.name, icon_of(rule.kind), "Brush", rule.description,
-                   [kind = rule.kind](Editor& e) { e.skin->painting->kind = kind, e.seams->brush = false; }, nullptr,
-                   [kind = rule.kind](const Editor& e) { return e.skin->painting->kind == kind && !e.seams->brush; }});
+                   [kind = rule.kind](Editor& e) {
+                     e.skin->painting->kind = kind;
+                     e.seams->brush = e.skin->painting->labels->on = false;
+                   },
+                   nullptr,
+                   [kind = rule.kind](const Editor& e) {
+                     return e.skin->painting->kind == kind && !e.seams->brush && !paints_labels(e);
+                   }});
   return all;
 }
 
@@ -124,12 +137,14 @@ std::vector<Operator> paint_operators() {
       {"skin.paint", "Paint", icon::kSkin, "Brush",
        "Paint the active bone's weight with the brush until the mouse button is released.",
        [](Editor& e) {
+         if (paints_labels(e)) return begin_label_stroke(e, false);
          e.seams->brush ? begin_seam_stroke(e, SeamStroke::Cut) : begin_stroke(e, e.skin->painting->kind);
        },
        needs_paint_below},
       {"skin.paint_subtract", "Paint less", "", "Brush",
        "Paint with the opposite effect: subtract weight, or add weight if the brush subtracts.",
        [](Editor& e) {
+         if (paints_labels(e)) return begin_label_stroke(e, true);
          e.seams->brush
              ? begin_seam_stroke(e, SeamStroke::Join)
              : begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract);
@@ -137,12 +152,14 @@ std::vector<Operator> paint_operators() {
        needs_paint_below},
       {"skin.paint_smooth", "Paint smooth", "", "Brush", "Smooth weights with the brush.",
        [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Join) : begin_stroke(e, BrushKind::Smooth); },
-       needs_paint_below},
+       [](const Editor& e) { return paints_labels(e) ? "The label brush does not smooth" : needs_paint_below(e); }},
       {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Open a menu of the brushes at the pointer.",
        [](Editor& e) { e.open_popup = "Brushes"; }},
       {"skin.radius", "Radius", "", "Brush", "Set the brush's radius by moving the pointer.",
        [](Editor& e) { begin_number(e, BrushNumber::Radius); },
-       [](const Editor& e) { return e.seams->brush ? why_not_cut(e) : why_not_paint(e); }},
+       [](const Editor& e) {
+         return paints_labels(e) ? why_not_paint_labels(e) : e.seams->brush ? why_not_cut(e) : why_not_paint(e);
+       }},
       {"skin.strength", "Strength", "", "Brush", "Set the brush's strength by moving the pointer.",
        [](Editor& e) { begin_number(e, BrushNumber::Strength); }, why_not_paint},
       {"skin.value", "Value", "", "Brush", "Set the brush's value by moving the pointer.",
@@ -155,8 +172,10 @@ std::vector<Operator> paint_operators() {
       {"skin.strength_up", "Stronger", "", "Brush", "Raise the brush's strength.",
        [](Editor& e) { add_strength(e, kStep); }},
       {"skin.sample", "Sample value", icon::kPick, "Brush",
-       "Set the brush's value to the active bone's weight under the pointer.", sample,
+       "Set the brush's value to the active bone's weight under the pointer. With the label brush, select the tissue.",
+       [](Editor& e) { paints_labels(e) ? run(e, "labels.pick") : sample(e); },
        [](const Editor& e) {
+         if (paints_labels(e)) return disabled_reason(e, *find_operator(e, "labels.pick"));
          return !why_not_paint(e).empty()        ? why_not_paint(e)
                 : e.views->hover.weights.empty() ? std::string("Put the pointer on the body")
                                                  : std::string();

@@ -5,9 +5,11 @@
 #include <span>
 #include <utility>
 
+#include "editor/labels/label_brush.h"
+
 namespace limber::editor {
 
-Painting::Painting() = default;
+Painting::Painting() : labels(std::make_unique<LabelBrush>()) {}
 Painting::~Painting() = default;
 
 std::string name_of(BrushKind kind) { return rule_of(kind).name; }

@@ -22,6 +22,7 @@ struct PaintedRegion {
 };
 
 struct FoundProblems;
+struct LabelBrush;
 struct RepairedJoint;
 
 // The tissues that a brush may change.
@@ -77,6 +78,8 @@ struct Painting {
   std::optional<int> edit_job;            // id of the running job of an edit; none: no edit runs
   PaintedRegion region;                   // the region that limits brushes and edits
   std::vector<std::int64_t> unmatched;    // indices of the tissue voxels for which Mirror weights found no match
+
+  std::unique_ptr<LabelBrush> labels;  // declared in editor/labels/label_brush.h; never null
 
   // The running stroke; null: no stroke is being painted.
   struct Running;

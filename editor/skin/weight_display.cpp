@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "editor/context/document_edits.h"
+#include "editor/labels/label_brush.h"
 #include "editor/skin/painted_region.h"
 #include "editor/skin/painting.h"
 #include "render/scene/weight_colormap.h"
@@ -177,6 +178,7 @@ void show_weights(Editor& editor) {
       scene.bones[static_cast<std::size_t>(*bone)].active = scene.bones[static_cast<std::size_t>(*bone)].selected =
           true;
   }
+  if (editor.skin->painting->labels->on) return show_label_stroke(*editor.views, *editor.skin->painting->labels);
   const auto weights = seen_weights(editor);
   editor.skin->shares.update(weights, [&host = editor.host] { host.wake(); });
   if (editor.skin->shares.busy()) editor.touch();
@@ -196,6 +198,7 @@ void show_weights(Editor& editor) {
 }
 
 bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume) {
+  if (editor.skin->painting->labels->paints(volume)) return true;
   return volume && (volume == editor.document().volume ||
                     (volume == editor.skin->region.volume && editor.skin->region.from == editor.document().volume));
 }

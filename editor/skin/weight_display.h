@@ -80,7 +80,8 @@ Colour swatch_of(Editor& editor, int bone);
 // bones as sticks with the active bone marked.
 void show_weights(Editor& editor);
 
-// Returns true if `volume` is the document's volume, or a copy of it without the hidden regions.
+// Returns true if `volume` is the document's volume, a copy of it without the hidden regions, or the volume that a
+// stroke of the label brush paints.
 bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume);
 
 // Returns the distance from the centre of a tissue voxel to the nearest face of an air voxel, mm.

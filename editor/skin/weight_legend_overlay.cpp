@@ -8,6 +8,8 @@
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
+#include "editor/labels/label_brush.h"
+#include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/volume/tissue_edits.h"
 #include "render/scene/weight_colormap.h"
@@ -141,7 +143,7 @@ void draw_weights_at_pointer(Editor& editor) {
   const Hover& hover = editor.views->hover;
   const InputState& input = editor.input;
   if (editor.workspace != Workspace::Skin || hover.weights.empty() || !hover.inside || editor.drag || editor.modal ||
-      input.down(MouseButton::Left))
+      editor.skin->painting->labels->on || input.down(MouseButton::Left))
     return;
   const ViewPlace* place = hovered_view(editor);
   if (!place || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId)) return;

@@ -91,13 +91,13 @@ void prove(Stage& stage, const std::vector<Proof>& proofs) {
 TEST_CASE("operators: each one that exists is proved to do what it says") {
   std::set<std::string> proved;
   for (const auto& proofs :
-       {proofs_of_views(),       proofs_of_navigation(), proofs_of_tissues(),    proofs_of_work(),
-        proofs_of_files(),       proofs_of_pages(),      proofs_of_posing(),     proofs_of_comparing(),
-        proofs_of_motion(),      proofs_of_clips(),      proofs_of_handling(),   proofs_of_rigging(),
-        proofs_of_rig_fitting(), proofs_of_skin(),       proofs_of_painting(),   proofs_of_weight_edits(),
-        proofs_of_regions(),     proofs_of_layers(),     proofs_of_test_poses(), proofs_of_weight_problems(),
-        proofs_of_seams(),       proofs_of_bone_table(), proofs_of_images(),     proofs_of_joint_repair(),
-        proofs_of_measuring()})
+       {proofs_of_views(),       proofs_of_navigation(),   proofs_of_tissues(),    proofs_of_work(),
+        proofs_of_files(),       proofs_of_pages(),        proofs_of_posing(),     proofs_of_comparing(),
+        proofs_of_motion(),      proofs_of_clips(),        proofs_of_handling(),   proofs_of_rigging(),
+        proofs_of_rig_fitting(), proofs_of_skin(),         proofs_of_painting(),   proofs_of_weight_edits(),
+        proofs_of_regions(),     proofs_of_layers(),       proofs_of_test_poses(), proofs_of_weight_problems(),
+        proofs_of_label_edits(), proofs_of_label_brush(),  proofs_of_seams(),      proofs_of_bone_table(),
+        proofs_of_images(),      proofs_of_joint_repair(), proofs_of_measuring()})
     for (const Proof& proof : proofs) {
       INFO(proof.id);
       CHECK(proved.insert(proof.id).second);

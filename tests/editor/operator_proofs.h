@@ -78,6 +78,8 @@ std::vector<Proof> proofs_of_test_poses();
 std::vector<Proof> proofs_of_weight_problems();
 std::vector<Proof> proofs_of_joint_repair();
 std::vector<Proof> proofs_of_seams();
+std::vector<Proof> proofs_of_label_edits();
+std::vector<Proof> proofs_of_label_brush();
 std::vector<Proof> proofs_of_bone_table();
 std::vector<Proof> proofs_of_images();
 std::vector<Proof> proofs_of_measuring();

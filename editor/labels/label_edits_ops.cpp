@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators that edit the labels of the selected tissue: fill its holes, grow and shrink it, remove its islands, split
+// it by a cut, and make a new tissue to paint with.
+#include "editor/labels/label_edits.h"
+
+#include <cmath>
+
+#include "core/label_edit/fill_holes.h"
+#include "core/label_edit/grow_shrink.h"
+#include "core/label_edit/islands.h"
+#include "editor/context/document_edits.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/labels/split_tool.h"
+#include "editor/ui/icons.h"
+#include "editor/viewport/numeric_input.h"
+#include "editor/volume/tissue_edits.h"
+#include "editor/volume/volume_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Fields = std::vector<FormField>;
+
+constexpr double kMm3PerMl = 1000;
+
+std::string counted(std::int64_t number, const std::string& one, const std::string& many) {
+  return grouped(number) + " " + (number == 1 ? one : many);
+}
+std::string voxels_of(const LabelChange& change) { return counted(change.voxel_count(), "voxel", "voxels"); }
+
+FormField erased_choice() {
+  return choice_of("Becomes", "What the voxels become: the tissue around them, or air.", {"Surroundings", "Air"});
+}
+Erased erased_of(const FormField& field) { return field.chosen == 1 ? Erased::Air : Erased::Surroundings; }
+
+// Opens a form for an edit of the selected tissue. The answer edits that tissue, even if another one is selected then.
+void ask(Editor& editor, const std::string& title, const std::string& description, const std::string& action,
+         Fields fields, std::function<FoundLabelEdit(const LabelVolume&, Label, const Fields&, Progress&)> find) {
+  const Tissue tissue = edited_tissue(editor);
+  const std::string name = title + " " + shown_name(tissue);
+  editor.open_dialog(make_form(
+      {name, description, action, std::move(fields), nullptr,
+       [name, label = tissue.label, find](Editor& e, const Fields& answers) {
+         start_label_edit(
+             e, {name, [label, find, answers](const LabelVolume& v, Progress& p) { return find(v, label, answers, p); },
+                 nullptr, std::nullopt});
+       }}));
+}
+
+void ask_holes(Editor& editor) {
+  ask(editor, "Fill holes of", "Give the tissue the voxels that it encloses.", "Fill",
+      {choice_of("Holes of", "Air: holes with other tissue in them stay, such as marrow in bone.",
+                 {"Air", "Any tissue"}),
+       number_of("Up to", "Larger holes stay. 0 = holes of any size.", 0, 0, 1e5, "%.3g", "ml")},
+      [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
+        FilledHoles found = fill_holes(
+            volume, label, {.largest_volume = fields[1].value * kMm3PerMl, .only_air = fields[0].chosen == 0});
+        const std::string left =
+            found.left ? ", " + counted(found.left, "hole stays", "holes stay") + ": too large, or not all air" : "";
+        const std::string note = found.filled == 0 ? "No hole was filled" + left
+                                                   : counted(found.filled, "hole", "holes") + " filled with " +
+                                                         voxels_of(found.change) + left;
+        return {std::move(found.change), note};
+      });
+}
+
+void ask_grow(Editor& editor) {
+  const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
+                                editor.document().volume->grid.spacing.z});
+  ask(editor, "Grow", "Extend the tissue by a distance in all directions.", "Grow",
+      {number_of("By", "The distance. One shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
+       choice_of("Over", "The voxels that the tissue may take: all, only air, or only other tissue.",
+                 {"All", "Air", "Tissue"})},
+      [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
+        EditMask mask;
+        if (fields[1].chosen > 0) {
+          mask.labels.assign(65536, fields[1].chosen == 2);
+          mask.labels[0] = fields[1].chosen == 1;
+        }
+        LabelChange change = grown_label(volume, label, fields[0].value, mask, progress);
+        const std::string note =
+            change.empty() ? "Nothing was in reach: enter a larger distance" : voxels_of(change) + " more";
+        return {std::move(change), note};
+      });
+}
+
+void ask_shrink(Editor& editor) {
+  const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
+                                editor.document().volume->grid.spacing.z});
+  ask(editor, "Shrink", "Take away the tissue's rim, as deep as a distance.", "Shrink",
+      {number_of("By", "The distance. One shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
+       erased_choice()},
+      [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
+        LabelChange change = shrunk_label(volume, label, fields[0].value, erased_of(fields[1]), progress);
+        const std::string note =
+            change.empty() ? "Nothing was in reach: enter a larger distance" : voxels_of(change) + " fewer";
+        return {std::move(change), note};
+      });
+}
+
+void ask_islands(Editor& editor) {
+  ask(editor, "Remove islands of", "Remove pieces of the tissue that are separate from its rest.", "Remove",
+      {number_of("Keep", "The number of largest pieces that stay. 0 = all that are large enough.", 1, 0, 10000, "%.0f",
+                 "pieces"),
+       number_of("At least", "Smaller pieces are removed in any case.", 0, 0, 1e5, "%.3g", "ml"), erased_choice()},
+      [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
+        RemovedIslands found = remove_islands(volume, label,
+                                              {.largest = static_cast<int>(std::lround(fields[0].value)),
+                                               .least_volume = fields[1].value * kMm3PerMl,
+                                               .erased = erased_of(fields[2])});
+        const std::string kept = counted(found.kept, "piece stays", "pieces stay");
+        const std::string note = found.removed == 0 ? "No island was removed: " + kept
+                                                    : counted(found.removed, "island", "islands") + " removed with " +
+                                                          voxels_of(found.change) + ", " + kept;
+        return {std::move(found.change), note};
+      });
+}
+
+void add_tissue(Editor& editor) {
+  const Document& now = editor.document();
+  const Tissue tissue = new_tissue_like(*now.tissues, nullptr);
+  Document next = now;
+  next.tissues = with_tissue(*now.tissues, tissue);
+  commit(editor, "New tissue", std::move(next));
+  select_tissue(editor, tissue.label, false);
+}
+
+std::string needs_table(const Editor& editor) {
+  return editor.document().volume && editor.document().tissues ? "" : "Open a volume first";
+}
+
+}  // namespace
+
+std::vector<Operator> label_edit_operators() {
+  return {
+      {"labels.new_tissue", "New tissue", icon::kAdd, "Labels",
+       "Add a tissue without voxels to the list and select it, to paint it with the label brush.", add_tissue,
+       needs_table},
+      {"labels.fill_holes", "Fill holes...", icon::kBrushSet, "Labels",
+       "Give the selected tissue the voxels that it encloses.", ask_holes, needs_edited_tissue},
+      {"labels.grow", "Grow...", icon::kExpand, "Labels", "Extend the selected tissue by a distance in mm.", ask_grow,
+       needs_edited_tissue},
+      {"labels.shrink", "Shrink...", icon::kRemove, "Labels",
+       "Take away the rim of the selected tissue, as deep as a distance in mm.", ask_shrink, needs_edited_tissue},
+      {"labels.islands", "Remove islands...", icon::kFilter, "Labels",
+       "Remove pieces of the selected tissue that are separate from its rest.", ask_islands, needs_edited_tissue},
+      {"labels.split", "Split by a cut", icon::kCut, "Labels",
+       "Draw a line across the selected tissue. The cut goes along the line of sight, and the smaller part becomes a "
+       "tissue of its own.",
+       [](Editor& e) {
+         e.modal = begin_split(e);
+         e.modal_wrap = {};
+       },
+       [](const Editor& e) {
+         const std::string why = needs_edited_tissue(e);
+         return why.empty() && e.views->scene.pose ? std::string("Show the body at rest first") : why;
+       }},
+  };
+}
+
+}  // namespace limber::editor
