@@ -121,6 +121,7 @@ struct BodyKey {
   glm::ivec2 size{0};
   bool places = false;            // true: the rest position of each pixel is needed, to look up its weights
   std::optional<ShownGrey> grey;  // only if the grey image is drawn instead of the body
+  int revision = 0;               // of the volume's labels (PassResources::relabel())
 
   bool operator==(const BodyKey&) const = default;
 };
@@ -474,7 +475,8 @@ View3D::~View3D() = default;
 
 void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, double now, int scale) {
   Impl& my = *impl_;
-  const BodyKey key = key_of(scene, camera, size, my.key.places || scene.weights.has_value());
+  BodyKey key = key_of(scene, camera, size, my.key.places || scene.weights.has_value());
+  key.revision = my.resources.revision_of(scene.volume);
   const bool moved = !my.drawn || key != my.key || (scale > 0 && (my.shown_scale != scale || my.sample > 0));
   const bool overlay_changed = !my.drawn || !same_overlay(scene, my.scene);
   const bool recoloured = my.drawn && scene.weights != my.scene.weights;

@@ -1,11 +1,49 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/labels/label_brush.h"
 
+#include <utility>
+
+#include "render/passes/pass_resources.h"
+
 namespace limber::editor {
 
-void show_label_stroke(Views& views, const LabelBrush& brush) {
-  if (brush.running && views.scene.volume == brush.running->stroke->before())
-    views.scene.volume = brush.running->stroke->volume();
+namespace {
+
+using Surface = render::PassResources::Surface;
+
+// The largest share of the grid's voxels that a change is uploaded for. A larger one takes as long as the whole volume.
+constexpr double kMostOfGrid = 0.25;
+
+}  // namespace
+
+void show_label_stroke(Views& views, LabelBrush& brush) {
+  if (!brush.running || views.scene.volume != brush.running->stroke->before()) return;
+  const LabelStroke& stroke = *brush.running->stroke;
+  render::PassResources& resources = views.renderer.resources();
+  resources.relabel(stroke.before(), stroke.volume(), {}, Surface::Waits);  // does nothing after the first frame
+  if (const limber::VoxelBox box = std::exchange(brush.running->unshown, {}); box.size.x > 0)
+    resources.relabel(stroke.volume(), stroke.volume(), box, Surface::Waits);
+  views.scene.volume = stroke.volume();
+}
+
+void show_painted(Views& views, const LabelStroke& stroke) {
+  views.renderer.resources().relabel(stroke.volume(), stroke.volume(), stroke.touched_box(), Surface::AtOnce);
+}
+
+void show_unpainted(Views& views, const LabelStroke& stroke) {
+  views.renderer.resources().relabel(stroke.volume(), stroke.before(), stroke.touched_box(), Surface::AtOnce);
+}
+
+void follow_label_edits(Views& views, LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {
+  const auto before = brush.last.lock();
+  brush.last = volume;
+  render::PassResources& resources = views.renderer.resources();
+  if (!before || !volume || before == volume || !(before->grid == volume->grid) || resources.has(volume) ||
+      !resources.has(before))
+    return;
+  const limber::VoxelBox box = bounds_of(label_difference(*before, *volume), volume->grid);
+  if (static_cast<double>(box.voxel_count()) < kMostOfGrid * static_cast<double>(volume->grid.voxel_count()))
+    resources.relabel(before, volume, box, Surface::AtOnce);
 }
 
 }  // namespace limber::editor

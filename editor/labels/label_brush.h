@@ -32,10 +32,13 @@ struct LabelBrush {
   struct Running {
     std::unique_ptr<LabelStroke> stroke;
     ViewPlace view;
-    glm::vec2 pixel{0};  // position of the pointer up to which the stroke has painted
-    std::string label;   // the name of the edit
+    glm::vec2 pixel{0};        // position of the pointer up to which the stroke has painted
+    std::string label;         // the name of the edit
+    limber::VoxelBox unshown;  // the box of voxels that changed since the views showed them last; size 0: none
   };
   std::shared_ptr<Running> running;  // null: no stroke is being painted
+
+  std::weak_ptr<const LabelVolume> last;  // the document's volume in the last frame
 
   // Returns whether a volume is the one that the running stroke paints.
   bool paints(const std::shared_ptr<const LabelVolume>& volume) const {
@@ -43,7 +46,13 @@ struct LabelBrush {
   }
 };
 
-// Shows the running stroke's labels in this frame's scene.
-void show_label_stroke(Views& views, const LabelBrush& brush);
+// Shows the running stroke's labels in this frame's scene. Only what changed is uploaded to the graphics card.
+void show_label_stroke(Views& views, LabelBrush& brush);
+// Lets the views show the stroke's volume (`painted`) as the document's from now on, or the volume before the stroke.
+void show_painted(Views& views, const LabelStroke& stroke);
+void show_unpainted(Views& views, const LabelStroke& stroke);
+// Call once in every frame with the document's volume. When an edit of labels is undone or redone, uploads only what
+// differs from the volume of the last frame.
+void follow_label_edits(Views& views, LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume);
 
 }  // namespace limber::editor

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "editor/context/pointer_context.h"
 #include "editor/context/view_projection.h"
@@ -45,25 +46,33 @@ void paint_labels_to(Editor& editor, const glm::vec2& pixel) {
   for (int step = 1; step <= steps; ++step) {
     painting.place =
         label_brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
-    if (painting.place) running.stroke->to(painting.place->rest);
-    else running.stroke->lift();
+    if (painting.place) {
+      running.stroke->to(painting.place->rest);
+      running.unshown = box_around(running.unshown, running.stroke->last_box());
+    } else {
+      running.stroke->lift();
+    }
   }
   running.pixel = pixel;
   editor.touch();
 }
 
 void drop_label_stroke(Editor& editor) {
-  editor.skin->painting->labels->running.reset();
+  const auto running = std::exchange(editor.skin->painting->labels->running, nullptr);
+  show_unpainted(*editor.views, *running->stroke);
   editor.touch();
 }
 
 void end_label_stroke(Editor& editor) {
   const auto running = editor.skin->painting->labels->running;
-  drop_label_stroke(editor);
-  if (editor.document().volume != running->stroke->before()) return;
   const LabelChange change = running->stroke->empty() ? LabelChange{} : running->stroke->change();
-  if (change.empty())
+  if (editor.document().volume != running->stroke->before()) return drop_label_stroke(editor);
+  if (change.empty()) {
+    drop_label_stroke(editor);
     return editor.messages.info(running->label, "No voxel changed: see what the brush may paint over");
+  }
+  editor.skin->painting->labels->running.reset();
+  show_painted(*editor.views, *running->stroke);
   commit_labels(editor, running->label, running->stroke->volume(), change);
 }
 

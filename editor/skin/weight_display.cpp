@@ -168,6 +168,7 @@ Colour swatch_of(Editor& editor, int bone) {
 
 void show_weights(Editor& editor) {
   render::Scene& scene = editor.views->scene;
+  follow_label_edits(*editor.views, *editor.skin->painting->labels, editor.document().volume);
   scene.weights.reset();
   if (editor.workspace != Workspace::Skin) return;
   const auto bone = skin_bone(editor);

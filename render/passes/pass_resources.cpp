@@ -60,6 +60,38 @@ bool PassResources::has(const std::shared_ptr<const LabelVolume>& volume) const 
   return std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return same(body->key, volume); });
 }
 
+void PassResources::relabel(const std::shared_ptr<const LabelVolume>& before,
+                            const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box, Surface surface) {
+  const auto found =
+      std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& body) { return same(body->key, before); });
+  if (found == bodies_.end() || (before != now && has(now))) return;
+  Body& body = **found;
+  std::vector<std::uint8_t> changed;
+  if (!body.volume->relabel(now, box, changed)) {
+    bodies_.erase(found);
+    return;
+  }
+  body.key = now;
+  for (Looks& known : looks_)
+    if (same(known.volume, before)) known.volume = now;
+  body.changed.resize(body.layers.size());
+  for (auto& slots : body.changed) {
+    slots.resize(changed.size(), 0);
+    for (std::size_t s = 0; s < changed.size(); ++s) slots[s] |= changed[s];
+  }
+  body.surface_waits = surface == Surface::Waits;
+  body.weights.reset();
+  body.pose.reset();
+  body.posed_hulls.clear();
+  ++body.revision;
+}
+
+int PassResources::revision_of(const std::shared_ptr<const LabelVolume>& volume) const {
+  for (const auto& body : bodies_)
+    if (same(body->key, volume)) return body->revision;
+  return 0;
+}
+
 bool PassResources::upload(PreparedBody& prepared) {
   if (has(prepared.original)) return true;
   if (!arriving_ || !same(arriving_->key, prepared.original)) {
@@ -107,8 +139,13 @@ const VisibleField& PassResources::layer(Body& body, const LooksTexture& looks, 
   if (body.layers.size() <= layer) body.layers.resize(layer + 1);
   auto& field = body.layers[layer];
   const LabelSet& set = looks.layers()[layer];
+  if (body.changed.size() <= layer) body.changed.resize(layer + 1);
+  std::vector<std::uint8_t>& changed = body.changed[layer];
+  const bool relabelled = !body.surface_waits && std::find(changed.begin(), changed.end(), 1) != changed.end();
   if (!field) field = std::make_unique<VisibleField>(*body.volume, set);
-  else if (field->set() != set) field->update(*body.volume, set);
+  else if (field->set() != set || relabelled) field->update(*body.volume, set, changed);
+  else return *field;
+  changed.clear();
   return *field;
 }
 

@@ -48,10 +48,24 @@ struct PassResources {
     std::unique_ptr<PosedTexture> pose;  // inverse map of the posed body that was drawn last
     std::vector<std::unique_ptr<PosedHull>> posed_hulls;
     std::unique_ptr<WeightTexture> weights;  // the weights that were shown last
+    // For each layer, the slots whose labels changed since its field was computed (SurfaceField::update()).
+    std::vector<std::vector<std::uint8_t>> changed;
+    bool surface_waits = false;  // true: fields stay as they are although labels changed
+    int revision = 0;            // increases whenever labels change
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   bool has(const std::shared_ptr<const LabelVolume>& volume) const;  // true if body() need not upload anything
-  std::size_t body_count() const { return bodies_.size(); }          // number of volumes on the graphics card
+  // Lets the textures of `before` show `now`, which differs from it only within a box (size 0: nowhere), by uploading
+  // what lies in or near the box. `before` and `now` may be one volume whose voxels were changed in place. Does nothing
+  // if `before` has no textures. Where the change does not fit the textures, they are dropped, and body() uploads
+  // `now`.
+  //   surface  Waits: labels change at once, but the surfaces in 3D only with the next call with AtOnce; they take much
+  //            longer to compute than the labels
+  enum class Surface { AtOnce, Waits };
+  void relabel(const std::shared_ptr<const LabelVolume>& before, const std::shared_ptr<const LabelVolume>& now,
+               const VoxelBox& box, Surface surface);
+  int revision_of(const std::shared_ptr<const LabelVolume>& volume) const;  // 0 for a volume without textures
+  std::size_t body_count() const { return bodies_.size(); }                 // number of volumes on the graphics card
   // Uploads a prepared body: as much as the frame's time limit allows. Returns true once body() has it. Later calls
   // must pass the same body until then. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);

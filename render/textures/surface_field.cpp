@@ -209,24 +209,27 @@ bool changes_any(const std::vector<Label>& labels, const LabelSet& before, const
 
 }  // namespace
 
-SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set) {
+SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set,
+                                          const std::vector<std::uint8_t>& changed) {
   const size_t slots = layout.block_of_slot.size();
   const glm::ivec3 bricks = layout.bricks();
   const auto brick_count = static_cast<size_t>(bricks.x) * bricks.y * bricks.z;
-  const bool first = set_.empty();
+  const bool first = distance_.empty();
+  const auto is_new = [&](size_t s) { return first || (s < changed.size() && changed[s]); };
   bricks_ = bricks;
   if (slots == 0) {  // an empty volume, such as that of a grey image
     set_ = set;
     return {};
   }
   if (first) {
-    labels_of_slot_.resize(slots);
-    slot_present_.assign(slots, 0);
     distance_.assign(brick_count, 1);
     in_hull_.assign(brick_count, 0);
     occupancy_.assign(brick_count, 0);
     met_.assign(brick_count * 8, 0);
   }
+
+  labels_of_slot_.resize(slots);
+  slot_present_.resize(slots, 0);
 
   // Computes the fields of the slots that depend on an added or removed label again.
   //   touched  for each brick: whether any of its voxels has a blurred value above 0
@@ -238,7 +241,8 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
     std::vector<std::uint8_t> along_x;
     std::vector<std::uint16_t> along_y;
     const glm::ivec3 block = layout.block_of_slot[s];
-    const int members = gather(drawn, block, set, member, first ? &labels_of_slot_[s] : nullptr);
+    if (is_new(s)) labels_of_slot_[s].clear();
+    const int members = gather(drawn, block, set, member, is_new(s) ? &labels_of_slot_[s] : nullptr);
     if (members == 0) fields[s].assign(kSlotTexels, 0);
     else if (members == kRead * kRead * kRead) fields[s].assign(kSlotTexels, 255);
     else blur(member, fields[s], along_x, along_y);
@@ -261,7 +265,7 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   };
   parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto s = static_cast<size_t>(begin); s < static_cast<size_t>(end); ++s)
-      if (first || changes_any(labels_of_slot_[s], set_, set)) compute(s, true);
+      if (is_new(s) || changes_any(labels_of_slot_[s], set_, set)) compute(s, true);
   });
 
   // A changed label can change distances in any slot. A slot in which a distance became shorter must be written again,

@@ -35,8 +35,10 @@ class SurfaceField {
 
   // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
   // label. Returns the slots that were computed.
-  //   drawn, layout  the same in every call
-  Texels update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set);
+  //   drawn, layout  the same in every call, except for the slots in `changed` and for slots added at the end
+  //   changed        one byte per slot, or fewer: not 0 for slots whose voxels may have other labels than before
+  Texels update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set,
+                const std::vector<std::uint8_t>& changed = {});
   const LabelSet& set() const { return set_; }
 
   // Returns the faces of the hull; their corners are counted in bricks.

@@ -43,9 +43,9 @@ VisibleField::VisibleField(const VolumeTexture& volume, const LabelSet& set)
   upload(volume, nullptr);
 }
 
-void VisibleField::update(const VolumeTexture& volume, const LabelSet& set) {
+void VisibleField::update(const VolumeTexture& volume, const LabelSet& set, const std::vector<std::uint8_t>& changed) {
   upload(volume, nullptr);
-  texels_ = field_.update(*volume.drawn(), volume.layout(), set);
+  texels_ = field_.update(*volume.drawn(), volume.layout(), set, changed);
   faces_ = field_.hull();
   occupancy_ = field_.occupancy();
   next_slot_ = 0;

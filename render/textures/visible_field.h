@@ -35,7 +35,8 @@ class VisibleField {
   bool complete() const { return next_slot_ < 0; }
 
   // Changes the set of labels. Computes and uploads only blocks that contain, or are near, an added or removed label.
-  void update(const VolumeTexture& volume, const LabelSet& set);
+  // The same for slots whose voxels have other labels than before (SurfaceField::update()).
+  void update(const VolumeTexture& volume, const LabelSet& set, const std::vector<std::uint8_t>& changed = {});
   const LabelSet& set() const { return field_.set(); }
   // Returns a 3D texture with one texel per brick: the share of the brick that belongs to the set, blurred.
   const gl::Texture& occupancy() const { return occupancy_texture_; }

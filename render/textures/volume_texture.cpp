@@ -18,6 +18,9 @@ constexpr int kBlockShift = 5;
 
 constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
+// How far a changed label may change what a slot stores or its surface depends on, voxels: the two bricks within which
+// tissue gives a block its slot. The slot's apron and the blur of the surface reach less far.
+constexpr int kNear = 2 * kBrick;
 
 // Collects the labels of a slot, including its apron. Voxels outside the grid are air.
 void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Label>& slot) {
@@ -30,6 +33,18 @@ void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Labe
       const Label* row = volume.voxels.data() + volume.grid.index({0, y, z});
       std::copy(row + from, row + to, slot.data() + ((z - low.z) * kSlot + (y - low.y)) * kSlot + (from - low.x));
     }
+}
+
+// Returns whether a block, or the kNear voxels around it, has tissue.
+bool has_tissue_near(const LabelVolume& volume, const glm::ivec3& block) {
+  const glm::ivec3 low = glm::max(block * kBlock - kPad - kNear, glm::ivec3(0)),
+                   high = glm::min((block + 1) * kBlock - kPad + kNear, volume.grid.size);
+  for (int z = low.z; z < high.z; ++z)
+    for (int y = low.y; y < high.y; ++y) {
+      const Label* row = volume.voxels.data() + volume.grid.index({0, y, z});
+      if (std::any_of(row + low.x, row + std::max(low.x, high.x), [](Label label) { return label != 0; })) return true;
+    }
+  return false;
 }
 
 // Estimates, for each tissue, the share of its voxels that have air beside them along x. Only every second voxel is
@@ -168,16 +183,52 @@ bool VolumeTexture::allocate_atlases() {
   return true;
 }
 
+void VolumeTexture::upload_slot(int slot, const LabelVolume& labels, std::vector<Label>& texels) const {
+  gather(labels, layout().block_of_slot[static_cast<size_t>(slot)], texels);
+  const glm::ivec3 at = layout().place_of(slot) * kSlot;
+  glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout().atlas_of(slot))].name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, texels.data());
+}
+
+bool VolumeTexture::relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box,
+                            std::vector<std::uint8_t>& changed) {
+  if (volume_.coarse || !complete() || !(now->grid == volume_.grid)) return false;
+  volume_.original = now;
+  BlockLayout& blocks = volume_.layout;
+  changed.assign(blocks.block_of_slot.size(), 0);
+  if (box.size.x == 0) return true;
+  const glm::ivec3 from = glm::max(box.lowest + kPad - kNear, glm::ivec3(0)) / kBlock,
+                   to = glm::min((box.lowest + box.size - 1 + kPad + kNear) / kBlock, blocks.blocks - 1);
+  bool grown = false;
+  std::vector<Label> texels;
+  for (int z = from.z; z <= to.z; ++z)
+    for (int y = from.y; y <= to.y; ++y)
+      for (int x = from.x; x <= to.x; ++x) {
+        int& slot = blocks.slot_of_block[static_cast<size_t>(blocks.block_index({x, y, z}))];
+        if (slot < 0) {
+          if (!has_tissue_near(*now, {x, y, z})) continue;
+          if (std::ssize(blocks.block_of_slot) == std::int64_t{blocks.slots_per_atlas()} * blocks.atlases) return false;
+          slot = static_cast<int>(blocks.block_of_slot.size());
+          blocks.block_of_slot.push_back({x, y, z});
+          changed.push_back(1);
+          grown = true;
+        }
+        changed[static_cast<size_t>(slot)] = 1;
+        upload_slot(slot, *now, texels);
+      }
+  if (grown && !upload_index(index_, blocks, std::vector<std::uint8_t>(blocks.block_of_slot.size(), 1))) return false;
+  gl::check_gl("the upload of changed labels");
+  return true;
+}
+
 void VolumeTexture::upload(UploadTime* time) {
   const std::shared_ptr<const LabelVolume> labels = drawn();
   if (complete() || !labels) return;
   std::vector<Label> slot;
   for (; next_slot_ < std::ssize(layout().block_of_slot); ++next_slot_) {
     if (time && time->is_over()) return;
-    gather(*labels, layout().block_of_slot[static_cast<size_t>(next_slot_)], slot);
-    const glm::ivec3 at = layout().place_of(next_slot_) * kSlot;
-    glBindTexture(GL_TEXTURE_3D, atlases_[static_cast<size_t>(layout().atlas_of(next_slot_))].name());
-    glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, slot.data());
+    upload_slot(next_slot_, *labels, slot);
     if (time) time->used = true;
   }
   next_slot_ = -1;

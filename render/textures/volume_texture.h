@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/volume/distance_transform.h"
 #include "core/volume/label_volume.h"
 #include "render/gl/object.h"
 #include "render/gl/program.h"
@@ -45,6 +46,12 @@ class VolumeTexture {
   void upload(UploadTime* time);
   bool complete() const { return next_slot_ < 0; }
 
+  // Takes over the volume `now`, which has the same grid and differs only within a box (size 0: nowhere), and uploads
+  // the slots in or near the box. Returns false if that is impossible: the volume is drawn at a coarser resolution, is
+  // not uploaded yet, or new tissue needs more slots than the atlases have.
+  //   changed  set to 1 for each slot in or near the box; it is as long as there are slots
+  bool relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box, std::vector<std::uint8_t>& changed);
+
   const std::weak_ptr<const LabelVolume>& original() const { return volume_.original; }
   std::shared_ptr<const LabelVolume> drawn() const { return volume_.drawn(); }
   const Grid& grid() const { return volume_.grid; }  // grid of the drawn volume: the original, or a coarser one
@@ -63,6 +70,7 @@ class VolumeTexture {
 
  private:
   bool allocate_atlases();
+  void upload_slot(int slot, const LabelVolume& labels, std::vector<Label>& texels) const;
 
   DrawnVolume volume_;
   std::vector<gl::Texture> atlases_;
