@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/project/packed_volumes.h"
 #include "core/resample/fem_steps.h"
 #include "core/skin/weight_layers.h"
 
@@ -125,7 +126,15 @@ class History::Ledger {
  public:
   void add(const Document& document) { visit(document, +1); }
   void remove(const Document& document) { visit(document, -1); }
-  std::int64_t bytes() const { return bytes_; }
+  std::int64_t bytes() const { return bytes_ + volumes.bytes(); }
+
+  PackedVolumes volumes;
+  // Replaces the volume of a document that is counted.
+  const PackedVolumes::SetVolume set_volume = [this](Document& document, std::shared_ptr<const LabelVolume> volume) {
+    remove(document);
+    document.volume = std::move(volume);
+    add(document);
+  };
 
  private:
   // Adds a use of a part (step 1) or removes a use (step -1). Returns true when the part's first use was added or its
@@ -205,9 +214,10 @@ History::~History() = default;
 
 bool History::commit(std::string label, Document next) {
   if (next == current()) return false;
-  for (; can_redo(); steps_.pop_back()) ledger_->remove(steps_.back().document);
+  drop_redo();
   ledger_->add(next);
   steps_.push_back({std::move(label), std::move(next), next_revision_++});
+  ledger_->volumes.resize(steps_, std::ssize(steps_), ledger_->set_volume);
   ++position_;
   keep_within_limit();
   return true;
@@ -215,7 +225,8 @@ bool History::commit(std::string label, Document next) {
 
 void History::amend(std::string label, Document next) {
   if (next == current()) return;
-  for (; can_redo(); steps_.pop_back()) ledger_->remove(steps_.back().document);
+  drop_redo();
+  if (next.volume != current().volume) ledger_->volumes.unlink(steps_, position_, ledger_->set_volume);
   ledger_->add(next);
   ledger_->remove(current());
   steps_.back() = {std::move(label), std::move(next), next_revision_++};
@@ -229,21 +240,38 @@ void History::reset(Document first, std::string label) {
   ledger_ = std::make_unique<Ledger>();
   ledger_->add(first);
   steps_.push_back({std::move(label), std::move(first), saved_});
+  ledger_->volumes.resize(steps_, 1, ledger_->set_volume);
 }
 
 bool History::undo() {
   if (!can_undo()) return false;
-  --position_;
+  go_to(position_ - 1);
   return true;
 }
 
 bool History::redo() {
   if (!can_redo()) return false;
-  ++position_;
+  go_to(position_ + 1);
   return true;
 }
 
-void History::jump(std::int64_t step) { position_ = std::clamp<std::int64_t>(step, 0, std::ssize(steps_) - 1); }
+void History::jump(std::int64_t step) { go_to(std::clamp<std::int64_t>(step, 0, std::ssize(steps_) - 1)); }
+
+void History::go_to(std::int64_t step) {
+  position_ = step;
+  ledger_->volumes.unpack(steps_, step, ledger_->set_volume);
+  pack_volumes();
+}
+
+void History::drop_redo() {
+  ledger_->volumes.resize(steps_, position_ + 1, ledger_->set_volume);
+  for (; can_redo(); steps_.pop_back()) ledger_->remove(steps_.back().document);
+}
+
+void History::pack_volumes() {
+  while (bytes() > limit_ && ledger_->volumes.pack(steps_, position_, ledger_->set_volume)) {
+  }
+}
 
 std::int64_t History::bytes() const { return ledger_->bytes(); }
 std::int64_t History::current_bytes() const { return bytes_of(current()); }
@@ -258,16 +286,20 @@ void History::set_limit(std::int64_t bytes) {
   keep_within_limit();
 }
 
-// Drops the oldest undo steps first. When no undo step is left, drops redo steps, the last one first.
+// Packs volumes, and if that is not enough, drops the oldest undo steps first. When no undo step is left, drops redo
+// steps, the last one first.
 void History::keep_within_limit() {
+  pack_volumes();
   if (bytes() <= limit_) return;
   const std::int64_t most = std::max(limit_, current_bytes() + limit_ / 2);
   std::int64_t front = 0;
   for (; bytes() > most && front < position_; ++front) ledger_->remove(steps_[front].document);
+  ledger_->volumes.erase_front(steps_, front, ledger_->set_volume);
   steps_.erase(steps_.begin(), steps_.begin() + front);
   position_ -= front;
   dropped_ += front;
   for (; bytes() > most && can_redo(); ++dropped_) {
+    ledger_->volumes.resize(steps_, std::ssize(steps_) - 1, ledger_->set_volume);
     ledger_->remove(steps_.back().document);
     steps_.pop_back();
   }

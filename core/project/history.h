@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Undo and redo: a list of documents, each with the label of the edit that made it. Documents share their parts, so a
 // step costs only what it changed. Memory is bounded: when the distinct parts of all steps (weights by brick, a volume
-// once) exceed the limit, the oldest steps are dropped, and note() says so. The current document counts too, but the
+// once) exceed the limit, label volumes of other steps are first packed to what edits changed (packed_volumes.h). If
+// that is not enough, the oldest steps are dropped, and note() says so. The current document counts too, but the
 // other steps may always use half of the limit, so that a large volume does not disable undo.
 //
 // Only one thread may use a History.
@@ -49,7 +50,8 @@ class History {
   bool redo();
   void jump(std::int64_t step);  // step in [0, #steps)
 
-  // The steps, oldest first; position() is the index of the current one.
+  // The steps, oldest first; position() is the index of the current one. Documents of other steps than the current one may
+  // be without their volume.
   const std::vector<Step>& steps() const { return steps_; }
   std::int64_t position() const { return position_; }
 
@@ -69,6 +71,9 @@ class History {
 
  private:
   class Ledger;
+  void go_to(std::int64_t step);
+  void drop_redo();
+  void pack_volumes();
   void keep_within_limit();
 
   std::vector<Step> steps_;

@@ -7,6 +7,7 @@
 #include "editor/measure/ruler_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
+#include "editor/skin/weight_display.h"
 
 namespace limber::editor {
 
@@ -103,7 +104,7 @@ void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
   const Rect free = beside_rulers(editor, rect);
   draw_view_title(editor, free, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
                   std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) +
-                      (rect.width() > editor.look.px(300) && (scene.volume != editor.document().volume || scene.pose)
+                      (rect.width() > editor.look.px(300) && (!is_of_document(editor, scene.volume) || scene.pose)
                            ? " \u00b7 posed"
                            : ""));
   draw_letters(editor, frame, free);

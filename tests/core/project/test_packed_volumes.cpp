@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An undo history of many edits of labels stays within its memory, and every step comes back bit for bit.
+#include "core/project/packed_volumes.h"
+
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "tests/support/documents.h"
+
+using namespace limber;
+using namespace limber::test;
+
+namespace {
+
+constexpr std::int64_t kMb = std::int64_t{1} << 20;
+
+// 2 MB of labels.
+LabelVolume block(unsigned seed, const glm::ivec3& size = glm::ivec3(128, 128, 64)) {
+  LabelVolume volume;
+  volume.grid.size = size;
+  volume.voxels.resize(static_cast<std::size_t>(volume.grid.voxel_count()));
+  std::mt19937 random(seed);
+  for (Label& label : volume.voxels) label = static_cast<Label>(random() % 5);
+  return volume;
+}
+
+// The document with other labels in a small box.
+Document painted(Document document, std::mt19937& random) {
+  auto volume = std::make_shared<LabelVolume>(*document.volume);
+  const glm::ivec3 low(random() % 100, random() % 100, random() % 50);
+  const auto label = static_cast<Label>(random() % 60);
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) volume->at(low + glm::ivec3(x, y, z)) = label;
+  document.volume = std::move(volume);
+  return document;
+}
+
+Document with_pose(Document document, double x) {
+  Pose pose;
+  pose.root_translation.x = x;
+  document.pose = std::make_shared<const Pose>(pose);
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("packed volumes: a hundred strokes fit in the memory of a few volumes, and each comes back bit for bit") {
+  std::mt19937 random(1);
+  Document now;
+  now.volume = std::make_shared<const LabelVolume>(block(1));
+  History history(now, "Open", 12 * kMb);
+  std::vector<LabelVolume> expected = {*now.volume};
+  for (int i = 0; i < 100; ++i) {
+    // Every third edit leaves the labels alone.
+    now = i % 3 == 2 ? with_pose(now, i) : painted(now, random);
+    CHECK(history.commit("edit", now));
+    expected.push_back(*now.volume);
+    CHECK(history.bytes() <= history.limit());
+  }
+  now = {};
+  CHECK(history.dropped() == 0);
+  const auto is_expected = [&] {
+    return history.current().volume->grid == expected[0].grid &&
+           history.current().volume->voxels == expected[static_cast<std::size_t>(history.position())].voxels;
+  };
+  int wrong = 0;
+  while (history.undo()) wrong += !is_expected();
+  CHECK(history.position() == 0);
+  while (history.redo()) wrong += !is_expected();
+  CHECK(history.position() == 100);
+  for (int i = 0; i < 60; ++i) {
+    history.jump(static_cast<std::int64_t>(random() % 101));
+    wrong += !is_expected();
+    CHECK(history.bytes() <= history.limit());
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("packed volumes: new edits after undo, amended steps and other grids between keep every step") {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    Document now;
+    now.volume = std::make_shared<const LabelVolume>(block(seed));
+    History history(now, "Open", 14 * kMb);
+    std::vector<std::pair<std::int64_t, LabelVolume>> expected = {{history.revision(), *now.volume}};
+    now = {};
+    int wrong = 0;
+    for (int i = 0; i < 120; ++i) {
+      const auto what = random() % 10;
+      if (what < 3) {
+        history.jump(static_cast<std::int64_t>(random() % history.steps().size()));
+      } else {
+        const bool amends = what == 3;
+        if (what == 4) {
+          Document next = history.current();
+          next.volume = std::make_shared<const LabelVolume>(
+              block(static_cast<unsigned>(random()),
+                    history.current().volume->grid.size.z == 64 ? glm::ivec3(128, 100, 70) : glm::ivec3(128, 128, 64)));
+          history.commit("other grid", next);
+        } else {
+          Document next = painted(history.current(), random);
+          amends ? history.amend("amended", next) : void(history.commit("stroke", next));
+        }
+        std::erase_if(expected, [&](const auto& known) {
+          return std::none_of(history.steps().begin(), history.steps().end(),
+                              [&](const auto& step) { return step.revision == known.first; });
+        });
+        expected.emplace_back(history.revision(), *history.current().volume);
+      }
+      for (const auto& [revision, volume] : expected)
+        if (revision == history.revision())
+          wrong +=
+              !(history.current().volume->grid == volume.grid && history.current().volume->voxels == volume.voxels);
+    }
+    for (std::int64_t step = 0; step < std::ssize(history.steps()); ++step) {
+      history.jump(step);
+      bool found = false;
+      for (const auto& [revision, volume] : expected)
+        if (revision == history.revision()) found = history.current().volume->voxels == volume.voxels;
+      wrong += !found;
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("packed volumes: a volume that something still holds comes back as the same object") {
+  std::mt19937 random(3);
+  Document first;
+  first.volume = std::make_shared<const LabelVolume>(block(9));
+  const auto held = first.volume;  // as a result holds what it was made from
+  History history(first, "Open", 6 * kMb);
+  Document now = first;
+  for (int i = 0; i < 20; ++i) history.commit("stroke", now = painted(now, random));
+  CHECK_FALSE(history.steps().front().document.volume);  // packed
+  history.jump(0);
+  CHECK(history.current().volume == held);
+}
+
+TEST_CASE("packed volumes: a change of most voxels is not packed, and small volumes are left alone") {
+  std::mt19937 random(4);
+  Document now;
+  now.volume = std::make_shared<const LabelVolume>(block(1));
+  History history(now, "Open", 5 * kMb);
+  for (unsigned i = 2; i < 8; ++i) {
+    now.volume = std::make_shared<const LabelVolume>(block(i));
+    history.commit("all new", now);
+  }
+  CHECK(history.dropped() > 0);
+  CHECK(history.bytes() <= history.limit() + 3 * kMb);
+  for (const History::Step& step : history.steps()) CHECK(step.document.volume);
+}
