@@ -14,9 +14,10 @@ VoxelBox box_around(const VoxelBox& a, const VoxelBox& b) {
   return {low, high - low};
 }
 
-LabelStroke::LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings)
+LabelStroke::LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings,
+                         std::shared_ptr<LabelVolume> copy)
     : before_(std::move(before)),
-      painted_(std::make_shared<LabelVolume>(*before_)),
+      painted_(copy ? std::move(copy) : std::make_shared<LabelVolume>(*before_)),
       shown_(painted_),
       settings_(std::move(settings)),
       mask_(settings_.mask, before_->grid) {

@@ -30,8 +30,12 @@ struct LabelStrokeSettings {
 
 class LabelStroke {
  public:
-  // Copies the volume, which must not be null. Throws std::logic_error for a radius that is not positive.
-  LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings);
+  // Paints on a copy of the volume, which must not be null. Throws std::logic_error for a radius that is not positive.
+  //   copy  a copy made earlier, because copying a body takes longer than a dab, and that nobody else changes; null:
+  //   the
+  //         volume is copied now
+  LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings,
+              std::shared_ptr<LabelVolume> copy = nullptr);
 
   // Moves the brush to `point` (world, mm). The first call after the start or after lift() paints one ball; each later
   // call paints the capsule from the previous point.

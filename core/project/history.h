@@ -50,8 +50,8 @@ class History {
   bool redo();
   void jump(std::int64_t step);  // step in [0, #steps)
 
-  // The steps, oldest first; position() is the index of the current one. Documents of other steps than the current one may
-  // be without their volume.
+  // The steps, oldest first; position() is the index of the current one. The documents of other steps may be without
+  // their volume.
   const std::vector<Step>& steps() const { return steps_; }
   std::int64_t position() const { return position_; }
 

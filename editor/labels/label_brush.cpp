@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/labels/label_brush.h"
 
+#include <chrono>
 #include <utility>
 
 #include "render/passes/pass_resources.h"
@@ -13,6 +14,21 @@ using Surface = render::PassResources::Surface;
 
 // The largest share of the grid's voxels that a change is uploaded for. A larger one takes as long as the whole volume.
 constexpr double kMostOfGrid = 0.25;
+// The largest volume of which a spare copy is kept, bytes. That of a larger one would take too much memory.
+constexpr std::size_t kMostSpare = std::size_t{512} << 20;
+
+void keep_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {
+  auto& spare = brush.spare;
+  const bool copying = spare.copy.valid() && spare.copy.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  if (copying || brush.running) return;
+  if (!brush.on || !volume || volume->voxels.size() * sizeof(Label) > kMostSpare) {
+    spare = {};
+    return;
+  }
+  if (spare.copy.valid() && spare.of.lock() == volume) return;
+  spare.of = volume;
+  spare.copy = std::async(std::launch::async, [volume] { return std::make_shared<LabelVolume>(*volume); });
+}
 
 }  // namespace
 
@@ -26,6 +42,11 @@ void show_label_stroke(Views& views, LabelBrush& brush) {
   views.scene.volume = stroke.volume();
 }
 
+std::shared_ptr<LabelVolume> take_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {
+  if (!brush.spare.copy.valid() || brush.spare.of.lock() != volume) return nullptr;
+  return brush.spare.copy.get();
+}
+
 void show_painted(Views& views, const LabelStroke& stroke) {
   views.renderer.resources().relabel(stroke.volume(), stroke.volume(), stroke.touched_box(), Surface::AtOnce);
 }
@@ -37,6 +58,7 @@ void show_unpainted(Views& views, const LabelStroke& stroke) {
 void follow_label_edits(Views& views, LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {
   const auto before = brush.last.lock();
   brush.last = volume;
+  keep_spare(brush, volume);
   render::PassResources& resources = views.renderer.resources();
   if (!before || !volume || before == volume || !(before->grid == volume->grid) || resources.has(volume) ||
       !resources.has(before))

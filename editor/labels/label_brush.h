@@ -3,6 +3,7 @@
 // part of the document. The brush's radius and place are those of the weight brushes (editor/skin/painting.h).
 #pragma once
 
+#include <future>
 #include <memory>
 #include <string>
 
@@ -40,6 +41,13 @@ struct LabelBrush {
 
   std::weak_ptr<const LabelVolume> last;  // the document's volume in the last frame
 
+  // A copy of the document's volume for the next stroke. It is made in another thread while the brush is on, so that a
+  // stroke on a large body begins at once.
+  struct {
+    std::weak_ptr<const LabelVolume> of;
+    std::future<std::shared_ptr<LabelVolume>> copy;
+  } spare;
+
   // Returns whether a volume is the one that the running stroke paints.
   bool paints(const std::shared_ptr<const LabelVolume>& volume) const {
     return running && volume == running->stroke->volume();
@@ -51,6 +59,8 @@ void show_label_stroke(Views& views, LabelBrush& brush);
 // Lets the views show the stroke's volume (`painted`) as the document's from now on, or the volume before the stroke.
 void show_painted(Views& views, const LabelStroke& stroke);
 void show_unpainted(Views& views, const LabelStroke& stroke);
+// Returns the copy of the volume for the next stroke; null if there is none.
+std::shared_ptr<LabelVolume> take_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume);
 // Call once in every frame with the document's volume. When an edit of labels is undone or redone, uploads only what
 // differs from the volume of the last frame.
 void follow_label_edits(Views& views, LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume);

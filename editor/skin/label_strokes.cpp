@@ -105,7 +105,8 @@ void begin_label_stroke(Editor& editor, bool erases) {
   if (brush.flat && view->id != ViewId::Body) settings.flat = place->normal;
   settings.mask = mask_of(editor, brush, *place, erases);
   auto running = std::make_shared<LabelBrush::Running>();
-  running->stroke = std::make_unique<LabelStroke>(editor.document().volume, std::move(settings));
+  running->stroke = std::make_unique<LabelStroke>(editor.document().volume, std::move(settings),
+                                                  take_spare(brush, editor.document().volume));
   running->view = *view;
   running->pixel = editor.input.pointer;
   running->label = (erases ? "Erase " : "Paint ") + shown_name(tissue);

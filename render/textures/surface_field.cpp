@@ -203,6 +203,19 @@ std::vector<std::uint8_t> outside_of(const std::vector<std::uint8_t>& hull, cons
   return outside;
 }
 
+// Returns whether a brick of the block has a shorter distance than before.
+bool any_nearer(const BlockLayout& layout, const glm::ivec3& block, const std::vector<std::uint8_t>& distance,
+                const std::vector<std::uint8_t>& before) {
+  const glm::ivec3 low = block * kBricksPerBlock;
+  for (int z = 0; z < kBricksPerBlock; ++z)
+    for (int y = 0; y < kBricksPerBlock; ++y)
+      for (int x = 0; x < kBricksPerBlock; ++x) {
+        const auto at = static_cast<size_t>(layout.brick_index(low + glm::ivec3(x, y, z)));
+        if (distance[at] < before[at]) return true;
+      }
+  return false;
+}
+
 bool changes_any(const std::vector<Label>& labels, const LabelSet& before, const LabelSet& after) {
   return std::any_of(labels.begin(), labels.end(), [&](Label label) { return before[label] != after[label]; });
 }
@@ -236,6 +249,8 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);
   for (size_t b = 0; b < brick_count; ++b) touched[b] = distance_[b] == 0;
+  const std::vector<std::uint8_t> touched_before = touched, hull_before = in_hull_, occupancy_before = occupancy_,
+                                  met_before = met_;
   const auto compute = [&](size_t s, bool facts) {
     Slot member;
     std::vector<std::uint8_t> along_x;
@@ -268,33 +283,28 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
       if (is_new(s) || changes_any(labels_of_slot_[s], set_, set)) compute(s, true);
   });
 
-  // A changed label can change distances in any slot. A slot in which a distance became shorter must be written again,
-  // since rays would skip too far. Where distances only became longer, the old ones remain valid.
-  std::vector<std::uint8_t> distance(brick_count);
-  for (size_t b = 0; b < brick_count; ++b) distance[b] = touched[b] ? 0 : kFarthest;
-  spread_distance(distance, bricks);
-  parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
-    for (auto s = static_cast<size_t>(begin); s < static_cast<size_t>(end); ++s) {
-      if (!fields[s].empty()) continue;
-      const glm::ivec3 low = layout.block_of_slot[s] * kBricksPerBlock;
-      bool nearer = false;
-      for (int z = 0; z < kBricksPerBlock; ++z)
-        for (int y = 0; y < kBricksPerBlock; ++y)
-          for (int x = 0; x < kBricksPerBlock; ++x) {
-            const auto at = static_cast<size_t>(layout.brick_index(low + glm::ivec3(x, y, z)));
-            nearer |= distance[at] < distance_[at];
-          }
-      if (nearer) compute(s, false);
-    }
-  });
-  distance_ = std::move(distance);
+  hull_changed_ = first || in_hull_ != hull_before;
+  occupancy_changed_ = first || occupancy_ != occupancy_before;
+  // Where no brick became empty or stopped being empty, all distances stay. Else a changed label can change distances
+  // in any slot. A slot in which a distance became shorter must be written again, since rays would skip too far. Where
+  // distances only became longer, the old ones remain valid.
+  if (first || touched != touched_before) {
+    std::vector<std::uint8_t> distance(brick_count);
+    for (size_t b = 0; b < brick_count; ++b) distance[b] = touched[b] ? 0 : kFarthest;
+    spread_distance(distance, bricks);
+    parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (auto s = static_cast<size_t>(begin); s < static_cast<size_t>(end); ++s)
+        if (fields[s].empty() && any_nearer(layout, layout.block_of_slot[s], distance, distance_)) compute(s, false);
+    });
+    distance_ = std::move(distance);
+  }
   set_ = set;
 
   parallel_for(static_cast<std::int64_t>(slots), 1, [&](std::int64_t begin, std::int64_t end) {
     for (auto s = static_cast<size_t>(begin); s < static_cast<size_t>(end); ++s)
       if (!fields[s].empty()) write_distances(fields[s], layout, layout.block_of_slot[s], distance_);
   });
-  find_upward();
+  if (first || met_ != met_before) find_upward();
   return fields;
 }
 

@@ -41,6 +41,11 @@ class SurfaceField {
                 const std::vector<std::uint8_t>& changed = {});
   const LabelSet& set() const { return set_; }
 
+  // Whether the last update changed the result of hull(), or that of occupancy(). Labels that are painted inside a body
+  // change neither.
+  bool hull_changed() const { return hull_changed_; }
+  bool occupancy_changed() const { return occupancy_changed_; }
+
   // Returns the faces of the hull; their corners are counted in bricks.
   Hull::Faces hull() const;
   // Returns for each brick the share of its voxels that belong to the set, blurred over the bricks around it. It tells
@@ -56,6 +61,7 @@ class SurfaceField {
   void find_upward();
 
   LabelSet set_;
+  bool hull_changed_ = true, occupancy_changed_ = true;
   // For each brick: the distance in bricks to the nearest brick that has part of the blurred set, at most 7.
   std::vector<std::uint8_t> distance_;
   std::vector<std::uint8_t> in_hull_, occupancy_;

@@ -46,8 +46,8 @@ VisibleField::VisibleField(const VolumeTexture& volume, const LabelSet& set)
 void VisibleField::update(const VolumeTexture& volume, const LabelSet& set, const std::vector<std::uint8_t>& changed) {
   upload(volume, nullptr);
   texels_ = field_.update(*volume.drawn(), volume.layout(), set, changed);
-  faces_ = field_.hull();
-  occupancy_ = field_.occupancy();
+  if (field_.hull_changed()) faces_ = field_.hull();
+  if (field_.occupancy_changed()) occupancy_ = field_.occupancy();
   next_slot_ = 0;
   upload(volume, nullptr);
 }
@@ -72,12 +72,12 @@ void VisibleField::upload(const VolumeTexture& volume, UploadTime* time) {
   next_slot_ = -1;
   texels_ = {};
   upload_index(index_, layout, field_.slot_present());
-  hull_.upload(std::exchange(faces_, {}), kBrick, glm::dvec3(0));
+  if (field_.hull_changed()) hull_.upload(std::exchange(faces_, {}), kBrick, glm::dvec3(0));
   const glm::ivec3& size = field_.bricks();
   const std::uint8_t nothing = 0;
   if (glm::any(glm::greaterThan(size, glm::ivec3(volume.largest_texture()))))
     allocate(occupancy_texture_, glm::ivec3(1), kField, &nothing);
-  else allocate(occupancy_texture_, size, kField, occupancy_.data());
+  else if (field_.occupancy_changed()) allocate(occupancy_texture_, size, kField, occupancy_.data());
   occupancy_ = {};
   ++revision_;
   gl::check_gl("the upload of a visible set");
