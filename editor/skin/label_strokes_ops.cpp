@@ -45,7 +45,7 @@ void pick_tissue(Editor& editor) {
 
 std::vector<Operator> label_brush_operators() {
   return {
-      {"labels.brush", "Label brush", icon::kRename, "Labels",
+      {"labels.brush", "Label brush", icon::kLabelBrush, "Labels",
        "Paint the selected tissue's labels, in slices and on the body. Hold Ctrl to erase them. Select any other brush "
        "to paint weights again.",
        toggle_brush,

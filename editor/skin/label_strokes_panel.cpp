@@ -57,7 +57,7 @@ void draw_choice(Editor& editor, Column& column, const char* name, const std::ve
 void draw_range(Editor& editor, Column& column, LabelBrush& brush) {
   if (!editor.views->image) return;
   const Rect rect = column.property("");
-  checkbox(editor, "In a range of values", rect, "In a range of values", brush.in_range);
+  checkbox(editor, "In a range", rect, "In a range", brush.in_range);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "labels.in_range"), rect);
   if (!brush.in_range) return;
   const GreyLevels& image = *editor.views->image->image;

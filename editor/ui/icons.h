@@ -33,7 +33,7 @@ inline constexpr char kSelect[] = "\uf245", kMove[] = "\uf047", kRotate[] = "\uf
 inline constexpr char kBrushAdd[] = "\uf067", kBrushSubtract[] = "\uf068", kBrushSet[] = "\uf192",
                       kBrushMultiply[] = "\uf069", kBrushSmooth[] = "\uf043", kBrushSharpen[] = "\uf0e7",
                       kBrushAverage[] = "\uf24e", kBrushSmear[] = "\uf25a", kBrushCapsule[] = "\uf1cd",
-                      kGradient[] = "\uf1fe", kRegion[] = "\uf096", kSeam[] = "\uf126";
+                      kGradient[] = "\uf1fe", kRegion[] = "\uf096", kSeam[] = "\uf126", kLabelBrush[] = "\uf02b";
 
 // Icons for comparing results
 inline constexpr char kWipe[] = "\uf07e", kDifference[] = "\uf248", kOverlap[] = "\uf247", kReport[] = "\uf080";

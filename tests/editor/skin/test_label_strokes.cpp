@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/skin/label_strokes.h"
 
+#include "core/project/project_io.h"
 #include "editor/context/view_projection.h"
 #include "editor/labels/label_edits.h"
 #include "editor/seams/seam_view.h"
@@ -242,6 +243,37 @@ TEST_CASE("label brush: a bare image is painted from nothing, with a new tissue"
   const Label label = test.editor->document().tissues->tissues.front().label;
   const auto& voxels = test.editor->document().volume->voxels;
   CHECK(std::count(voxels.begin(), voxels.end(), label) > 50);
+}
+
+TEST_CASE("label brush: what was painted is in the project's file, with the new tissue, and undo goes on from there") {
+  const TemporaryFolder folder;
+  LabelEditor test;
+  const double z = test.plane_of(ViewId::Axial);
+  run(*test.editor, "labels.new_tissue");
+  test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
+  const Label label = *test.editor->selection.tissue;
+  CHECK(std::count(test.volume().voxels.begin(), test.volume().voxels.end(), label) > 50);
+  const Path path = folder / "painted.limber";
+  DocumentWriter writer;
+  create_project({.document = test.editor->document()}, path, writer);
+  const Document read = read_project(path).document;
+  CHECK(read.volume->voxels == test.volume().voxels);
+  REQUIRE(read.tissues->find(label));
+  CHECK(read.tissues->find(label)->name == "New tissue");
+  test.play("key Ctrl+Z\nkey Ctrl+Z\nwait-idle");
+  CHECK(test.volume().voxels == test.before.volume->voxels);
+  CHECK_FALSE(test.editor->document().tissues->find(label));
+}
+
+TEST_CASE("label brush: a stroke on a volume whose copy is ready or not gives the same labels") {
+  LabelEditor test;
+  const double z = test.plane_of(ViewId::Axial);
+  test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
+  const LabelVolume first = test.volume();
+  test.play("key Ctrl+Z\nwait-idle");
+  brush_of(*test.editor).spare = {};  // no copy is ready
+  test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
+  CHECK(test.volume().voxels == first.voxels);
 }
 
 TEST_CASE("label brush: without a tissue it says what to do, and other brushes take over from it") {
