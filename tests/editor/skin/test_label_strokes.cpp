@@ -7,6 +7,7 @@
 #include "editor/seams/seam_view.h"
 #include "editor/skin/weight_display.h"
 #include "editor/volume/shown_image.h"
+#include "render/passes/pass_resources.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/editor/weighed_limb.h"
 
@@ -128,6 +129,8 @@ TEST_CASE("label brush: a stroke in a slice paints a capsule, and is one step th
   CHECK(painted > 200);
   const LabelVolume after = test.volume();
   test.play("key Ctrl+Z\nwait-idle");
+  // The textures were changed where the stroke was, and not uploaded anew.
+  CHECK(test.editor->views->renderer.resources().revision_of(test.editor->document().volume) > 1);
   CHECK(test.volume().voxels == test.before.volume->voxels);
   CHECK(test.editor->history.position() == position);
   test.play("key Ctrl+Shift+Z\nwait-idle");
