@@ -86,9 +86,10 @@ void start_preparation(Editor& editor, Preparation preparation) {
   const auto tissues = editor.document().tissues;
   const std::string label = preparation.label;
   auto note = std::make_shared<std::string>();
+  auto is_loss = std::make_shared<bool>(false);  // the note says what was removed
   const int id = editor.jobs.start(
       label,
-      [before, tissues, note, preparation, visibility = editor.document().visibility,
+      [before, tissues, note, is_loss, preparation, visibility = editor.document().visibility,
        make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
         progress.update("volume", 0);
         auto after = std::make_shared<const LabelVolume>(preparation.change(*before, progress));
@@ -99,19 +100,19 @@ void start_preparation(Editor& editor, Preparation preparation) {
         const bool same = !preparation.mirrors && same_tissue(*before, *after);
         const auto left = tissues ? present(*tissues, *after) : nullptr;
         make_ready({.volume = after, .tissues = tissues, .visibility = visibility}, progress);
-        return [before, after, same, left, tissues, note, mirrors = preparation.mirrors](const Document& now) {
+        return [before, after, same, left, tissues, note, is_loss, mirrors = preparation.mirrors](const Document& now) {
           if (now.volume != before) throw Error("the volume was changed meanwhile", "preparing", "start it again");
           Document next = with_volume(now, after, same, mirrors, *note);
           if (left && left->tissues.size() != tissues->tissues.size() && now.tissues == tissues) next.tissues = left;
+          *is_loss = !note->empty();
           if (note->empty()) *note = size_text(after->grid.size) + " voxels";
           return next;
         };
       });
   editor.step_of_job[id] = StepOfWork::Prepare;
-  editor.after_job[id] = [label, note](Editor& e, const JobStatus& job) {
+  editor.after_job[id] = [label, note, is_loss](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    const bool lost = note->ends_with("gone") || note->ends_with("as well");
-    lost ? e.messages.warn(label, *note) : e.messages.ok(label, *note);
+    *is_loss ? e.messages.warn(label, *note) : e.messages.ok(label, *note);
   };
   editor.touch();
 }

@@ -80,12 +80,14 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
   )--");
   CHECK(test.editor->document().weights == weights);
   CHECK_FALSE(test.editor->document().tissues->find(65));
+  CHECK(test.editor->messages.toasts.back().severity == Severity::Ok);
 
   run(*test.editor, "prepare.crop");
   test.play("wait-job");
   CHECK_FALSE(test.editor->document().weights);
   CHECK(test.editor->document().armature);
   CHECK(test.editor->messages.toasts.back().detail.find("weights") != std::string::npos);
+  CHECK(test.editor->messages.toasts.back().severity == Severity::Warning);
 
   while (test.editor->history.can_undo()) run(*test.editor, "edit.undo");
   run(*test.editor, "prepare.flip_y");
