@@ -15,13 +15,36 @@
 
 namespace limber {
 
-// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance within
-// `reach` is multiplied by `within`, the part beyond it by `share`.
+// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance beyond
+// `reach` is multiplied by `share`. In a body whose chest has no ribs (chest_reach.h), the bones of the arms count as
+// further away in this comparison, and the flesh that the chest wins is held as if ribs were near it.
 struct BoneReach {
+  // The part that a bone plays where a chest has no ribs.
+  enum class Cage : std::uint8_t { None, Chest, Arm };
+  // Where a rib cage would be, ribs would be nearer than the spine: distances count this much.
+  static constexpr float kInCage = 0.4f;
+  // The chest holds its flesh as if it were nearer by this factor.
+  static constexpr float kHeldInCage = 0.7f;
+
   float reach = std::numeric_limits<float>::infinity();  // mm
   float share = 1;
-  float within = 1;
-  float operator()(float way) const { return way <= reach ? within * way : within * reach + share * (way - reach); }
+  float cage_width = 0;  // half the width of the rib cage, mm
+  Cage cage = Cage::None;
+
+  // Returns the distance that is compared with other bones' distances.
+  //   way  length of the path from the bone, mm
+  float operator()(float way) const {
+    const float own = way <= reach ? way : reach + share * (way - reach);
+    if (cage != Cage::Arm) return own;
+    return own <= kInCage * cage_width ? own / kInCage : own + (1 - kInCage) * cage_width;
+  }
+  // Returns the distance that counts for the bone that has won the comparison, from the distance that was compared.
+  float held_from(float compared) const {
+    if (cage == Cage::None) return compared;
+    if (cage == Cage::Chest)
+      return compared <= cage_width ? kHeldInCage * compared : compared - (1 - kHeldInCage) * cage_width;
+    return compared <= cage_width ? kInCage * compared : compared - (1 - kInCage) * cage_width;
+  }
 };
 
 // Returns the correction for each bone of the armature. The last bone of a chain counts as nearer than it is, and a

@@ -194,6 +194,7 @@ PathsToVoxels::Nearest PathsToVoxels::nearest(const std::vector<CellPath>& liste
   for (const CellPath& path : listed)
     if (const float distance = reaches_[path.bone](path.to(glm::vec3(voxel), spacing_)); distance < nearest.distance)
       nearest = {path.bone, distance};
+  nearest.distance = reaches_[nearest.bone].held_from(nearest.distance);
   nearest.bone = hinges_.bone_at(glm::vec3(world_ * glm::dvec3(voxel)), nearest.bone, nearest.distance);
   return nearest;
 }

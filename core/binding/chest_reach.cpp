@@ -14,8 +14,6 @@ namespace limber {
 namespace {
 // Half the width of a rib cage, as a share of the distance between the trunk's axis and a shoulder joint.
 constexpr double kCageWidth = 0.75;
-// The distance within the cage's width is multiplied by this factor.
-constexpr float kInCage = 0.4f;
 // A bone has ribs if its tissue is at least this far from its axis in the mean (root mean square), as a share of half
 // the cage's width. Vertebrae alone reach about 0.2, ribs 0.6 and more.
 constexpr double kHasRibs = 0.4;
@@ -25,6 +23,7 @@ constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a paral
 
 using Roles = std::vector<std::optional<JointRole>>;
 
+// Returns the anatomical role of each bone. A bone whose name is not recognized gets its parent's role.
 Roles roles_of(const Armature& armature) {
   std::vector<std::string> names;
   std::vector<int> parents;
@@ -32,7 +31,28 @@ Roles roles_of(const Armature& armature) {
     names.push_back(bone.name);
     parents.push_back(bone.parent);
   }
-  return joint_roles(names, parents);
+  Roles roles = joint_roles(names, parents);
+  for (std::size_t b = 0; b < roles.size(); ++b)
+    if (!roles[b] && parents[b] >= 0) roles[b] = roles[parents[b]];
+  return roles;
+}
+
+bool is_of_arm(const std::optional<JointRole>& role) {
+  if (!role) return false;
+  switch (role->part) {
+    case BodyPart::Clavicle:
+    case BodyPart::UpperArm:
+    case BodyPart::Forearm:
+    case BodyPart::Hand:
+    case BodyPart::Palm:
+    case BodyPart::Fingers:
+    case BodyPart::Thumb:
+    case BodyPart::Index:
+    case BodyPart::Middle:
+    case BodyPart::Ring:
+    case BodyPart::Little: return true;
+    default: return false;
+  }
 }
 
 // Returns the mean head of the bones of a body part; nothing if there are none.
@@ -48,9 +68,10 @@ std::optional<glm::dvec3> middle_of(const Armature& armature, const Roles& roles
   return sum / double(count);
 }
 
-// The bones of the spine at the height of the ribs, and half the width that a rib cage would have, mm.
+// The bones of the spine at the height of the ribs, those of the arms, and half the width that a rib cage would have,
+// mm.
 struct Chest {
-  std::vector<std::uint16_t> bones;
+  std::vector<std::uint16_t> bones, arms;
   double half_width = 0;
 };
 
@@ -68,6 +89,7 @@ Chest chest_of(const Armature& armature) {
   for (std::size_t b = 0; b < roles.size(); ++b) {
     if (!roles[b]) continue;
     const Bone& bone = armature.bones[b];
+    if (is_of_arm(roles[b])) chest.arms.push_back(static_cast<std::uint16_t>(b));
     if (roles[b]->part == BodyPart::Spine &&
         glm::dot(0.5 * (bone.head + bone.tail) - *shoulders, down) < kCageEnd * glm::dot(down, down))
       chest.bones.push_back(static_cast<std::uint16_t>(b));
@@ -119,10 +141,13 @@ bool widen_chest(const Grid& grid, const TissueVoxels& tissue, const Armature& a
   const std::vector<double> distances = distances_of_tissue(grid, tissue, armature, held_by, chest);
   for (std::size_t k = 0; k < chest.bones.size(); ++k)
     if (distances[k] < kHasRibs * chest.half_width) {
-      reaches[chest.bones[k]] = {static_cast<float>(chest.half_width), 1, kInCage};
+      reaches[chest.bones[k]].cage = BoneReach::Cage::Chest;
       is_bare = true;
     }
-  return is_bare;
+  if (!is_bare) return false;
+  for (const std::uint16_t arm : chest.arms) reaches[arm].cage = BoneReach::Cage::Arm;
+  for (BoneReach& reach : reaches) reach.cage_width = static_cast<float>(chest.half_width);
+  return true;
 }
 
 std::vector<BoneReach> reaches_in_body(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,

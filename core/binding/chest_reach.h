@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds chests without ribs. Ribs hold the flesh of a chest together. Where a volume has no bone tissue for them (only
 // a spine, or only rods along the rig), the flanks lie nearer to the raised arm than to the spine, and would follow it.
+// There the bones of the arms count as further away, as much as ribs would be nearer than the spine. All other bones
+// share the flesh as ever.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +14,8 @@
 
 namespace limber {
 
-// Makes the bones of a chest without ribs count as nearer, within the width that a rib cage would have. Needs a rig
-// whose spine and upper arms are recognized by name. Returns true if it has changed a correction.
+// Corrects the reaches of the arms and of the chest in a body whose chest has no ribs. Needs a rig whose spine and
+// upper arms are recognized by name. Returns true if it has changed a correction.
 //   held_by  the bone that holds each tissue voxel, from fixed_bone()
 //   reaches  the correction for each bone
 bool widen_chest(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,

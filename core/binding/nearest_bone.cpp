@@ -125,15 +125,16 @@ NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, 
 
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const ZeroedVector<std::uint16_t>& held_by) {
-  NearestBone nearest =
-      spread_from_bones(volume, tissue, held_by, reaches_in_body(volume.grid, tissue, armature, held_by));
+  const std::vector<BoneReach> reaches = reaches_in_body(volume.grid, tissue, armature, held_by);
+  NearestBone nearest = spread_from_bones(volume, tissue, held_by, reaches);
   const Hinges hinges(armature);
   const AffineTransform from_voxel = world_from_voxel(volume.grid);
   parallel_for(std::ssize(tissue.bricks()), kGrain, [&](std::int64_t begin, std::int64_t end) {
     tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
-      if (held_by[place] == kSoft && nearest.bone[place] != kSoft)
-        nearest.bone[place] =
-            hinges.bone_at(glm::vec3(from_voxel * glm::dvec3(v)), nearest.bone[place], nearest.distance[place]);
+      if (held_by[place] != kSoft || nearest.bone[place] == kSoft) return;
+      nearest.distance[place] = reaches[nearest.bone[place]].held_from(nearest.distance[place]);
+      nearest.bone[place] =
+          hinges.bone_at(glm::vec3(from_voxel * glm::dvec3(v)), nearest.bone[place], nearest.distance[place]);
     });
   });
   return nearest;

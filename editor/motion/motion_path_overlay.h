@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Motion paths: draws the line along which the tip of each selected bone moves through the playing range, over the 3D
 // view. Frames before and after the shown frame have different colours. Dots mark the frames where there is room for
-// them, diamonds the keys. Where many bones are selected, only the active one has a path. Points are computed a few at a
-// time, so that a long clip does not stop the editor.
+// them, diamonds the keys. Where many bones are selected, only the active one has a path. Points are computed a few at
+// a time, so that a long clip does not stop the editor.
 #pragma once
 
 #include <memory>

@@ -90,20 +90,27 @@ double weight_of_arm(const SmallBody& body, const glm::dvec3& at) {
 }
 }  // namespace
 
-TEST_CASE("chest: only the bones of a chest without ribs count as nearer") {
+TEST_CASE("chest: without ribs the arms count as further away, and the chest holds what it wins more firmly") {
   const SmallBody bare = trunk_with_arms(Ribs::None);
   REQUIRE(bare.armature.bones[4].name == "LeftArm");
   const std::vector<BoneReach> usual = reaches_of_bones(bare.armature), found = reaches_in(bare);
   for (std::size_t b = 0; b < found.size(); ++b) {
     CAPTURE(bare.armature.bones[b].name);
     // The spine's middle lies 58 % of the way down from the shoulders, just within the height of the ribs.
-    const bool is_chest = b == 1 || b == 2;
-    CHECK((found[b](100) < usual[b](100)) == is_chest);
-    // Beyond the width of a rib cage every millimetre counts.
-    CHECK(found[b](300) - found[b](200) == doctest::Approx(usual[b](300) - usual[b](200)));
+    const bool is_chest = b == 1 || b == 2, is_arm = bare.armature.bones[b].name.ends_with("Arm");
+    for (const float way : {5.0f, 40.0f, 100.0f, 200.0f, 400.0f}) {
+      CHECK((found[b](way) > usual[b](way)) == is_arm);
+      if (!is_arm) CHECK(found[b](way) == usual[b](way));
+      // What holds the arm's own flesh does not change.
+      const float held = found[b].held_from(found[b](way));
+      if (is_chest) CHECK(held < usual[b](way));
+      else CHECK(held == doctest::Approx(usual[b](way)));
+    }
+    CHECK(found[b](80) < found[b](81));
+    CHECK(found[b](300) < found[b](301));
   }
   const std::vector<BoneReach> with_ribs = reaches_in(trunk_with_arms(Ribs::Cage));
-  CHECK(with_ribs[2](100) == usual[2](100));
+  CHECK(with_ribs[2].held_from(with_ribs[2](100)) == usual[2](100));
 }
 
 TEST_CASE("chest: a rig of an arm, or of unknown names, keeps its distances") {
