@@ -489,6 +489,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   my.scene = scene;
   my.output.resize(size, GL_RGBA8);
   const auto source = my.source(scene, scale == 0 ? PassResources::Extent::InTime : PassResources::Extent::Whole);
+  my.key.revision = my.resources.revision_of(scene.volume);  // drawing may have uploaded the volume
   my.refines = scale == 0 && source;
   my.has_all_weights = !source || !source->weights || source->weights->complete();
   my.has_whole_image = !source || !source->image || source->image->complete();

@@ -41,7 +41,9 @@ std::vector<std::int64_t> LabelStroke::reached(const glm::dvec3& from, const glm
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(glm::dot(grid.direction[axis], *settings_.flat)) > 1 - 1e-9) {
         const int layer = static_cast<int>(std::floor(a[axis] + 0.5));
-        low[axis] = std::max(low[axis], layer), high[axis] = std::min(high[axis], layer);
+        // The brush paints this layer even where its centre lies further from the layer than the radius.
+        if (layer < 0 || layer >= grid.size[axis]) return box = {}, std::vector<std::int64_t>();
+        low[axis] = high[axis] = layer;
         slab = false;
       }
   std::vector<std::int64_t> voxels;

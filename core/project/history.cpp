@@ -292,12 +292,11 @@ void History::keep_within_limit() {
   pack_volumes();
   if (bytes() <= limit_) return;
   const std::int64_t most = std::max(limit_, current_bytes() + limit_ / 2);
-  std::int64_t front = 0;
-  for (; bytes() > most && front < position_; ++front) ledger_->remove(steps_[front].document);
-  ledger_->volumes.erase_front(steps_, front, ledger_->set_volume);
-  steps_.erase(steps_.begin(), steps_.begin() + front);
-  position_ -= front;
-  dropped_ += front;
+  for (; bytes() > most && position_ > 0; --position_, ++dropped_) {
+    ledger_->volumes.erase_front(steps_, 1, ledger_->set_volume);
+    ledger_->remove(steps_.front().document);
+    steps_.erase(steps_.begin());
+  }
   for (; bytes() > most && can_redo(); ++dropped_) {
     ledger_->volumes.resize(steps_, std::ssize(steps_) - 1, ledger_->set_volume);
     ledger_->remove(steps_.back().document);

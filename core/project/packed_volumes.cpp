@@ -81,6 +81,10 @@ bool PackedVolumes::pack(Steps& steps, std::int64_t current, const SetVolume& se
       if (!document.volume || bytes_of(*document.volume) < kLeastBytes) continue;
       if (!link(steps, step < current ? step + 1 : step)) continue;
       packed_[static_cast<std::size_t>(step)] = Packed{document.volume};
+      if (!has_volume_left(step, 0) && !has_volume_right(step, count)) {  // it is the last volume of its group
+        packed_[static_cast<std::size_t>(step)].reset();
+        continue;
+      }
       set(document, nullptr);
       return true;
     }

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "editor/context/document_edits.h"
+#include "editor/seams/seam_view.h"
 #include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_edits.h"
 
@@ -34,13 +35,16 @@ const Tissue& edited_tissue(const Editor& editor) { return *editor.document().ti
 
 void commit_labels(Editor& editor, const std::string& label, std::shared_ptr<const LabelVolume> after,
                    const LabelChange& change, std::shared_ptr<const TissueTable> tissues) {
+  note_weights_source(editor);
   std::string removed;
   commit(editor, label, with_labels(editor.document(), after, keeps_tissue_voxels(change), tissues, removed));
   if (!removed.empty()) editor.messages.warn(label, removed + ". Undo brings them back");
 }
 
 void start_label_edit(Editor& editor, LabelEdit edit) {
+  note_weights_source(editor);
   const auto before = editor.document().volume;
+  const auto tissues = editor.document().tissues;
   const auto table = edit.tissues ? edit.tissues : editor.document().tissues;
   const std::string label = edit.label;
   struct Outcome {
@@ -50,7 +54,7 @@ void start_label_edit(Editor& editor, LabelEdit edit) {
   const auto outcome = std::make_shared<Outcome>();
   const int id =
       editor.jobs.start(label,
-                        [before, table, edit, outcome, visibility = editor.document().visibility,
+                        [before, tissues, table, edit, outcome, visibility = editor.document().visibility,
                          make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
                           progress.update("labels", 0);
                           const FoundLabelEdit found = edit.find(*before, progress);
@@ -61,11 +65,13 @@ void start_label_edit(Editor& editor, LabelEdit edit) {
                           apply_change(found.change, *changed);
                           const std::shared_ptr<const LabelVolume> after = std::move(changed);
                           make_ready({.volume = after, .tissues = table, .visibility = visibility}, progress);
-                          return [before, after, tissues = edit.tissues, same = keeps_tissue_voxels(found.change),
-                                  outcome](const Document& now) {
+                          return [before, after, tissues, wanted = edit.tissues,
+                                  same = keeps_tissue_voxels(found.change), outcome](const Document& now) {
                             if (now.volume != before)
                               throw Error("the labels were changed meanwhile", "the edit", "start it again");
-                            return with_labels(now, after, same, tissues, outcome->removed);
+                            if (wanted && now.tissues != tissues)
+                              throw Error("the list of tissues was changed meanwhile", "the edit", "start it again");
+                            return with_labels(now, after, same, wanted, outcome->removed);
                           };
                         });
   editor.step_of_job[id] = StepOfWork::Prepare;

@@ -2,6 +2,7 @@
 #include "editor/labels/split_tool.h"
 
 #include "core/label_edit/split_label.h"
+#include "editor/context/operator.h"
 #include "editor/context/view_projection.h"
 #include "editor/labels/label_edits.h"
 #include "editor/ui/draw.h"
@@ -36,7 +37,8 @@ class SplitTool final : public Modal {
       return true;
     }
     if (!view_) return true;
-    if (glm::distance(begun_, pointer_) >= kLeast * editor.look.scale) split(editor);
+    if (glm::distance(begun_, pointer_) >= kLeast * editor.look.scale)
+      attempt(editor, title(), [this](Editor& e) { split(e); });
     return false;
   }
 

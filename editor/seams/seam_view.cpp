@@ -92,13 +92,20 @@ std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor) {
 
 void note_weights_source(Editor& editor) {
   auto& from = editor.seams->weights_from;
-  if (!from || from->volume != editor.document().volume) from = seam_source(editor.document());
+  const Document& document = editor.document();
+  const bool same_body = from && from->volume && document.volume && from->volume->grid == document.volume->grid &&
+                         from->armature == document.armature;
+  if (!same_body) from = seam_source(document);
 }
 
 std::string why_weights_are_old(const Editor& editor) {
   const auto& from = editor.seams->weights_from;
   const Document& document = editor.document();
-  if (!document.weights || !from || from->volume != document.volume) return "";
+  if (!document.weights || !document.volume || !from || !from->volume) return "";
+  if (from->volume != document.volume) {
+    const bool same_body = from->volume->grid == document.volume->grid && from->armature == document.armature;
+    return same_body ? "Weights are older than the labels" : "";
+  }
   if (from->kept != document.seams) return "Weights are older than the seams";
   return from->bone_map != document.bone_map ? "Weights are older than the bone map" : "";
 }

@@ -65,8 +65,11 @@ void drop_label_stroke(Editor& editor) {
 
 void end_label_stroke(Editor& editor) {
   const auto running = editor.skin->painting->labels->running;
+  if (editor.document().volume != running->stroke->before()) {
+    drop_label_stroke(editor);
+    return editor.messages.warn(running->label, "The labels were changed meanwhile, and the stroke was dropped");
+  }
   const LabelChange change = running->stroke->empty() ? LabelChange{} : running->stroke->change();
-  if (editor.document().volume != running->stroke->before()) return drop_label_stroke(editor);
   if (change.empty()) {
     drop_label_stroke(editor);
     return editor.messages.info(running->label, "No voxel changed: see what the brush may paint over");

@@ -42,6 +42,7 @@ PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume
       for (const auto& layer : fresh->layers) layer->upload(*fresh->volume, nullptr);
     } else {
       fresh = std::make_unique<Body>();
+      fresh->revision = ++revisions_;
       fresh->key = volume;
       fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
     }
@@ -83,7 +84,7 @@ void PassResources::relabel(const std::shared_ptr<const LabelVolume>& before,
   body.weights.reset();
   body.pose.reset();
   body.posed_hulls.clear();
-  ++body.revision;
+  body.revision = ++revisions_;
 }
 
 int PassResources::revision_of(const std::shared_ptr<const LabelVolume>& volume) const {
@@ -98,6 +99,7 @@ bool PassResources::upload(PreparedBody& prepared) {
     forget_expired();
     arriving_.reset();
     auto fresh = std::make_unique<Body>();
+    fresh->revision = ++revisions_;
     fresh->key = prepared.original;
     fresh->volume = std::make_unique<VolumeTexture>(std::move(prepared.volume));
     arriving_ = std::move(fresh);

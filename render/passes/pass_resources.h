@@ -51,7 +51,7 @@ struct PassResources {
     // For each layer, the slots whose labels changed since its field was computed (SurfaceField::update()).
     std::vector<std::vector<std::uint8_t>> changed;
     bool surface_waits = false;  // true: fields stay as they are although labels changed
-    int revision = 0;            // increases whenever labels change
+    int revision = 0;            // another number whenever labels change or are uploaded again
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   bool has(const std::shared_ptr<const LabelVolume>& volume) const;  // true if body() need not upload anything
@@ -108,6 +108,7 @@ struct PassResources {
     std::unique_ptr<LooksTexture> texture;
   };
   std::vector<std::unique_ptr<Body>> bodies_;
+  int revisions_ = 0;               // the last number given to Body::revision
   std::unique_ptr<Body> arriving_;  // the prepared body that is being uploaded
   std::vector<Looks> looks_;
   // The grey images that were shown last, at most two: those of two compared results.

@@ -125,6 +125,71 @@ TEST_CASE("packed volumes: new edits after undo, amended steps and other grids b
   }
 }
 
+TEST_CASE("packed volumes: two long groups of strokes with a new grid between them are gone through and come back") {
+  for (const std::int64_t limit : {8 * kMb, 9 * kMb, 12 * kMb}) {
+    std::mt19937 random(11);
+    Document now;
+    now.volume = std::make_shared<const LabelVolume>(block(1));
+    History history(now, "Open", limit);
+    std::vector<LabelVolume> expected = {*now.volume};
+    for (int i = 0; i < 30; ++i) {
+      if (i == 10) now.volume = std::make_shared<const LabelVolume>(block(2, {128, 100, 70}));
+      else now = painted(now, random);
+      history.commit("edit", now);
+      expected.push_back(*now.volume);
+    }
+    now = {};
+    REQUIRE(history.dropped() == 0);
+    const auto is_expected = [&] {
+      return history.current().volume &&
+             history.current().volume->voxels == expected[static_cast<std::size_t>(history.position())].voxels;
+    };
+    int wrong = 0;
+    // From one end to the other in one jump, then step by step: what lies on the other side of the new grid is packed
+    // from both sides.
+    for (const std::int64_t start : {0, 30, 5, 29, 0}) {
+      history.jump(start);
+      wrong += !is_expected();
+      while (history.redo()) wrong += !is_expected();
+      history.jump(start);
+      while (history.undo()) wrong += !is_expected();
+    }
+    for (int i = 0; i < 100; ++i) {
+      history.jump(static_cast<std::int64_t>(random() % 31));
+      wrong += !is_expected();
+    }
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("packed volumes: where the changes alone fill the memory, only the oldest steps are dropped") {
+  std::mt19937 random(12);
+  Document now;
+  now.volume = std::make_shared<const LabelVolume>(block(1));
+  History history(now, "Open", 6 * kMb);
+  std::vector<std::pair<std::int64_t, LabelVolume>> expected;
+  for (int i = 0; i < 60; ++i) {
+    // A change of a fiftieth of the voxels, scattered, so that its record is large.
+    auto volume = std::make_shared<LabelVolume>(*now.volume);
+    for (int k = 0; k < 20'000; ++k)
+      volume->voxels[random() % volume->voxels.size()] = static_cast<Label>(random() % 9);
+    now.volume = std::move(volume);
+    history.commit("edit", now);
+    expected.emplace_back(history.revision(), *now.volume);
+  }
+  now = {};
+  CHECK(history.dropped() > 0);
+  CHECK(history.bytes() <= history.limit() + 3 * kMb);
+  CHECK(history.steps().size() >= 6);  // the latest edits can be undone
+  int wrong = 0;
+  for (std::int64_t step = std::ssize(history.steps()) - 1; step >= 0; --step) {
+    history.jump(step);
+    for (const auto& [revision, volume] : expected)
+      if (revision == history.revision()) wrong += history.current().volume->voxels != volume.voxels;
+  }
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("packed volumes: a volume that something still holds comes back as the same object") {
   std::mt19937 random(3);
   Document first;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "editor/seams/seam_view.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/editor/weighed_limb.h"
 
@@ -149,6 +150,33 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
   test.play(menu + "Grow...\"\n wait-idle\n click dialog/Grow\n wait-job\n wait-idle");
   CHECK(test.editor->document().volume != next.volume);
   CHECK(test.editor->document().weights == next.weights);
+  // They were made for other bones, and it is said.
+  CHECK(why_weights_are_old(*test.editor) == "Weights are older than the labels");
+  run(*test.editor, "edit.undo");
+  CHECK(why_weights_are_old(*test.editor) == "");
+}
+
+TEST_CASE("label edits: a table of tissues that was changed meanwhile is not overwritten") {
+  LimbEditor test;
+  test.editor->selection.tissue = 111;
+  const Document before = test.editor->document();
+  const Tissue part = new_tissue_like(*before.tissues, before.tissues->find(111));
+  start_label_edit(*test.editor, {"Split bone",
+                                  [](const LabelVolume& volume, Progress&) -> FoundLabelEdit {
+                                    LabelVolume after = volume;
+                                    after.at({12, 10, 15}) = 143;
+                                    return {label_difference(volume, after), "one voxel"};
+                                  },
+                                  with_tissue(*before.tissues, part), part.label});
+  Document renamed = before;
+  auto table = std::make_shared<TissueTable>(*before.tissues);
+  table->tissues[0].name = "Flesh";
+  renamed.tissues = table;
+  commit(*test.editor, "Rename", renamed);
+  test.play("wait-job\n wait-idle");
+  CHECK(test.editor->document().tissues == table);
+  CHECK(test.editor->document().volume == before.volume);
+  CHECK(test.editor->messages.last_failure.find("tissues was changed meanwhile") != std::string::npos);
 }
 
 TEST_CASE("label edits: an edit that finds nothing is no step, and a cut beside the tissue says what to do") {
