@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 
@@ -34,13 +35,35 @@ Eight lowest_around(const Eight* f, double squared_spacing) {
 
 TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing) : tissue_(&tissue) {
   const std::size_t count = tissue.bricks().size() * kBrickVoxels;
-  depth_.reserve(count);
-  want_large_pages(depth_.data(), static_cast<std::int64_t>(count * sizeof(float)));
-  depth_.resize(count);
+  squared_.reserve(count);
+  want_large_pages(squared_.data(), static_cast<std::int64_t>(count * sizeof(float)));
+  squared_.resize(count);
   pass_along_x(spacing.x);
   pass_across(1, spacing.y);
   pass_across(2, spacing.z);
-  for (float& d : depth_) d = std::sqrt(d);
+  if (spacing.x == spacing.y && spacing.y == spacing.z) store_as_steps(spacing.x * spacing.x);
+}
+
+// Replaces squared depths by whole multiples of `squared_step`, if they all are, bit for bit, and fit into 16 bits.
+void TissueDepth::store_as_steps(double squared_step) {
+  constexpr std::int64_t kGrain = 64 * kBrickVoxels;
+  const std::int64_t count = std::ssize(squared_);
+  steps_.resize(count);
+  want_large_pages(steps_.data(), count * std::int64_t{sizeof(std::uint16_t)});
+  squared_step_ = squared_step;
+  std::atomic<bool> fits = true;
+  parallel_for(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
+    const double steps_per_mm2 = 1 / squared_step;
+    bool same = true;
+    for (auto i = begin; i < end; ++i) {
+      const int steps = static_cast<int>(squared_[i] * steps_per_mm2 + 0.5);
+      steps_[i] = static_cast<std::uint16_t>(steps);
+      same &= static_cast<float>(squared_step * steps_[i]) == squared_[i];
+    }
+    if (!same) fits = false;
+  });
+  if (fits) std::vector<float>().swap(squared_);
+  else steps_ = {};
 }
 
 template <class Body>
@@ -84,7 +107,7 @@ void TissueDepth::pass_along_x(double spacing) {
         while (x < size && is_tissue(x)) ++x;
         for (int i = begin; i < x; ++i) {
           const double steps = std::min(i + 1 - begin, x - i);
-          depth_[at(i)] = static_cast<float>(squared_spacing * steps * steps);
+          squared_[at(i)] = static_cast<float>(squared_spacing * steps * steps);
         }
       }
     }
@@ -100,12 +123,14 @@ void TissueDepth::pass_across(int axis, double spacing) {
       Eight* line = &lines[1];
       for (const int brick : column)
         for (int i = 0; i < kBrick; ++i)
-          std::memcpy(line++, &depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], sizeof(Eight));
+          std::memcpy(line++, &squared_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along],
+                      sizeof(Eight));
       line = &lines[1];
       for (const int brick : column)
         for (int i = 0; i < kBrick; ++i, ++line) {
           const Eight lowest = lowest_around(line, spacing * spacing);
-          std::memcpy(&depth_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], &lowest, sizeof(Eight));
+          std::memcpy(&squared_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], &lowest,
+                      sizeof(Eight));
         }
     }
   });
@@ -114,7 +139,7 @@ void TissueDepth::pass_across(int axis, double spacing) {
 double TissueDepth::operator()(const glm::dvec3& rest) const {
   glm::ivec3 v(rest);
   v -= glm::ivec3(glm::lessThan(rest, glm::dvec3(v)));  // rounds down; std::floor would be a function call
-  std::array<float, 8> at{};
+  std::array<float, 8> corner{};
   const glm::ivec3 in = v & 7;
   const auto is_inside = [](const glm::ivec3& low, const glm::ivec3& end) {
     return glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) && glm::all(glm::lessThan(low, end));
@@ -123,15 +148,17 @@ double TissueDepth::operator()(const glm::dvec3& rest) const {
   if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {
     const int brick = tissue_->brick_at(v);
     if (brick < 0) return 0;
-    const float* first = &depth_[std::int64_t{brick} * kBrickVoxels + in.x + 8 * in.y + 64 * in.z];
-    at = {first[0], first[1], first[8], first[9], first[64], first[65], first[72], first[73]};
+    const std::int64_t first = std::int64_t{brick} * kBrickVoxels + in.x + 8 * in.y + 64 * in.z;
+    const std::int64_t place[] = {first,      first + 1,  first + 8,  first + 9,
+                                  first + 64, first + 65, first + 72, first + 73};
+    for (int k = 0; k < 8; ++k) corner[k] = at(place[k]);
   } else {
-    for (int k = 0; k < 8; ++k) at[k] = at_voxel(v + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
+    for (int k = 0; k < 8; ++k) corner[k] = at_voxel(v + glm::ivec3(k & 1, k >> 1 & 1, k >> 2));
   }
   const glm::dvec3 high = rest - glm::dvec3(v), low = 1.0 - high;
   double depth = 0;
   for (int k = 0; k < 8; ++k)
-    depth += (k & 1 ? high.x : low.x) * (k & 2 ? high.y : low.y) * (k & 4 ? high.z : low.z) * at[k];
+    depth += (k & 1 ? high.x : low.x) * (k & 2 ? high.y : low.y) * (k & 4 ? high.z : low.z) * corner[k];
   return depth;
 }
 

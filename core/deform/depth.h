@@ -10,6 +10,8 @@
 // machine instructions for all eight.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/volume/tissue_voxels.h"
@@ -28,9 +30,8 @@ class TissueDepth {
     const auto inside = [](int v, int end) { return static_cast<unsigned>(v) < static_cast<unsigned>(end); };
     if (!inside(voxel.x, size.x) || !inside(voxel.y, size.y) || !inside(voxel.z, size.z)) return 0;
     const int brick = tissue_->brick_at(voxel);
-    return brick < 0
-               ? 0
-               : depth_[std::int64_t{brick} * kBrickVoxels + (voxel.x & 7) + 8 * (voxel.y & 7) + 64 * (voxel.z & 7)];
+    return brick < 0 ? 0
+                     : at(std::int64_t{brick} * kBrickVoxels + (voxel.x & 7) + 8 * (voxel.y & 7) + 64 * (voxel.z & 7));
   }
   // Returns the depth in mm at a point in voxel coordinates, interpolated trilinearly.
   double operator()(const glm::dvec3& rest) const;
@@ -43,8 +44,17 @@ class TissueDepth {
   void pass_along_x(double spacing);
   void pass_across(int axis, double spacing);
 
+  float at(std::int64_t place) const {
+    return std::sqrt(steps_.empty() ? squared_[place] : static_cast<float>(squared_step_ * steps_[place]));
+  }
+  void store_as_steps(double squared_step);
+
   const TissueVoxels* tissue_;
-  std::vector<float> depth_;  // 512 depths per tissue brick, mm; squared until the constructor ends
+  // 512 squared depths per tissue brick. Those of most volumes are whole multiples of a voxel's squared edge: they are
+  // stored as these numbers, in half the memory.
+  std::vector<float> squared_;  // mm^2; empty: see steps_
+  ZeroedVector<std::uint16_t> steps_;
+  double squared_step_ = 0;  // mm^2
 };
 
 }  // namespace limber
