@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/platform/large_blocks.h"
 #include "core/resample/posed_voxels.h"
 #include "core/resample/rigid_weights.h"
 
@@ -41,6 +42,7 @@ std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, cons
     pose = std::move(glided.pose);
     joints.push_back(std::move(glided.joints));
   }
+  return_free_memory();  // lists of all bone voxels, which would stay with the process while it poses the body
   return joints;
 }
 

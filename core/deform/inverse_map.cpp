@@ -286,10 +286,9 @@ int RigidBones::owner(const glm::ivec3& voxel) const {
   return weights_->chunk(brick)[tissue.index_of(voxel) - tissue.bricks()[brick].first].bone[0];
 }
 
-LabelVolume RigidBones::numbered() const {
+TiledLabels RigidBones::numbered() const {
   const LabelVolume& volume = lattice_->volume();
-  // No large pages: bone lies in few of the pages, and the others are never touched.
-  LabelVolume result{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
+  TiledLabels result(volume.grid);
   const TissueVoxels& tissue = lattice_->tissue();
   for (std::int64_t last = -1; const Piece& piece : pieces_) {
     if (piece.brick == last) continue;

@@ -23,6 +23,7 @@
 #include "core/deform/lattice.h"
 #include "core/deform/rasterize.h"
 #include "core/volume/label_sampler.h"
+#include "core/volume/tiled_labels.h"
 
 namespace limber {
 
@@ -88,8 +89,8 @@ class RigidBones {
   double residual(int bone, const glm::dvec3& rest, const glm::dvec3& posed) const;
   // Returns the rig bone of a voxel of bone tissue; -1: not bone tissue.
   int owner(const glm::ivec3& voxel) const;
-  // Returns a volume with 1 + the rig bone for every voxel of bone tissue at rest, 0 elsewhere.
-  LabelVolume numbered() const;
+  // Returns 1 + the rig bone for every voxel of bone tissue at rest, 0 elsewhere.
+  TiledLabels numbered() const;
   RowSet rest_rows() const;  // rows of the rest volume that may contain bone tissue
   // Returns whether there is bone tissue of this rig bone at a rest point.
   bool has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const;

@@ -31,6 +31,7 @@
 //   memory            Windows: GlobalMemoryStatusEx and the limit of the job object. macOS: host_statistics64.
 //   memory_pages      Windows: VirtualAlloc, which reserves before it commits, so zeros of a large grid must be
 //                     committed page by page. macOS: no MADV_HUGEPAGE and no MAP_NORESERVE, which is its usual way.
+//   give_back_pages   Windows: VirtualAlloc with MEM_RESET. macOS: MADV_FREE.
 //   large_blocks      Windows, macOS: the same, without effect: only glibc has the settings.
 //   host              Windows: GetComputerNameEx, RtlGetVersion, the registry's name of the processor. macOS: sysctl.
 //   terminal          Windows: GetConsoleMode; colours and line erasing need ENABLE_VIRTUAL_TERMINAL_PROCESSING.

@@ -24,10 +24,11 @@ struct AirRun {
 // without tissue at both ends reaches the border of the grid along x, so it is not enclosed.
 class AirRuns {
  public:
-  explicit AirRuns(const LabelVolume& volume) : size_(volume.grid.size) {
+  explicit AirRuns(const LabelView& volume) : size_(volume.grid.size) {
     rows_.reserve(std::size_t(size_.y) * size_.z + 1);
+    std::vector<Label> room;
     for (int z = 0; z < size_.z; ++z)
-      for (int y = 0; y < size_.y; ++y) add_row(&volume.voxels[volume.grid.index({0, y, z})]);
+      for (int y = 0; y < size_.y; ++y) add_row(volume.row(y, z, room));
     rows_.push_back({std::ssize(runs_), 0, 0});
     joined_.resize(runs_.size());
     std::iota(joined_.begin(), joined_.end(), 0);
@@ -116,7 +117,7 @@ class AirRuns {
 
 // Returns the number of rest voxels in the hollow that a posed air pocket comes from. This is the sum over those air
 // pockets of the body at rest that touch the rest positions of the posed pocket's walls.
-std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, const LabelVolume& rest,
+std::int64_t size_at_rest(const AirPocket& pocket, const LabelView& posed, const LabelView& rest,
                           const std::vector<AirPocket>& rest_pockets,
                           const std::unordered_map<std::int64_t, int>& pocket_at_rest, const RestPoint& rest_point) {
   std::set<int> found;
@@ -135,21 +136,21 @@ std::int64_t size_at_rest(const AirPocket& pocket, const LabelVolume& posed, con
   return size;
 }
 
-bool touches_tissue(const LabelVolume& posed, const glm::ivec3& v) {
+bool touches_tissue(const LabelView& posed, const glm::ivec3& v) {
   return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
                      [&](const glm::ivec3& face) { return posed.at_or_air(v + face) != 0; });
 }
 
 // Returns the label that fills an air voxel at a pocket's border: the flesh that is most common within two voxels. If
 // there is no flesh, the label is the soft tissue that is most common among the 26 neighbours.
-Label flesh_behind(const LabelVolume& posed, const glm::ivec3& v, const LabelSet& flesh, const LabelSet& soft) {
+Label flesh_behind(const LabelView& posed, const glm::ivec3& v, const LabelSet& flesh, const LabelSet& soft) {
   for (int reach : {1, 2})
     if (const Label found = most_common_around(posed, v, reach, flesh)) return found;
   return most_common_around(posed, v, 1, soft);
 }
 
 // Returns the label of the skin on more than half of the voxel faces around an air pocket; 0: there is no such skin.
-Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSet& flesh, const LabelSet& soft) {
+Label lining_of(const AirPocket& pocket, const LabelView& posed, const LabelSet& flesh, const LabelSet& soft) {
   std::map<Label, std::int64_t> faces;
   std::int64_t walls = 0;
   for (const glm::ivec3& v : pocket)
@@ -164,7 +165,7 @@ Label lining_of(const AirPocket& pocket, const LabelVolume& posed, const LabelSe
 }
 
 // Fills an air pocket with tissue from the walls inwards, layer by layer, until `kept` voxels of air are left.
-void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft,
+void fill(const LabelEdit& posed, AirPocket pocket, std::int64_t kept, const LabelSet& flesh, const LabelSet& soft,
           std::vector<glm::ivec3>& filled) {
   while (std::ssize(pocket) > kept) {
     AirPocket inner;
@@ -186,9 +187,9 @@ void fill(LabelVolume& posed, AirPocket pocket, std::int64_t kept, const LabelSe
 
 }  // namespace
 
-std::vector<AirPocket> air_pockets(const LabelVolume& volume) { return AirRuns(volume).pockets(); }
+std::vector<AirPocket> air_pockets(const LabelView& volume) { return AirRuns(volume).pockets(); }
 
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const PocketsOfBoth& pockets,
+std::vector<glm::ivec3> fill_grown_pockets(LabelEdit posed, const LabelView& rest, const PocketsOfBoth& pockets,
                                            const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point) {
   if (pockets.posed.empty()) return {};
   std::unordered_map<std::int64_t, int> pocket_at_rest;
@@ -208,7 +209,7 @@ std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume
   return filled;
 }
 
-Origins origins_of(const LabelVolume& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) {
+Origins origins_of(const LabelView& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point) {
   const Grid& grid = posed.grid;
   Origins origins;
   std::unordered_set<std::int64_t> waiting;

@@ -14,7 +14,7 @@ namespace limber {
 
 // The voxels of one hollow: connected air that no path through voxel faces joins to the border of the grid.
 using AirPocket = std::vector<glm::ivec3>;
-std::vector<AirPocket> air_pockets(const LabelVolume& volume);
+std::vector<AirPocket> air_pockets(const LabelView& volume);
 
 struct PocketsOfBoth {
   const std::vector<AirPocket>&posed, &rest;
@@ -26,7 +26,7 @@ struct PocketsOfBoth {
 //   pockets  the air pockets of `posed` and of `rest`
 //   flesh    soft tissues without skin, by label      soft  soft tissues with skin, by label
 //   returns  the filled voxels, layer by layer from the walls inwards
-std::vector<glm::ivec3> fill_grown_pockets(LabelVolume& posed, const LabelVolume& rest, const PocketsOfBoth& pockets,
+std::vector<glm::ivec3> fill_grown_pockets(LabelEdit posed, const LabelView& rest, const PocketsOfBoth& pockets,
                                            const LabelSet& flesh, const LabelSet& soft, const RestPoint& rest_point);
 
 // The rest point (position at rest) of a voxel that was air and is now filled with tissue. No tissue was moved there,
@@ -39,6 +39,6 @@ using Origins = std::map<std::int64_t, Origin>;  // by index of the filled voxel
 // Returns, for each voxel that was filled with tissue, its rest point and the neighbour that it is taken from.
 //   was_air     filled voxels, each one beside original tissue or beside an earlier voxel of the list
 //   rest_point  called for voxels of original tissue only
-Origins origins_of(const LabelVolume& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point);
+Origins origins_of(const LabelView& posed, const std::vector<glm::ivec3>& was_air, const RestPoint& rest_point);
 
 }  // namespace limber

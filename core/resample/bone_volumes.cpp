@@ -46,17 +46,18 @@ using Bones = std::map<Label, Bone>;
 
 // Calls body(voxel, number) for every voxel of bone tissue in a slice; the number is 1 + the index of its rig bone.
 template <class Body>
-void for_each_in_slice(const LabelVolume& bones, int z, const RowSet* rows, const Body& body) {
+void for_each_in_slice(const LabelView& bones, int z, const RowSet* rows, const Body& body) {
   const glm::ivec3 size = bones.grid.size;
+  std::vector<Label> room;
   for (int y = 0; y < size.y; ++y) {
     if (rows && !(*rows)[y + std::int64_t{size.y} * z]) continue;
-    const Label* row = &bones.voxels[bones.grid.index({0, y, z})];
+    const Label* row = bones.row(y, z, room);
     for (int x = 0; x < size.x; ++x)
       if (row[x]) body(glm::ivec3(x, y, z), row[x]);
   }
 }
 
-Bones bones_at_rest(const LabelVolume& rest, const LabelVolume& rest_bones, const RowSet* rows) {
+Bones bones_at_rest(const LabelVolume& rest, const LabelView& rest_bones, const RowSet* rows) {
   Bones bones;
   for (int z = 0; z < rest.grid.size.z; ++z)
     for_each_in_slice(rest_bones, z, rows, [&](const glm::ivec3& v, Label bone) { ++bones[bone].at_rest[rest.at(v)]; });
@@ -93,7 +94,7 @@ Contested contested(const LabelSampler::Memberships& found, Label own) {
 }
 
 // Adds the bone voxels of one slice to the counts and the contested voxels of the rig bones to which they belong.
-void read_slice(const LabelVolume& posed, const LabelVolume& posed_bones, int z, const RowSet* rows,
+void read_slice(const LabelView& posed, const LabelView& posed_bones, int z, const RowSet* rows,
                 const LabelSampler& sampler, const LabelSet& is_bone, const RestPoint& rest_point, Bones& bones) {
   for_each_in_slice(posed_bones, z, rows, [&](const glm::ivec3& v, Label number) {
     const Label own = posed.at(v);
@@ -184,8 +185,8 @@ void set_prices(Bone& bone, const Counts& wanted) {
 
 }  // namespace
 
-std::int64_t keep_bone_volumes(LabelVolume& posed, const LabelVolume& posed_bones, const LabelVolume& rest,
-                               const LabelVolume& rest_bones, const LabelSet& soft, const RestPoint& rest_point,
+std::int64_t keep_bone_volumes(LabelEdit posed, const LabelView& posed_bones, const LabelVolume& rest,
+                               const LabelView& rest_bones, const LabelSet& soft, const RestPoint& rest_point,
                                const MendRows& rows) {
   LabelSet is_bone(soft.size());
   for (size_t label = 1; label < soft.size(); ++label) is_bone[label] = !soft[label];
@@ -204,7 +205,7 @@ std::int64_t keep_bone_volumes(LabelVolume& posed, const LabelVolume& posed_bone
     if (goal == bone.posed) continue;
     set_prices(bone, goal);
     for (const Contested& voxel : bone.contested) {
-      Label& label = posed.voxels[voxel.at];
+      Label& label = posed.at(voxel_at(posed.grid, voxel.at));
       const Label best = highest(voxel, bone.price, label);
       changed += best != label;
       label = best;

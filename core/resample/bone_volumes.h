@@ -19,8 +19,8 @@ namespace limber {
 //   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere
 //   rest_bones   like posed_bones, for the rest volume        soft  tissues that are not bone, by label
 //   returns      the number of changed voxels
-std::int64_t keep_bone_volumes(LabelVolume& posed, const LabelVolume& posed_bones, const LabelVolume& rest,
-                               const LabelVolume& rest_bones, const LabelSet& soft, const RestPoint& rest_point,
+std::int64_t keep_bone_volumes(LabelEdit posed, const LabelView& posed_bones, const LabelVolume& rest,
+                               const LabelView& rest_bones, const LabelSet& soft, const RestPoint& rest_point,
                                const MendRows& rows = {});
 
 }  // namespace limber

@@ -75,15 +75,12 @@ bool faces_hang_together(unsigned places) {
 
 // Calls body(index, label) for the 3^3 voxels around a voxel, x fastest; voxels outside the grid are air.
 template <class Body>
-void for_each_around(const LabelVolume& volume, const glm::ivec3& voxel, const Body& body) {
-  const glm::ivec3 size = volume.grid.size;
-  const bool inside =
-      glm::all(glm::greaterThanEqual(voxel, glm::ivec3(1))) && glm::all(glm::lessThanEqual(voxel, size - 2));
-  const Label* at = inside ? &volume.voxels[volume.grid.index(voxel)] : nullptr;
-  const std::int64_t row = size.x, slice = row * size.y;
+void for_each_around(const LabelView& volume, const glm::ivec3& voxel, const Body& body) {
+  const LabelView::Centre centre = volume.centre(voxel);
   for (int k = 0; k < 27; ++k) {
     const glm::ivec3 step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    body(k, inside ? at[step.x + row * step.y + slice * step.z] : volume.at_or_air(voxel + step));
+    body(k,
+         centre.at ? centre.at[step.x + centre.row * step.y + centre.slice * step.z] : volume.at_or_air(voxel + step));
   }
 }
 
@@ -100,7 +97,7 @@ const std::array<glm::ivec3, 26>& neighbours() {
   return all;
 }
 
-std::int64_t run_at(const Components& components, const LabelVolume& volume, const glm::ivec3& v) {
+std::int64_t run_at(const Components& components, const LabelView& volume, const glm::ivec3& v) {
   const std::int64_t row = v.y + std::int64_t{volume.grid.size.y} * v.z;
   const auto begin = components.runs.begin() + components.first_run[row],
              end = components.runs.begin() + components.first_run[row + 1];
@@ -108,7 +105,7 @@ std::int64_t run_at(const Components& components, const LabelVolume& volume, con
   return run - components.runs.begin();
 }
 
-std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, const glm::dvec3& point) {
+std::optional<glm::ivec3> nearest_voxel(const LabelView& volume, Label label, const glm::dvec3& point) {
   const glm::ivec3 centre(glm::floor(point + 0.5));
   const glm::dvec3 spacing = volume.grid.spacing;
   const double least = std::min({spacing.x, spacing.y, spacing.z});
@@ -132,7 +129,7 @@ std::optional<glm::ivec3> nearest_voxel(const LabelVolume& volume, Label label, 
   return nearest < INFINITY ? std::optional(found) : std::nullopt;
 }
 
-int nearest_component(const Components& components, const LabelVolume& volume, Label label, const glm::dvec3& point) {
+int nearest_component(const Components& components, const LabelView& volume, Label label, const glm::dvec3& point) {
   const auto found = nearest_voxel(volume, label, point);
   return found ? component_at(components, volume, *found) : -1;
 }
@@ -143,26 +140,26 @@ bool is_connected_26(const std::array<bool, 27>& marked) {
   return bits_hang_together(places);
 }
 
-bool is_simple_point(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool is_simple_point(const LabelView& volume, const glm::ivec3& voxel) {
   const Label own = volume.at(voxel);
   unsigned same = 0;
   for_each_around(volume, voxel, [&](int k, Label label) { same |= unsigned{label == own} << k; });
   return bits_hang_together(same);
 }
 
-bool can_join(const LabelVolume& volume, const glm::ivec3& voxel, Label label) {
+bool can_join(const LabelView& volume, const glm::ivec3& voxel, Label label) {
   unsigned same = 0;
   for_each_around(volume, voxel, [&](int k, Label there) { same |= unsigned{there == label} << k; });
   return bits_hang_together(same);
 }
 
-bool air_can_change(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool air_can_change(const LabelView& volume, const glm::ivec3& voxel) {
   unsigned air = 0;
   for_each_around(volume, voxel, [&](int k, Label label) { air |= unsigned{label == 0} << k; });
   return faces_hang_together(air) && bits_hang_together(~air & ((1u << 27) - 1));
 }
 
-bool is_enclosed(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool is_enclosed(const LabelView& volume, const glm::ivec3& voxel) {
   const Label own = volume.at(voxel);
   bool same = true;
   for_each_around(volume, voxel, [&](int, Label label) { same &= label == own; });
@@ -174,13 +171,13 @@ std::uint64_t shuffled(std::uint64_t at) {
   return at ^ at >> 27;
 }
 
-bool touches_air(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool touches_air(const LabelView& volume, const glm::ivec3& voxel) {
   bool air = false;
   for (const glm::ivec3& step : kFaceNeighbours) air |= volume.at_or_air(voxel + step) == 0;
   return air;
 }
 
-bool can_spare_inside(const LabelVolume& volume, const glm::ivec3& voxel) {
+bool can_spare_inside(const LabelView& volume, const glm::ivec3& voxel) {
   const Label own = volume.at(voxel);
   unsigned same = 0, air = 0;
   for_each_around(volume, voxel, [&](int k, Label label) {

@@ -26,7 +26,7 @@ std::map<Label, int> large_parts(const Components& components, const LabelSet& s
 
 class Parting {
  public:
-  Parting(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest, const Components& of_rest,
+  Parting(LabelEdit posed, const Components& of_posed, const LabelView& rest, const Components& of_rest,
           const LabelSet& soft, const RestPoint& rest_point)
       : posed_(posed),
         of_posed_(of_posed),
@@ -191,9 +191,9 @@ class Parting {
     return found;
   }
 
-  LabelVolume& posed_;
+  LabelEdit posed_;
   const Components& of_posed_;
-  const LabelVolume& rest_;
+  const LabelView rest_;
   const Components& of_rest_;
   const LabelSet& soft_;
   const RestPoint& rest_point_;
@@ -214,8 +214,8 @@ class Parting {
 
 }  // namespace
 
-std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest,
-                        const Components& of_rest, const LabelSet& soft, const RestPoint& rest_point) {
+std::int64_t part_bones(LabelEdit posed, const Components& of_posed, const LabelView& rest, const Components& of_rest,
+                        const LabelSet& soft, const RestPoint& rest_point) {
   return Parting(posed, of_posed, rest, of_rest, soft, rest_point).run();
 }
 

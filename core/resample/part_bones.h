@@ -19,7 +19,7 @@ namespace limber {
 // Separates the fused components of all bone tissues.
 //   soft     tissues that are not bone, by label: they neither give nor take voxels
 //   returns  the number of changed voxels of `posed`
-std::int64_t part_bones(LabelVolume& posed, const Components& of_posed, const LabelVolume& rest,
-                        const Components& of_rest, const LabelSet& soft, const RestPoint& rest_point);
+std::int64_t part_bones(LabelEdit posed, const Components& of_posed, const LabelView& rest, const Components& of_rest,
+                        const LabelSet& soft, const RestPoint& rest_point);
 
 }  // namespace limber

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the skin of a posed volume closed and thin. Voxels are given by their index in the volume, x fastest.
+// Keeps the skin of a posed volume closed and thin. An index of a voxel counts x fastest.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/resample/air_pockets.h"
@@ -15,24 +17,31 @@ struct UnderSkin {
   Label skin;       // label of the skin that touches the tissue at rest; 0: none does
 };
 
-// A posed voxel of skin that does not touch air.
+// Drops voxels that touch no air from a list that grows while layer after layer of the posed volume is written. Layers
+// that are not written yet count as air, so the list's end from the layer below the newest on is looked at again.
+//   unsure   what the last call returned; at first 0
+//   low      lowest slice of the newest layer
+//   returns  the index of the first voxel that the next call looks at
+std::ptrdiff_t drop_covered(const LabelView& posed, std::vector<UnderSkin>& under_skin, std::ptrdiff_t unsure, int low);
+
+// A posed voxel of skin that does not touch air. A fine body has millions of them, so they are stored in 12 bytes.
 struct InnerSkin {
-  float depth;      // distance to the nearest air at rest, mm
-  std::int64_t at;  // index in the posed volume
+  float depth;                         // distance to the nearest air at rest, mm
+  std::array<std::uint16_t, 3> voxel;  // x, y, z in the posed volume
 };
 
 // Closes holes in the skin: a flesh voxel that touches air but lies under skin at rest becomes skin. Skin gets holes
 // because it is often only one voxel thick, so that rotation on the grid or stretch opens it.
 //   flesh    soft tissues without skin, by label
 //   returns  the number of changed voxels
-std::int64_t close_skin(LabelVolume& posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh);
+std::int64_t close_skin(LabelEdit posed, const std::vector<UnderSkin>& under_skin, const LabelSet& flesh);
 
 // Thins the skin to compensate for the voxels that close_skin() added. Rotation on the grid makes skin two voxels thick
 // in places; the deepest skin voxels there get the most common flesh around them.
-//   inner_skin  in any order; is sorted
+//   inner_skin  in any order; is reordered
 //   most        upper limit on the number of changed voxels
 //   returns     the number of changed voxels
-std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, std::int64_t most, const LabelSet& flesh,
+std::int64_t thin_skin(LabelEdit posed, std::vector<InnerSkin>& inner_skin, std::int64_t most, const LabelSet& flesh,
                        const LabelSet& skin);
 
 // Restores skin where a seam (sheet of voxel faces where two limbs touch at rest) has opened or strong stretching has
@@ -42,7 +51,7 @@ std::int64_t thin_skin(LabelVolume& posed, std::vector<InnerSkin>& inner_skin, s
 //   enclosed  air pockets that hold all enclosed air of `posed`; some of their voxels may be filled since
 //   was_air   out: the voxels changed from air to skin are appended
 //   returns   the number of changed voxels
-std::int64_t cover_bare_flesh(LabelVolume& posed, const std::vector<AirPocket>& enclosed,
+std::int64_t cover_bare_flesh(LabelEdit posed, const std::vector<AirPocket>& enclosed,
                               const std::vector<UnderSkin>& under_skin, const LabelSet& flesh, const LabelSet& bone,
                               const LabelSet& skin, std::vector<glm::ivec3>& was_air);
 

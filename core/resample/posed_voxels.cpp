@@ -2,6 +2,7 @@
 #include "core/resample/posed_voxels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -19,7 +20,7 @@
 #include "core/resample/rest_points.h"
 #include "core/resample/skin_at_rest.h"
 #include "core/resample/tissue_volumes.h"
-#include "core/volume/label_pages.h"
+#include "core/volume/tiled_labels.h"
 
 namespace limber {
 
@@ -27,8 +28,7 @@ namespace {
 
 constexpr glm::ivec3 kTile = RestPoints::kTile;  // size of a tile, output voxels; its inverse map takes 3 MB
 constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points (48 MB)
-constexpr int kReach = 8;          // largest distance from a rest point at which a missing label is searched, voxels
-constexpr double kMostSure = 0.8;  // a voxel whose own membership exceeds the new tissue's by this keeps its label
+constexpr int kReach = 8;  // largest distance from a rest point at which a missing label is searched, voxels
 // Smallest tissue in voxels that the mass limit applies to: resampling alone changes smaller tissues by more.
 constexpr std::int64_t kJudged = 5000;
 
@@ -82,19 +82,16 @@ class PosedVoxels {
         rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
                      [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
         sampler_(volume_),
+        tiles_(output_.grid),
         tracer_(lattice_, bones_, body.tets, depth_, labels_.priority, sampler_, output_.range, settings.nearest),
         world_from_rest_(world_from_voxel(volume_.grid)) {
-    posed.volume.grid = output_.grid;
     const std::int64_t voxels = output_.grid.voxel_count();
-    posed.volume.voxels.resize(voxels);
-    want_large_pages(posed.volume);
     rows_.resize(std::int64_t{output_.grid.size.y} * output_.grid.size.z);
     bone_rows_ = rows_;
     flesh_ = labels_.soft;
     for (size_t label = 0; label < flesh_.size(); ++label) flesh_[label] = labels_.soft[label] && !labels_.skin[label];
     if (mends_) skin_.emplace(volume_, body.lattice.tissue(), *depth_, labels_.soft, labels_.skin);
-    if (mends_) posed_bones_ = {output_.grid, ZeroedVector<Label>(voxels)};
-    want_large_pages(posed_bones_);
+    if (mends_) posed_bones_ = TiledLabels(output_.grid);
     if (settings.displacement) posed.displacement.resize(voxels);
     if (settings.jacobian) posed.jacobian.resize(voxels);
     if (settings.overlap) posed.overlap.resize(voxels);
@@ -102,10 +99,22 @@ class PosedVoxels {
   }
 
   void run(Progress& progress) {
+    int low = 0;  // z of the layer of tiles that is added
     for_each_tile<TileCounts>(
         progress, "resample", [&](const VoxelRange& range, TileCounts& counts) { run_tile(range, counts); },
-        [&](const TileCounts& tile) { add(tile); });
+        [&](const TileCounts& tile) {
+          if (const int next = tile.range.low.z - output_.range.low.z; !tile.range.empty() && next != low) {
+            unsure_ = drop_covered(tiles_, under_skin_, unsure_, low);
+            low = next;
+          }
+          add(tile);
+        });
+    drop_covered(tiles_, under_skin_, unsure_, low);
   }
+
+  // The posed labels, unless lay_in_rows() has moved them to the posed volume.
+  TiledLabels take_tiles() { return std::move(tiles_); }
+  void lay_in_rows() { posed_.volume = in_rows(std::move(tiles_)); }
 
   // Gives each soft tissue as many voxels as come from it by the inverse map. This is needed because interpolated
   // labels favour thick tissues over thin ones.
@@ -145,39 +154,41 @@ class PosedVoxels {
       return bones_.rest_point(posed_bones_.at(voxel) - 1, glm::dvec3(output_.range.low + voxel));
     };
     const RowSet rest_rows = lattice_.tissue().rows(), bone_rest_rows = bones_.rest_rows();
-    const LabelVolume rest_bones = bones_.numbered();
+    TiledLabels rest_bones = bones_.numbered();
     const auto bridges =
-        mend_bones(posed_bones_, rest_bones, posed_.volume, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
+        mend_bones(posed_bones_, rest_bones, tiles_, labels_.soft, of_bone, {&bone_rows_, &bone_rest_rows});
     for (const glm::ivec3& voxel : bridges) write_bridge(voxel, rest_bones, of_bone(voxel));
-    const std::int64_t kept = keep_bone_volumes(posed_.volume, posed_bones_, volume_, rest_bones, labels_.soft, of_bone,
+    const std::int64_t kept = keep_bone_volumes(tiles_, posed_bones_, volume_, rest_bones, labels_.soft, of_bone,
                                                 {&bone_rows_, &bone_rest_rows});
+    rest_bones = {};
     const auto rest_point = [&](const glm::ivec3& voxel) {
       return posed_bones_.at(voxel) ? of_bone(voxel) : rest_points_.at(voxel);
     };
-    const std::int64_t closed = close_skin(posed_.volume, under_skin_, flesh_);
+    const std::int64_t closed = close_skin(tiles_, under_skin_, flesh_);
     posed_.report.mended_voxels =
-        std::ssize(bridges) + kept + closed + thin_skin(posed_.volume, inner_skin_, closed, flesh_, labels_.skin);
-    const std::vector<AirPocket> pockets = air_pockets(posed_.volume);
-    std::vector<glm::ivec3> was_air = fill_grown_pockets(
-        posed_.volume, volume_, {pockets, skin_->air_pockets_at_rest()}, flesh_, labels_.soft, rest_point);
+        std::ssize(bridges) + kept + closed + thin_skin(tiles_, inner_skin_, closed, flesh_, labels_.skin);
+    std::vector<InnerSkin>().swap(inner_skin_);
+    const std::vector<AirPocket> pockets = air_pockets(tiles_);
+    std::vector<glm::ivec3> was_air =
+        fill_grown_pockets(tiles_, volume_, {pockets, skin_->air_pockets_at_rest()}, flesh_, labels_.soft, rest_point);
     posed_.report.filled_air_voxels = std::ssize(was_air);
     posed_.report.new_skin_voxels =
-        cover_bare_flesh(posed_.volume, pockets, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
-    const Origins origins = origins_of(posed_.volume, was_air, rest_point);
+        cover_bare_flesh(tiles_, pockets, under_skin_, flesh_, labels_.bone, labels_.skin, was_air);
+    const Origins origins = origins_of(tiles_, was_air, rest_point);
     carry_fields(origins);
     for (const glm::ivec3& v : was_air) rows_[v.y + std::int64_t{output_.grid.size.y} * v.z] = 1;
     const auto any_rest_point = [&](const glm::ivec3& voxel) {
       const auto known = origins.find(output_.grid.index(voxel));
       return known != origins.end() ? known->second.rest : rest_point(voxel);
     };
-    posed_.report.mended_voxels += preserve_connectivity(posed_.volume, volume_, labels_.soft, any_rest_point,
+    posed_.report.mended_voxels += preserve_connectivity(tiles_, volume_, labels_.soft, any_rest_point,
                                                          {&rows_, &rest_rows}, {&bone_rows_, &bone_rest_rows});
   }
 
  private:
   // Writes a voxel that a rig bone has taken from soft tissue. The voxel gets the label of the nearest bone voxel at
   // its rest point. If the rest point lies in another bone, the nearest voxel of its own bone becomes the rest point.
-  void write_bridge(const glm::ivec3& voxel, const LabelVolume& rest_bones, const glm::dvec3& rest) {
+  void write_bridge(const glm::ivec3& voxel, const LabelView& rest_bones, const glm::dvec3& rest) {
     const Label number = posed_bones_.at(voxel);
     const std::optional<glm::ivec3> own = nearest_voxel(rest_bones, number, rest);
     InverseMap map;
@@ -189,7 +200,7 @@ class PosedVoxels {
     TileCounts counts;
     write(map, counts);
     add(counts);
-    if (own) posed_.volume.at(voxel) = volume_.at(*own);
+    if (own) tiles_.at(voxel) = volume_.at(*own);
   }
 
   void carry_fields(const Origins& origins) {
@@ -248,39 +259,9 @@ class PosedVoxels {
           const Label label = posed_.volume.at(voxel), own = volume_.voxels[map.cell[i]];
           if (label == 0 || !labels_.soft[label]) continue;
           ++borders.by_cell[labels_.soft[own] ? own : label];
-          if (!is_enclosed(posed_.volume, voxel)) add_moves(voxel, label, glm::dvec3(map.rest[i]), borders.moves);
+          if (!is_enclosed(posed_.volume, voxel))
+            add_moves(posed_.volume, voxel, sampler_, glm::dvec3(map.rest[i]), labels_.soft, borders.moves);
         }
-  }
-
-  // Adds the label changes of a voxel that are possible: to air or to the soft tissue of a face neighbour. The voxel's
-  // membership of its own tissue must exceed its membership of the new one by less than kMostSure.
-  void add_moves(const glm::ivec3& voxel, Label label, const glm::dvec3& rest, std::vector<BorderMove>& moves) const {
-    static const LabelSet every(65536, 1);
-    const LabelSampler::Memberships found = sampler_.memberships(rest, every);
-    double own = 0, body = 0;
-    for (int k = 0; k < found.count; ++k) {
-      body += found.share[k];
-      if (found.label[k] == label) own = found.share[k];
-    }
-    const std::int64_t at = posed_.volume.grid.index(voxel);
-    const auto add = [&](Label to, double share) {
-      if (own - share < kMostSure) moves.push_back({at, label, to, static_cast<float>(std::max(own - share, 0.0))});
-    };
-    for (int k = 0; k < found.count; ++k)
-      if (found.label[k] != label && labels_.soft[found.label[k]] && has_at_face(voxel, found.label[k]))
-        add(found.label[k], found.share[k]);
-    if (touches_air(posed_.volume, voxel)) add(0, 1 - body);
-  }
-
-  bool has_at_face(const glm::ivec3& voxel, Label label) const {
-    bool found = false;
-    for (int axis = 0; axis < 3; ++axis)
-      for (int side : {-1, 1}) {
-        glm::ivec3 beside = voxel;
-        beside[axis] += side;
-        found |= posed_.volume.at_or_air(beside) == label;
-      }
-    return found;
   }
 
   std::map<Label, std::int64_t> soft_voxels(const LabelVolume& volume) const {
@@ -329,28 +310,42 @@ class PosedVoxels {
     for (v.z = map.range.low.z; v.z <= map.range.high.z; ++v.z)
       for (v.y = map.range.low.y; v.y <= map.range.high.y; ++v.y, ++map_row) {
         if (!map.row_used[map_row] && !settings_.grey) continue;
-        const std::int64_t row = output_.grid.index(glm::ivec3(0, v.y, v.z) - output_.range.low);
+        const glm::ivec3 first = glm::ivec3(0, v.y, v.z) - output_.range.low;
+        const std::int64_t row = output_.grid.index(first), row_in_tiles = tiles_.row(first.y, first.z);
         std::int64_t i = map_row * length;
         for (v.x = map.range.low.x; v.x <= map.range.high.x; ++v.x, ++i) {
           const bool covered = map.is_covered(i);
           if (settings_.grey) posed_.grey.voxels[row + v.x] = covered ? moved_grey(map.rest[i]) : still_grey(v);
-          if (covered) counts.row_has_bone[map_row] |= write_voxel(map, i, v, row + v.x, counts);
+          if (!covered) continue;
+          const std::int64_t in_tiles = row_in_tiles + TiledLabels::along_row(first.x + v.x);
+          counts.row_has_bone[map_row] |= write_voxel(map, i, v, {row + v.x, in_tiles}, counts);
         }
       }
   }
 
+  // Where a voxel of the output lies in volumes, and where in tiles.
+  struct Place {
+    std::int64_t at, in_tiles;
+  };
+
   // Writes one voxel. Returns true if it is bone.
-  bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at, TileCounts& counts) {
+  bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, const Place& place, TileCounts& counts) {
+    const std::int64_t at = place.at;
     const Label label = label_of(map, i);
-    posed_.volume.voxels[at] = label;
-    if (map.bone[i] != InverseMap::kNoBone && mends_) posed_bones_.voxels[at] = static_cast<Label>(map.bone[i] + 1);
+    tiles_.data()[place.in_tiles] = label;
+    if (map.bone[i] != InverseMap::kNoBone && mends_)
+      posed_bones_.data()[place.in_tiles] = static_cast<Label>(map.bone[i] + 1);
     if (mends_ && !labels_.skin[label] && may_touch_air(map, i, v)) {
       const glm::dvec3 rest = map.rest[i];
       if (labels_.bone[label] ? skin_->was_bone_covered(rest) : skin_->was_covered(rest))
         counts.under_skin.push_back({at, skin_->skin_over(rest)});
     }
     if (mends_ && labels_.skin[label] && !may_touch_air(map, i, v))
-      counts.inner_skin.push_back({static_cast<float>((*depth_)(map.rest[i])), at});
+      counts.inner_skin.push_back(
+          {static_cast<float>((*depth_)(map.rest[i])),
+           std::array<std::uint16_t, 3>{static_cast<std::uint16_t>(v.x - output_.range.low.x),
+                                        static_cast<std::uint16_t>(v.y - output_.range.low.y),
+                                        static_cast<std::uint16_t>(v.z - output_.range.low.z)}});
     write_fields(map, i, v, at);
     count(map, i, v, label, counts);
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
@@ -457,10 +452,12 @@ class PosedVoxels {
   LabelSet flesh_;          // soft tissues without skin
   RestPoints rest_points_;  // rest points of the posed voxels as they are before any repair
   std::vector<UnderSkin> under_skin_;
+  std::ptrdiff_t unsure_ = 0;  // index in under_skin_ of the first voxel that may turn out to touch no air
   std::vector<InnerSkin> inner_skin_;
   RowSet rows_, bone_rows_;  // 1 for each row of the output that has tissue, that has bone tissue
-  LabelVolume posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
+  TiledLabels posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
   const LabelSampler sampler_;
+  TiledLabels tiles_;  // the posed labels
   const BodyTracer tracer_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;
@@ -469,13 +466,18 @@ class PosedVoxels {
 
 }  // namespace
 
-void write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed, Progress& progress) {
+std::optional<TiledLabels> write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed,
+                                        Progress& progress) {
   PosedVoxels voxels(body, settings, posed);
   voxels.run(progress);
   if (body.mends) voxels.mend_tears();
-  if (body.mends && body.tets) voxels.keep_soft_volumes(progress);
-  if (body.mends && posed.report.settled) voxels.keep_organs();
+  const bool keeps_flesh = body.mends && body.tets, keeps_organs = body.mends && posed.report.settled;
+  if (!keeps_flesh && !keeps_organs && !settings.mass_exact) return voxels.take_tiles();
+  voxels.lay_in_rows();
+  if (keeps_flesh) voxels.keep_soft_volumes(progress);
+  if (keeps_organs) voxels.keep_organs();
   if (settings.mass_exact) voxels.keep_masses(body.tissues, progress);
+  return std::nullopt;
 }
 
 }  // namespace limber

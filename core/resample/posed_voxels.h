@@ -5,11 +5,13 @@
 // soft tissues get their rest volumes (tissue_volumes.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/resample/output_grid.h"
 #include "core/resample/resample.h"
+#include "core/volume/tiled_labels.h"
 
 namespace limber {
 
@@ -42,8 +44,11 @@ struct PosedBody {
   bool mends;  // true: repairs tears and lost volumes
 };
 
-// Fills the volume of `posed`, the fields that the settings ask for, and the voxel counts of its report.
-// Throws Error where a tissue would have to change by more than settings.mass_limit_percent to keep its mass.
-void write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed, Progress& progress);
+// Fills the fields of `posed` that the settings ask for, and the voxel counts of its report. Returns the posed labels,
+// so that a caller can free the deformation before it lays them in rows (in_rows). Where volumes of soft tissue had to
+// be corrected, returns nothing: the labels are in posed.volume. Throws Error where a tissue would have to change by
+// more than settings.mass_limit_percent to keep its mass.
+std::optional<TiledLabels> write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed,
+                                        Progress& progress);
 
 }  // namespace limber

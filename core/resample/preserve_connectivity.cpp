@@ -51,13 +51,13 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
 class Mending {
  public:
   //   tissue  the posed tissues, from which voxels may be taken; may be the same volume as `posed`
-  Mending(LabelVolume& posed, Components of_posed, const LabelVolume& rest, const Components& of_rest,
-          const LabelVolume& tissue, const LabelSet& soft, const RestPoint& rest_point)
+  Mending(LabelEdit posed, Components of_posed, const LabelView& rest, const Components& of_rest,
+          const LabelView& tissue, const LabelSet& soft, const RestPoint& rest_point)
       : posed_(posed),
         rest_(rest),
         tissue_(tissue),
         soft_(soft),
-        in_tissue_(&posed == &tissue),
+        in_tissue_(posed.is_of_same(tissue)),
         rest_point_(rest_point),
         of_posed_(std::move(of_posed)),
         of_rest_(of_rest),
@@ -380,8 +380,8 @@ class Mending {
     return true;
   }
 
-  LabelVolume& posed_;
-  const LabelVolume &rest_, &tissue_;
+  LabelEdit posed_;
+  const LabelView rest_, tissue_;
   const LabelSet& soft_;
   // True: posed_ and tissue_ are the same volume of tissue labels. False: the labels in posed_ are rig bones.
   const bool in_tissue_;
@@ -401,7 +401,7 @@ class Mending {
 
 }  // namespace
 
-std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft,
+std::int64_t preserve_connectivity(LabelEdit posed, const LabelView& rest, const LabelSet& soft,
                                    const RestPoint& rest_point, const MendRows& rows, const MendRows& bone_rows) {
   LabelSet asked(soft.size());
   for (size_t label = 1; label < soft.size(); ++label) asked[label] = !soft[label];
@@ -415,7 +415,7 @@ std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, 
   return parted + std::ssize(Mending(posed, std::move(of_posed), rest, of_rest, posed, soft, rest_point).run());
 }
 
-std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
+std::vector<glm::ivec3> mend_bones(LabelEdit posed_bones, const LabelView& rest_bones, const LabelView& tissue,
                                    const LabelSet& soft, const RestPoint& rest_point, const MendRows& rows) {
   const Components of_rest = connected_components(rest_bones, rows.rest);
   Components of_posed = connected_components(posed_bones, rows.posed);

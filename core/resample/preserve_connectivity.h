@@ -33,7 +33,7 @@ struct MendRows {
 //   soft       tissues that are not bone, by label
 //   rows       rows that contain tissue     bone_rows  rows that contain bone tissue
 //   returns    the number of changed voxels
-std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, const LabelSet& soft,
+std::int64_t preserve_connectivity(LabelEdit posed, const LabelView& rest, const LabelSet& soft,
                                    const RestPoint& rest_point, const MendRows& rows = {},
                                    const MendRows& bone_rows = {});
 
@@ -43,7 +43,7 @@ std::int64_t preserve_connectivity(LabelVolume& posed, const LabelVolume& rest, 
 //   rest_bones   like posed_bones, for the rest volume
 //   tissue       the posed tissue on the grid of posed_bones; its soft voxels may be taken
 //   returns      the taken voxels
-std::vector<glm::ivec3> mend_bones(LabelVolume& posed_bones, const LabelVolume& rest_bones, const LabelVolume& tissue,
+std::vector<glm::ivec3> mend_bones(LabelEdit posed_bones, const LabelView& rest_bones, const LabelView& tissue,
                                    const LabelSet& soft, const RestPoint& rest_point, const MendRows& rows = {});
 
 }  // namespace limber

@@ -86,17 +86,17 @@ struct RigidBody {
   }
 };
 
-// Returns the volume of the body in one pose.
+// Poses the body. Returns its labels, unless they are in posed.volume already (write_voxels).
 //   shape  the mesh that finite elements have solved for the pose; null: skinning
-Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
-                    const Method& method, const ResampleSettings& settings, Progress& progress) {
+std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
+                                       const Method& method, const ResampleSettings& settings, Posed& posed,
+                                       Progress& progress) {
   const Seconds seconds;
   const LabelVolume& volume = body.volume;
   const LabelSets& labels = body.labels;
   const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
   const auto motions = bone_motions(body.weights.bones(), body.armature, shape ? shape->pose : pose);
   const SkinWeights weights = shape ? with_rigid_rest(body.weights, body.tissue, shape->moving) : body.weights;
-  Posed posed;
   posed.shape = std::move(shape);
   DeformReport& report = posed.report;
   if (posed.shape) tell(*posed.shape, report);
@@ -123,11 +123,20 @@ Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<con
 
   const Seconds rasterize_seconds;
   const bool mends = can_fold(motions) && !settings.nearest;
-  write_voxels(
+  std::optional<TiledLabels> posed_labels = write_voxels(
       {volume, body.tissues, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, output, mends},
       settings, posed, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
+  return posed_labels;
+}
+
+// Returns the volume of the body in one pose. Its rows are written when the deformation takes no memory any more.
+Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
+                    const Method& method, const ResampleSettings& settings, Progress& progress) {
+  Posed posed;
+  std::optional<TiledLabels> labels = deform_body(body, pose, std::move(shape), method, settings, posed, progress);
+  if (labels) posed.volume = in_rows(std::move(*labels));
   return posed;
 }
 

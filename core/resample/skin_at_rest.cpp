@@ -25,7 +25,7 @@ glm::ivec3 voxel_of(const glm::dvec3& rest_point) { return glm::ivec3(rest_point
 
 }  // namespace
 
-SkinAtRest::SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth,
+SkinAtRest::SkinAtRest(const LabelView& volume, const TissueVoxels& tissue, const TissueDepth& depth,
                        const LabelSet& soft, const LabelSet& skin)
     : volume_(volume),
       tissue_(tissue),
@@ -112,7 +112,7 @@ Label SkinAtRest::skin_over(const glm::dvec3& rest_point) const {
   return 0;
 }
 
-std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, const LabelSet& skin) {
+std::int64_t cover_with_skin(LabelEdit posed, std::vector<glm::ivec3> bare, const LabelSet& skin) {
   std::int64_t covered = 0;
   // Bare voxels beside skin become skin, layer by layer. If no bare voxel is beside skin, skin is searched further
   // away.
@@ -130,7 +130,7 @@ std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, c
   return covered;
 }
 
-Label most_common_around(const LabelVolume& volume, const glm::ivec3& voxel, int reach, const LabelSet& wanted) {
+Label most_common_around(const LabelView& volume, const glm::ivec3& voxel, int reach, const LabelSet& wanted) {
   std::map<Label, int> counts;
   for (int z = -reach; z <= reach; ++z)
     for (int y = -reach; y <= reach; ++y)

@@ -21,8 +21,8 @@ namespace limber {
 
 class SkinAtRest {
  public:
-  // Keeps references to all arguments.
-  SkinAtRest(const LabelVolume& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft,
+  // Keeps references to all arguments and to the labels that `volume` shows.
+  SkinAtRest(const LabelView& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft,
              const LabelSet& skin);
 
   // Returns true if the soft tissue at a rest point is covered at rest, so that it must not lie bare when posed.
@@ -43,7 +43,7 @@ class SkinAtRest {
   bool is_bare(const glm::ivec3& voxel) const;
   bool is_mostly_closed() const;
 
-  const LabelVolume& volume_;
+  const LabelView volume_;
   const TissueVoxels& tissue_;
   const TissueDepth& depth_;
   const LabelSet &soft_, &skin_;
@@ -57,9 +57,9 @@ class SkinAtRest {
 // Turns voxels of the posed volume into skin, each with the label of the skin nearest to it. Voxels without skin within
 // 8 voxels stay as they are.
 //   returns  the number of changed voxels
-std::int64_t cover_with_skin(LabelVolume& posed, std::vector<glm::ivec3> bare, const LabelSet& skin);
+std::int64_t cover_with_skin(LabelEdit posed, std::vector<glm::ivec3> bare, const LabelSet& skin);
 
 // Returns the most common label of `wanted` among the voxels at most `reach` steps from `voxel`; 0 where there is none.
-Label most_common_around(const LabelVolume& volume, const glm::ivec3& voxel, int reach, const LabelSet& wanted);
+Label most_common_around(const LabelView& volume, const glm::ivec3& voxel, int reach, const LabelSet& wanted);
 
 }  // namespace limber

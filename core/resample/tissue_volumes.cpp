@@ -13,6 +13,8 @@ namespace limber {
 
 namespace {
 
+// A voxel whose own membership exceeds the new tissue's by this keeps its label.
+constexpr double kMostSure = 0.8;
 // Cost that is added to the cost of every move (change of a voxel's label), so that paths over few tissues are
 // preferred.
 constexpr double kEach = 0.1;
@@ -282,6 +284,30 @@ class Exchange {
 };
 
 }  // namespace
+
+void add_moves(const LabelVolume& posed, const glm::ivec3& voxel, const LabelSampler& sampler, const glm::dvec3& rest,
+               const LabelSet& soft, std::vector<BorderMove>& moves) {
+  static const LabelSet every(65536, 1);
+  const Label label = posed.at(voxel);
+  const LabelSampler::Memberships found = sampler.memberships(rest, every);
+  double own = 0, body = 0;
+  for (int k = 0; k < found.count; ++k) {
+    body += found.share[k];
+    if (found.label[k] == label) own = found.share[k];
+  }
+  const std::int64_t at = posed.grid.index(voxel);
+  const auto add = [&](Label to, double share) {
+    if (own - share < kMostSure) moves.push_back({at, label, to, static_cast<float>(std::max(own - share, 0.0))});
+  };
+  const auto is_beside = [&](Label other) {
+    return std::any_of(kFaceNeighbours.begin(), kFaceNeighbours.end(),
+                       [&](const glm::ivec3& step) { return posed.at_or_air(voxel + step) == other; });
+  };
+  for (int k = 0; k < found.count; ++k)
+    if (found.label[k] != label && soft[found.label[k]] && is_beside(found.label[k]))
+      add(found.label[k], found.share[k]);
+  if (touches_air(posed, voxel)) add(0, 1 - body);
+}
 
 TissueVolumes keep_tissue_volumes(LabelVolume& posed, const std::map<Label, std::int64_t>& wanted,
                                   const std::vector<BorderMove>& moves, const LabelSet& soft, const LabelSet& skin) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/resample/neighbourhood.h"
+#include "core/volume/label_sampler.h"
 
 namespace limber {
 
@@ -27,6 +28,12 @@ struct BorderMove {
   Label from, to;   // the voxel's label before and after the move: soft tissue or air (0)
   float cost;       // membership of `from` minus membership of `to`, [0, 1]
 };
+
+// Adds the moves that are possible at a voxel of soft tissue: to air or to the soft tissue of a face neighbour. The
+// voxel's membership of its own tissue must exceed its membership of the new one by less than 0.8.
+//   sampler  reads the memberships at the voxel's rest point
+void add_moves(const LabelVolume& posed, const glm::ivec3& voxel, const LabelSampler& sampler, const glm::dvec3& rest,
+               const LabelSet& soft, std::vector<BorderMove>& moves);
 
 struct TissueVolumes {
   std::int64_t changed = 0;               // number of label changes

@@ -31,14 +31,15 @@ int end_of_run(const Label* row, int begin, int size) {
 
 // Returns the runs (stretches of one label along x) of slice z. Writes the number of runs of each row to `runs_in_row`.
 //   expected  approximate number of runs in the slice, for which memory is reserved
-std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
+std::vector<Run> runs_of_slice(const LabelView& volume, const RowSet* in_rows, const LabelSet* of_labels, int z,
                                std::size_t expected, std::int64_t* runs_in_row) {
   std::vector<Run> runs;
   runs.reserve(expected);
   const glm::ivec3 size = volume.grid.size;
+  std::vector<Label> room;
   for (int y = 0; y < size.y; ++y) {
     if (in_rows && !(*in_rows)[y + std::int64_t{size.y} * z]) continue;
-    const Label* row = &volume.voxels[volume.grid.index({0, y, z})];
+    const Label* row = volume.row(y, z, room);
     const std::size_t before = runs.size();
     for (int x = end_of_air(row, 0, size.x); x < size.x;) {
       const int begin = x;
@@ -51,22 +52,24 @@ std::vector<Run> runs_of_slice(const LabelVolume& volume, const RowSet* in_rows,
   return runs;
 }
 
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t run) {
-  while (parent[run] != run) run = parent[run] = parent[parent[run]];
+// While components are sought, Run::component is the run's parent in the union-find forest: an earlier run, or, for a
+// root, the run itself.
+std::int32_t root_of(std::vector<Run>& runs, std::int32_t run) {
+  while (runs[run].component != run) run = runs[run].component = runs[runs[run].component].component;
   return run;
 }
 
 // Joins the union-find trees that contain runs a and b. The root with the lower index stays the root, so that the root
 // of a connected component is its first run.
-void join(std::vector<std::int32_t>& parent, std::int32_t a, std::int32_t b) {
-  if (parent[a] == parent[b]) return;
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  if (a != b) parent[std::max(a, b)] = std::min(a, b);
+void join(std::vector<Run>& runs, std::int32_t a, std::int32_t b) {
+  if (runs[a].component == runs[b].component) return;
+  a = root_of(runs, a);
+  b = root_of(runs, b);
+  if (a != b) runs[std::max(a, b)].component = std::min(a, b);
 }
 }  // namespace
 
-Components connected_components(const LabelVolume& volume, const RowSet* in_rows, const LabelSet* of_labels) {
+Components connected_components(const LabelView& volume, const RowSet* in_rows, const LabelSet* of_labels) {
   const glm::ivec3 size = volume.grid.size;
   const std::int64_t rows = std::int64_t{size.y} * size.z;
   Components result;
@@ -91,8 +94,7 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
     std::vector<Run>().swap(runs);
   }
 
-  std::vector<std::int32_t> parent(result.runs.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  for (std::size_t i = 0; i < result.runs.size(); ++i) result.runs[i].component = static_cast<std::int32_t>(i);
   const auto join_rows = [&](std::int64_t row, std::int64_t other) {
     std::int64_t a = result.first_run[row], b = result.first_run[other];
     const std::int64_t a_end = result.first_run[row + 1], b_end = result.first_run[other + 1];
@@ -100,7 +102,7 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
       const Run &first = result.runs[i], &second = result.runs[k];
       // The comparisons are <= because runs that meet only at a corner touch too: one ends where the other begins.
       if (first.label == second.label && first.begin <= second.end && second.begin <= first.end)
-        join(parent, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
+        join(result.runs, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
     };
     while (a < a_end && b < b_end) {
       join_touching(a, b);
@@ -121,15 +123,16 @@ Components connected_components(const LabelVolume& volume, const RowSet* in_rows
           if (y + k >= 0 && y + k < size.y) join_rows(row, row - size.y + k);
     }
 
+  // A run's parent comes before the run, so its component is known already.
   for (std::size_t i = 0; i < result.runs.size(); ++i) {
-    const std::int32_t root = root_of(parent, static_cast<std::int32_t>(i));
-    if (root == static_cast<std::int32_t>(i)) {
-      result.runs[i].component = static_cast<std::int32_t>(result.voxels.size());
+    Run& run = result.runs[i];
+    if (run.component == static_cast<std::int32_t>(i)) {
+      run.component = static_cast<std::int32_t>(result.voxels.size());
       result.voxels.push_back(0);
     } else {
-      result.runs[i].component = result.runs[root].component;
+      run.component = result.runs[run.component].component;
     }
-    result.voxels[result.runs[i].component] += result.runs[i].end - result.runs[i].begin;
+    result.voxels[run.component] += run.end - run.begin;
   }
   return result;
 }

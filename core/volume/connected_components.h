@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/volume/label_volume.h"
+#include "core/volume/label_view.h"
 
 namespace limber {
 
@@ -24,7 +24,7 @@ struct Components {
 
 // Finds the connected components of the labels in `of_labels` (nullptr: all labels), within the rows in `in_rows`
 // (nullptr: all rows). A caller may leave out rows that are known to be air, to save time.
-Components connected_components(const LabelVolume& volume, const RowSet* in_rows = nullptr,
+Components connected_components(const LabelView& volume, const RowSet* in_rows = nullptr,
                                 const LabelSet* of_labels = nullptr);
 
 }  // namespace limber
