@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/base/parallel.h"
@@ -19,16 +20,46 @@ constexpr int kBrick = TissueVoxels::kBrick;
 
 using Eight = FloatLanes<kBrick / 4>;  // one voxel of each of eight neighbouring lines
 
-// Returns the minimum over j of f[j] + (i - j)^2 squared_spacing, for eight lines at once. `f` points at element i.
-// Air, with the value zero, must bound the lines at both ends.
-Eight lowest_around(const Eight* f, double squared_spacing) {
-  Eight lowest = *f;
-  for (std::ptrdiff_t steps = 1;; ++steps) {
-    const auto rise = static_cast<float>(squared_spacing * double(steps * steps));
-    if (!any_above(lowest, rise)) return lowest;
-    lower(lowest, f[-steps], rise);
-    lower(lowest, f[steps], rise);
+// Eight lines of voxels that bricks of tissue make up. Air, with the value zero, bounds them at both ends.
+struct Lines {
+  std::vector<Eight> f;      // the values at each position
+  std::vector<Eight> least;  // the least values of each brick
+  std::vector<float> rise;   // squared length of a number of steps, mm^2
+
+  Lines(std::size_t bricks, double spacing) : f(bricks * kBrick), least(bricks), rise(bricks * kBrick + 1) {
+    for (std::size_t steps = 0; steps < rise.size(); ++steps)
+      rise[steps] = static_cast<float>(spacing * spacing * double(steps * steps));
   }
+
+  void find_least() {
+    for (std::size_t brick = 0; brick < least.size(); ++brick) {
+      least[brick] = f[brick * kBrick];
+      for (int i = 1; i < kBrick; ++i) lower(least[brick], f[brick * kBrick + i], 0);
+    }
+  }
+};
+
+// Returns the minimum over j of f[j] + rise[|i - j|], for eight lines at once. Bricks whose least values cannot lower
+// it any more are passed over.
+Eight lowest_around(const Lines& lines, int i) {
+  const int own = i / kBrick, bricks = static_cast<int>(lines.least.size());
+  const float* rise = lines.rise.data();
+  Eight lowest = lines.f[i];
+  lower(lowest, Eight{}, rise[i + 1]);
+  lower(lowest, Eight{}, rise[bricks * kBrick - i]);
+  const auto visit = [&](int brick) {
+    for (int j = brick * kBrick; j < (brick + 1) * kBrick; ++j) lower(lowest, lines.f[j], rise[std::abs(j - i)]);
+  };
+  visit(own);
+  bool below = true, above = true;
+  for (int k = 1; below || above; ++k) {
+    const int low = own - k, high = own + k, from_low = i - low * kBrick - (kBrick - 1), from_high = high * kBrick - i;
+    below = below && low >= 0 && any_above(lowest, rise[from_low]);
+    above = above && high < bricks && any_above(lowest, rise[from_high]);
+    if (below && any_lower(lines.least[low], rise[from_low], lowest)) visit(low);
+    if (above && any_lower(lines.least[high], rise[from_high], lowest)) visit(high);
+  }
+  return lowest;
 }
 
 }  // namespace
@@ -118,20 +149,18 @@ void TissueDepth::pass_across(int axis, double spacing) {
   const int along = axis == 1 ? kBrick : kBrick * kBrick,
             across = axis == 1 ? kBrick * kBrick : kBrick;  // strides within a brick
   for_each_column(axis, [&](const std::vector<int>& column) {
-    std::vector<Eight> lines(column.size() * kBrick + 2);  // one element of air at either end
+    Lines lines(column.size(), spacing);
     for (int slice = 0; slice < kBrick; ++slice) {
-      Eight* line = &lines[1];
-      for (const int brick : column)
-        for (int i = 0; i < kBrick; ++i)
-          std::memcpy(line++, &squared_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along],
-                      sizeof(Eight));
-      line = &lines[1];
-      for (const int brick : column)
-        for (int i = 0; i < kBrick; ++i, ++line) {
-          const Eight lowest = lowest_around(line, spacing * spacing);
-          std::memcpy(&squared_[std::int64_t{brick} * kBrickVoxels + slice * across + i * along], &lowest,
-                      sizeof(Eight));
-        }
+      const auto at = [&](int i) {
+        return &squared_[std::int64_t{column[i / kBrick]} * kBrickVoxels + slice * across + i % kBrick * along];
+      };
+      const int size = static_cast<int>(lines.f.size());
+      for (int i = 0; i < size; ++i) std::memcpy(&lines.f[i], at(i), sizeof(Eight));
+      lines.find_least();
+      for (int i = 0; i < size; ++i) {
+        const Eight lowest = lowest_around(lines, i);
+        std::memcpy(at(i), &lowest, sizeof(Eight));
+      }
     }
   });
 }

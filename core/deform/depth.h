@@ -6,8 +6,8 @@
 //
 // There is one pass per axis over columns of tissue bricks. Along x, the nearest air is at the nearer end of a run of
 // tissue. Along y and z every voxel searches outwards, eight lines at a time, until it is further away than the
-// distance found so far [as Saito & Toriwaki 1994]: the number of steps grows with the depth, and each step takes a few
-// machine instructions for all eight.
+// distance found so far [as Saito & Toriwaki 1994]. It passes over bricks whose least value is too large, so that deep
+// inside a body it takes one step for eight voxels.
 #pragma once
 
 #include <cmath>

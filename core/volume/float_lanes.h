@@ -20,6 +20,14 @@ bool any_above(const FloatLanes<kFours>& lanes, float limit) {
   return above[0] | above[1] | above[2] | above[3];
 }
 
+// Returns true if at least one float of `lanes` + rise is below the corresponding float of `limits`.
+template <std::size_t kFours>
+bool any_lower(const FloatLanes<kFours>& lanes, float rise, const FloatLanes<kFours>& limits) {
+  auto below = lanes[0] + rise < limits[0];
+  for (std::size_t i = 1; i < kFours; ++i) below |= lanes[i] + rise < limits[i];
+  return below[0] | below[1] | below[2] | below[3];
+}
+
 // Sets each float of `lowest` to the minimum of itself and the corresponding float of `other` + rise.
 template <std::size_t kFours>
 void lower(FloatLanes<kFours>& lowest, const FloatLanes<kFours>& other, float rise) {
