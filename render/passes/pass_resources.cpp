@@ -42,7 +42,7 @@ PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume
       for (const auto& layer : fresh->layers) layer->upload(*fresh->volume, nullptr);
     } else {
       fresh = std::make_unique<Body>();
-      fresh->revision = ++revisions_;
+      fresh->revision = ++revisions_, ++uploads_;
       fresh->key = volume;
       fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
     }
@@ -99,7 +99,7 @@ bool PassResources::upload(PreparedBody& prepared) {
     forget_expired();
     arriving_.reset();
     auto fresh = std::make_unique<Body>();
-    fresh->revision = ++revisions_;
+    fresh->revision = ++revisions_, ++uploads_;
     fresh->key = prepared.original;
     fresh->volume = std::make_unique<VolumeTexture>(std::move(prepared.volume));
     arriving_ = std::move(fresh);

@@ -65,6 +65,7 @@ struct PassResources {
   void relabel(const std::shared_ptr<const LabelVolume>& before, const std::shared_ptr<const LabelVolume>& now,
                const VoxelBox& box, Surface surface);
   int revision_of(const std::shared_ptr<const LabelVolume>& volume) const;  // 0 for a volume without textures
+  int uploads() const { return uploads_; }                                  // number of volumes uploaded so far
   std::size_t body_count() const { return bodies_.size(); }                 // number of volumes on the graphics card
   // Uploads a prepared body: as much as the frame's time limit allows. Returns true once body() has it. Later calls
   // must pass the same body until then. Throws Error when the driver has no memory for it.
@@ -108,7 +109,8 @@ struct PassResources {
     std::unique_ptr<LooksTexture> texture;
   };
   std::vector<std::unique_ptr<Body>> bodies_;
-  int revisions_ = 0;               // the last number given to Body::revision
+  int revisions_ = 0;  // the last number given to Body::revision
+  int uploads_ = 0;
   std::unique_ptr<Body> arriving_;  // the prepared body that is being uploaded
   std::vector<Looks> looks_;
   // The grey images that were shown last, at most two: those of two compared results.
