@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/binding/flesh_graph.h"
-#include "core/rig/joint_names.h"
+#include "core/rig/bone_roles.h"
 
 namespace limber {
 
@@ -20,22 +20,6 @@ constexpr double kHasRibs = 0.4;
 // The ribs end this far down the way from the shoulders to the hips.
 constexpr double kCageEnd = 0.6;
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
-
-using Roles = std::vector<std::optional<JointRole>>;
-
-// Returns the anatomical role of each bone. A bone whose name is not recognized gets its parent's role.
-Roles roles_of(const Armature& armature) {
-  std::vector<std::string> names;
-  std::vector<int> parents;
-  for (const Bone& bone : armature.bones) {
-    names.push_back(bone.name);
-    parents.push_back(bone.parent);
-  }
-  Roles roles = joint_roles(names, parents);
-  for (std::size_t b = 0; b < roles.size(); ++b)
-    if (!roles[b] && parents[b] >= 0) roles[b] = roles[parents[b]];
-  return roles;
-}
 
 bool is_of_arm(const std::optional<JointRole>& role) {
   if (!role) return false;
@@ -56,7 +40,7 @@ bool is_of_arm(const std::optional<JointRole>& role) {
 }
 
 // Returns the mean head of the bones of a body part; nothing if there are none.
-std::optional<glm::dvec3> middle_of(const Armature& armature, const Roles& roles, BodyPart part) {
+std::optional<glm::dvec3> middle_of(const Armature& armature, const BoneRoles& roles, BodyPart part) {
   glm::dvec3 sum(0);
   int count = 0;
   for (std::size_t b = 0; b < roles.size(); ++b)
@@ -76,7 +60,8 @@ struct Chest {
 };
 
 Chest chest_of(const Armature& armature) {
-  const Roles roles = roles_of(armature);
+  // Bones with unknown names, as those that spread an arm's twist, tell nothing of where joints lie.
+  const BoneRoles roles = bone_roles(armature), inherited = inherited_bone_roles(armature);
   const auto shoulders = middle_of(armature, roles, BodyPart::UpperArm);
   const auto thighs = middle_of(armature, roles, BodyPart::Thigh);
   const auto hips = thighs ? thighs : middle_of(armature, roles, BodyPart::Pelvis);
@@ -87,9 +72,9 @@ Chest chest_of(const Armature& armature) {
   const auto neck = middle_of(armature, roles, BodyPart::Neck);
   const glm::dvec3 up = glm::normalize((neck ? *neck : *shoulders) - *hips);
   for (std::size_t b = 0; b < roles.size(); ++b) {
+    if (is_of_arm(inherited[b])) chest.arms.push_back(static_cast<std::uint16_t>(b));
     if (!roles[b]) continue;
     const Bone& bone = armature.bones[b];
-    if (is_of_arm(roles[b])) chest.arms.push_back(static_cast<std::uint16_t>(b));
     if (roles[b]->part == BodyPart::Spine &&
         glm::dot(0.5 * (bone.head + bone.tail) - *shoulders, down) < kCageEnd * glm::dot(down, down))
       chest.bones.push_back(static_cast<std::uint16_t>(b));

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <string>
 
+#include "core/rig/bone_roles.h"
+
 namespace limber {
 
 namespace {
@@ -14,22 +16,6 @@ namespace {
 // shares are a little larger.
 constexpr double kLimbGrownTogether = 0.3;
 constexpr double kFingerGrownTogether = 0.6;
-
-using Roles = std::vector<std::optional<JointRole>>;
-
-// Returns the anatomical role of each bone. A bone whose name is not recognized gets its parent's role.
-Roles roles_of(const Armature& armature) {
-  std::vector<std::string> names;
-  std::vector<int> parents;
-  for (const Bone& bone : armature.bones) {
-    names.push_back(bone.name);
-    parents.push_back(bone.parent);
-  }
-  Roles roles = joint_roles(names, parents);
-  for (size_t b = 0; b < roles.size(); ++b)
-    if (!roles[b] && parents[b] >= 0) roles[b] = roles[parents[b]];
-  return roles;
-}
 
 bool is_digit(BodyPart part) {
   return part == BodyPart::Thumb || part == BodyPart::Index || part == BodyPart::Middle || part == BodyPart::Ring ||
@@ -64,7 +50,7 @@ LimbName limb_name_of(const JointRole& role) {
 }
 
 template <class Belongs>
-Limb limb_where(const Armature& armature, const Roles& roles, const Belongs& belongs) {
+Limb limb_where(const Armature& armature, const BoneRoles& roles, const Belongs& belongs) {
   Limb limb;
   for (size_t b = 0; b < roles.size(); ++b) {
     limb.has_bone.push_back(roles[b] && belongs(*roles[b]));
@@ -78,7 +64,7 @@ bool has_any(const Limb& limb) {
   return std::find(limb.has_bone.begin(), limb.has_bone.end(), true) != limb.has_bone.end();
 }
 
-Limb arm_or_leg(const Armature& armature, const Roles& roles, LimbName name, BodySide side) {
+Limb arm_or_leg(const Armature& armature, const BoneRoles& roles, LimbName name, BodySide side) {
   Limb limb = limb_where(armature, roles,
                          [&](const JointRole& role) { return limb_name_of(role) == name && role.side == side; });
   limb.grown_together = kLimbGrownTogether;
@@ -90,7 +76,7 @@ Limb arm_or_leg(const Armature& armature, const Roles& roles, LimbName name, Bod
   return limb;
 }
 
-Limb digit(const Armature& armature, const Roles& roles, BodyPart part, BodySide side) {
+Limb digit(const Armature& armature, const BoneRoles& roles, BodyPart part, BodySide side) {
   Limb limb = limb_where(armature, roles, [&](const JointRole& role) {
     return role.part == part && role.side == side && is_free_digit(role);
   });
@@ -104,12 +90,13 @@ Limb digit(const Armature& armature, const Roles& roles, BodyPart part, BodySide
 
 std::vector<std::optional<LimbName>> limb_of_bones(const Armature& armature) {
   std::vector<std::optional<LimbName>> names;
-  for (const auto& role : roles_of(armature)) names.push_back(role ? std::optional(limb_name_of(*role)) : std::nullopt);
+  for (const auto& role : inherited_bone_roles(armature))
+    names.push_back(role ? std::optional(limb_name_of(*role)) : std::nullopt);
   return names;
 }
 
 std::vector<Limb> limbs_of(const Armature& armature) {
-  const Roles roles = roles_of(armature);
+  const BoneRoles roles = inherited_bone_roles(armature);
   std::vector<Limb> limbs;
   const auto add = [&](Limb limb) {
     if (has_any(limb)) limbs.push_back(std::move(limb));

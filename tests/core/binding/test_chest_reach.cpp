@@ -113,6 +113,16 @@ TEST_CASE("chest: without ribs the arms count as further away, and the chest hol
   CHECK(with_ribs[2].held_from(with_ribs[2](100)) == usual[2](100));
 }
 
+TEST_CASE("chest: a helper bone of unknown name along the arm goes with the arm, and does not widen the chest") {
+  const SmallBody bare = trunk_with_arms(Ribs::None);
+  SmallBody helped = bare;
+  helped.armature.bones.push_back(bone_between("zz1", 4, {260, 0, 460}, {340, 0, 360}));
+  const std::vector<BoneReach> usual = reaches_in(bare), found = reaches_in(helped);
+  CHECK(usual[2].cage_width > 100);
+  CHECK(found[2].cage_width == usual[2].cage_width);
+  CHECK(found.back().cage == BoneReach::Cage::Arm);
+}
+
 TEST_CASE("chest: a rig of an arm, or of unknown names, keeps its distances") {
   SmallBody body = trunk_with_arms(Ribs::None);
   for (Bone& bone : body.armature.bones) bone.name = "b" + bone.name.substr(bone.name.size() - 2) + "x";
