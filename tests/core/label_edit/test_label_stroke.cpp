@@ -170,3 +170,20 @@ TEST_CASE("label stroke: beyond the grid nothing is painted, and at its rim only
   CHECK(stroke.volume()->at({3, 5, 5}) == 3);
   CHECK_THROWS_AS(LabelStroke(before, {.label = 4, .radius = 0}), std::logic_error);
 }
+
+TEST_CASE("label stroke: with a copy of the volume made ahead it paints the same labels, and leaves the volume alone") {
+  const Grid grid = oblique_grid({24, 20, 16});
+  const auto before = shared(random_labels(grid, 3, 6));
+  const LabelVolume kept = *before;
+  const AffineTransform world = world_from_voxel(grid);
+  LabelStroke plain(before, {.label = 7, .radius = 6}),
+      ahead(before, {.label = 7, .radius = 6}, std::make_shared<LabelVolume>(*before));
+  for (LabelStroke* stroke : {&plain, &ahead}) {
+    stroke->to(world * glm::dvec3(5, 6, 7));
+    stroke->to(world * glm::dvec3(17, 12, 9));
+    CHECK_FALSE(stroke->empty());
+  }
+  CHECK(plain.volume()->voxels == ahead.volume()->voxels);
+  CHECK(plain.change().voxel_count() == ahead.change().voxel_count());
+  CHECK(before->voxels == kept.voxels);
+}

@@ -269,17 +269,6 @@ TEST_CASE("label brush: what was painted is in the project's file, with the new 
   CHECK_FALSE(test.editor->document().tissues->find(label));
 }
 
-TEST_CASE("label brush: a stroke on a volume whose copy is ready or not gives the same labels") {
-  LabelEditor test;
-  const double z = test.plane_of(ViewId::Axial);
-  test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
-  const LabelVolume first = test.volume();
-  test.play("key Ctrl+Z\nwait-idle");
-  brush_of(*test.editor).spare = {};  // no copy is ready
-  test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
-  CHECK(test.volume().voxels == first.voxels);
-}
-
 TEST_CASE("label brush: without a tissue it says what to do, and other brushes take over from it") {
   LabelEditor test;
   test.editor->selection = {};
