@@ -27,7 +27,7 @@ void draw_painted_tissue(Editor& editor, Column& column) {
     if (editor.selection.tissue == tissue.label) chosen = static_cast<int>(names.size());
     names.push_back(shown_name(tissue));
   }
-  if (chosen < 0) names.push_back("Select a tissue");
+  if (chosen < 0) names.push_back("Select...");
   const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
   const glm::vec3 colour = chosen < 0 ? glm::vec3(0) : tissues->tissues[static_cast<std::size_t>(chosen)].colour;
   if (chosen >= 0)
