@@ -7,12 +7,13 @@
 //    sum over cells  fill * ( h^2 |grad c|^2  +  kVolume |F - P|^2 )
 //      +   sum over nodes  ( |c / (kReach h)|^2  +  kBone * bone * |c|^2 )
 //
-// P is the matrix near F whose determinant gives the cell its volume, h the edge of a cell, and bone the volume of bone
-// around a node, so that bones stay where the pose moves them. In addition, springs move nodes of soft tissue inside a
-// bone to its surface (posed_bones.h), and nodes inside other flesh half of the way out of it (flesh_contact.h). Shifts
-// start from the blended pose, so that painted weights still count. P is recomputed before each solve for the shifts by
-// conjugate gradients, whose matrix stays the same except for these springs [Bouaziz, Martin, Liu, Kavan & Pauly 2014,
-// Projective dynamics]. The result does not depend on the number of threads, byte for byte.
+// P is the matrix near F whose determinant gives the cell its volume, and which stretches it to at most twice its
+// length, or as far as blending does; h is the edge of a cell, and bone the volume of bone around a node, so that bones
+// stay where the pose moves them. In addition, springs move nodes of soft tissue inside a bone to its surface
+// (posed_bones.h), and nodes inside other flesh half of the way out of it (flesh_contact.h). Shifts start from the
+// blended pose, so that painted weights still count. P is recomputed before each solve for the shifts by conjugate
+// gradients, whose matrix stays the same except for these springs [Bouaziz, Martin, Liu, Kavan & Pauly 2014, Projective
+// dynamics]. The result does not depend on the number of threads, byte for byte.
 #pragma once
 
 #include <algorithm>

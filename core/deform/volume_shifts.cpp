@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 #include "core/base/parallel.h"
 #include "core/volume/float_lanes.h"
 
@@ -17,9 +19,12 @@ constexpr double kReach = 10;    // distance over which a shift fades out, in ce
 // Smallest determinant of a cell's deformation gradient at which the solve aims. The largest is 1 / kLeast.
 constexpr double kLeast = 0.2;
 constexpr double kBone = 1e4;  // weight that keeps bone in place, relative to the smoothness of the shifts
-// Stiffness of the spring that pulls a node out of a bone or other flesh, for a node with eight cells full of tissue
-// around it. With less tissue the stiffness falls in proportion.
-constexpr double kPush = 500;
+// Stretch of a cell beyond which the solve does not pull it, unless blending alone has stretched it further.
+constexpr double kStretch = 2;
+// Stiffness of the spring that pulls a node out of a bone, and of that out of other flesh, for a node with eight cells
+// full of tissue around it. With less tissue the stiffness falls in proportion. Flesh yields to flesh: as stiff a
+// spring as that of a bone would tear specks out of a limb that is folded onto another.
+constexpr double kPush = 500, kPart = 40;
 constexpr double kMostlySoft = 0.2;  // in cell volumes: a node with less bone around it counts as soft
 constexpr int kLook = 2;             // number of steps from one search for flesh inside flesh to the next
 // Number of steps. For a sitting body with voxels of 4 mm, the mean volume error of its cells is 2.6, 0.9 and 0.8 %
@@ -71,6 +76,20 @@ double volume_of(const std::array<glm::dvec3, 8>& corner) {
 
 glm::dmat3 cofactor(const glm::dmat3& F) {
   return glm::dmat3(glm::cross(F[1], F[2]), glm::cross(F[2], F[0]), glm::cross(F[0], F[1]));
+}
+
+Eigen::Matrix3d squared(const glm::dmat3& F) {
+  Eigen::Matrix3d C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = glm::dot(F[i], F[j]);
+  return C;
+}
+
+// Returns the largest stretch of a deformation gradient, its largest singular value.
+double longest_of(const glm::dmat3& F) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(squared(F), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
 }
 
 // The cells around each node, and the node's index among the eight nodes of each of these cells.
@@ -139,8 +158,10 @@ class Minimizer {
       for (auto c = first; c < last; ++c) {
         const glm::dmat3 F = posed_gradient(c);
         const double wanted = glm::determinant(F) + 1 - volume_ratio(c);
-        pull_[c] = glm::mat3((with_volume(F, std::clamp(wanted, kLeast, 1 / kLeast)) - glm::dmat3(start_[c])) *
-                             (kVolume * h2_ * cells_.fill[c]));
+        const double volume = std::clamp(wanted, kLeast, 1 / kLeast);
+        const glm::dmat3 start(start_[c]);
+        const glm::dmat3 P = with_stretch(with_volume(F, volume), volume, start);
+        pull_[c] = glm::mat3((P - start) * (kVolume * h2_ * cells_.fill[c]));
       }
     });
     parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
@@ -234,7 +255,7 @@ class Minimizer {
         push_[n] = 0;
         if (!cells_.is_fixed[n] && cells_.bone[n] < kMostlySoft)
           if (const auto way = bones_->way_out(cells_.blended[n] + glm::dvec3(shift_[n]))) {
-            push_[n] = strength(n);
+            push_[n] = strength(kPush, n);
             outward_[n] = shift_[n] + glm::vec3(*way);
           }
         diagonal_[n] += push_[n];
@@ -242,12 +263,12 @@ class Minimizer {
     });
   }
 
-  // Returns the stiffness of the spring on a node. It is in proportion to the tissue around the node, since a crumb of
-  // flesh would otherwise be pulled as strongly as full cells.
-  float strength(std::int64_t node) const {
+  // Returns the stiffness of the spring on a node, of which `full` is that for full cells. It is in proportion to the
+  // tissue around the node, since a crumb of flesh would otherwise be pulled as strongly as full cells.
+  float strength(double full, std::int64_t node) const {
     double fill = 0;
     for (auto i = of_node_.begin[node]; i < of_node_.begin[node + 1]; ++i) fill += cells_.fill[of_node_.place[i] >> 3];
-    return static_cast<float>(kPush * std::min(1.0, fill / 8));
+    return static_cast<float>(full * std::min(1.0, fill / 8));
   }
 
   // Attaches springs to nodes inside other flesh, which pull them half of the way out of it.
@@ -267,7 +288,7 @@ class Minimizer {
     }
     for (std::int64_t n = 0; n < count_; ++n)
       if (is_inside_[n] && push_[n] == 0) {
-        push_[n] = strength(n);
+        push_[n] = strength(kPart, n);
         outward_[n] = apart_[n];
         diagonal_[n] += push_[n];
       }
@@ -363,6 +384,27 @@ glm::dmat3 with_volume(const glm::dmat3& F, double volume) {
     P += slope * std::clamp(step, -longest, longest);
   }
   return P;
+}
+
+glm::dmat3 with_stretch(const glm::dmat3& F, double volume, const glm::dmat3& blended) {
+  if (glm::dot(F[0], F[0]) + glm::dot(F[1], F[1]) + glm::dot(F[2], F[2]) <= kStretch * kStretch) return F;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(squared(F));
+  const Eigen::Vector3d have = solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt();
+  if (have[2] <= kStretch) return F;
+  const double most = std::max(kStretch, longest_of(blended));
+  if (have[2] <= most) return F;
+  const double area = volume / most;  // product of the other two stretches
+  Eigen::Vector3d wanted;
+  wanted[2] = most;
+  wanted[1] = std::min(have[1] * std::sqrt(area / std::max(have[0] * have[1], 1e-9)), most);
+  wanted[0] = std::min(area / wanted[1], most);
+  const Eigen::Matrix3d along = solver.eigenvectors();
+  const Eigen::Matrix3d S = along * wanted.cwiseQuotient(have).asDiagonal() * along.transpose();
+  glm::dmat3 limited(0);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) limited[j] += F[i] * S(i, j);
+  return limited;
 }
 
 VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact,

@@ -27,4 +27,10 @@ VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, Fle
 // inverted; `volume` must be positive.
 glm::dmat3 with_volume(const glm::dmat3& F, double volume);
 
+// Returns F with its largest stretch (its largest singular value) limited to 2, or to that of `blended` if this is
+// larger, so that flesh regains its volume without being pulled out. The other two stretches change together so that
+// the determinant becomes `volume`, as far as the limit lets them. A matrix within the limit is returned as it is.
+//   blended  the gradient that blending alone gives
+glm::dmat3 with_stretch(const glm::dmat3& F, double volume, const glm::dmat3& blended);
+
 }  // namespace limber

@@ -6,6 +6,7 @@
 #include <random>
 
 #include <doctest/doctest.h>
+#include <Eigen/SVD>
 
 #include "core/base/parallel.h"
 #include "core/deform/lattice.h"
@@ -85,7 +86,42 @@ double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions
   return posed_volume(limb, lattice) / double(limb.tissue.size()) - 1;
 }
 
+// Returns how many voxels are stretched beyond `limit`, by the singular values of their gradient.
+int stretched(const Limb& limb, const PosedLattice& lattice, double limit) {
+  int count = 0;
+  PosedLattice::Corners room;
+  for (std::int64_t brick = 0; brick < std::ssize(limb.tissue.bricks()); ++brick) {
+    const PosedLattice::Corners& corners = lattice.corners(brick, room);
+    limb.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+      const glm::ivec3 v = voxel - limb.tissue.bricks()[brick].corner;
+      Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
+      for (int c = 0; c < 8; ++c) {
+        const glm::dvec3 at =
+            glm::dvec3(corners[PosedLattice::place(v.x + (c & 1), v.y + (c >> 1 & 1), v.z + (c >> 2))]) /
+            double(kFixedOne);
+        F += Eigen::Vector3d(at.x, at.y, at.z) *
+             Eigen::RowVector3d(c & 1 ? 0.25 : -0.25, c & 2 ? 0.25 : -0.25, c & 4 ? 0.25 : -0.25);
+      }
+      count += F.jacobiSvd().singularValues()[0] > limit;
+    });
+  }
+  return count;
+}
+
 }  // namespace
+
+TEST_CASE("settled flesh: a limb folded onto itself is not pulled out to lumps") {
+  const Limb limb;
+  const auto motions = limb.bent(140);
+  const auto count = [&](const SettledFlesh* settled, double limit) {
+    const PosedLattice lattice(limb.volume, limb.tissue, limb.weights, motions, Blend::Mixed, glm::dvec3(1),
+                               no_progress(), settled);
+    return stretched(limb, lattice, limit);
+  };
+  const SettledFlesh settled = limb.settled(motions);
+  CHECK(count(nullptr, 3) == 0);
+  CHECK(count(&settled, 3) < limb.tissue.size() / 25);
+}
 
 TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not" * doctest::test_suite("slow")) {
   const Limb limb;
@@ -283,4 +319,34 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
   }
   const glm::dmat3 flat = with_volume(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.3), 1);  // inverted: it is turned back
   CHECK(glm::determinant(flat) > 0.5);
+}
+
+TEST_CASE("volume shifts: a limited stretch keeps volume and directions") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> size(0.3, 4), angle(-3, 3), part(-1, 1);
+  const auto turn = [&] {
+    return glm::mat3_cast(glm::angleAxis(angle(random), glm::normalize(glm::dvec3(part(random), part(random), 1.1))));
+  };
+  int limited = 0;
+  for (int i = 0; i < 500; ++i) {
+    const glm::dmat3 U = turn(), V = turn();
+    const glm::dvec3 stretch(size(random), size(random), size(random));
+    const glm::dmat3 F = U * glm::dmat3(stretch.x, 0, 0, 0, stretch.y, 0, 0, 0, stretch.z) * glm::transpose(V);
+    const double longest = std::max({stretch.x, stretch.y, stretch.z}), blended = size(random);
+    const double most = std::max(2.0, blended), volume = 1;
+    const glm::dmat3 P = with_stretch(F, volume, blended * turn());
+    if (longest <= most) {
+      CHECK(P == F);
+      continue;
+    }
+    ++limited;
+    // In the axes of the stretches nothing but their lengths has changed.
+    const glm::dmat3 D = glm::transpose(U) * P * V;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        if (a != b) CHECK(std::abs(D[a][b]) < 1e-6);
+    for (int a = 0; a < 3; ++a) CHECK(D[a][a] < most * (1 + 1e-6));
+    CHECK(glm::determinant(P) == doctest::Approx(volume).epsilon(1e-6));
+  }
+  CHECK(limited > 100);
 }
