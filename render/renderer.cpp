@@ -11,8 +11,8 @@
 namespace limber::render {
 
 std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
-                                            Display display, int largest_texture, Progress& progress) {
-  auto prepared = std::make_shared<PreparedBody>(PreparedBody{volume, drawn_volume(volume, largest_texture), {}});
+                                            Display display, const TextureLimits& limits, Progress& progress) {
+  auto prepared = std::make_shared<PreparedBody>(PreparedBody{volume, drawn_volume(volume, limits), {}});
   const std::shared_ptr<const LabelVolume> drawn = prepared->volume.drawn();
   const std::vector<LabelSet> layers = layers_of(looks, display, prepared->volume.exposure);
   for (const LabelSet& set : layers) {
@@ -30,7 +30,8 @@ void Renderer::begin_frame(double upload_seconds) {
                                                         std::chrono::duration<double>(upload_seconds))};
 }
 bool Renderer::upload(PreparedBody& prepared) { return resources_->upload(prepared); }
-int Renderer::largest_texture() const { return resources_->largest_texture; }
+void Renderer::limit_memory(std::int64_t bytes) { resources_->limits.bytes = bytes; }
+const TextureLimits& Renderer::limits() const { return resources_->limits; }
 void Renderer::average_at_rest(int pictures) { resources_->pictures_at_rest = std::max(0, pictures); }
 void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return resources_->note; }

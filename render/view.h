@@ -17,6 +17,7 @@
 #include "render/scene/camera.h"
 #include "render/scene/scene.h"
 #include "render/scene/slice_camera.h"
+#include "render/textures/texture_limits.h"
 
 namespace limber::render {
 
@@ -27,9 +28,9 @@ struct PreparedBody;
 // while others draw; Renderer::upload() then uploads the result over several frames. Throws Cancelled, and Error when
 // the volume does not fit in textures.
 //   looks, display   with which the volume will be drawn; with others, some of it is computed again
-//   largest_texture  Renderer::largest_texture()
+//   limits           Renderer::limits()
 std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
-                                            Display display, int largest_texture, Progress& progress);
+                                            Display display, const TextureLimits& limits, Progress& progress);
 
 // The resources of one OpenGL context: textures of the volumes in use, and shader programs.
 class Renderer {
@@ -53,7 +54,9 @@ class Renderer {
   // Uploads a prepared body: as much as the frame's time limit allows. Returns true when the body can be drawn without
   // a delay. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
-  int largest_texture() const;  // largest number of texels per axis of a 3D texture
+  // Limits the textures of each volume that is uploaded from now on; by default only the driver limits them.
+  void limit_memory(std::int64_t bytes);
+  const TextureLimits& limits() const;
 
   // Sets how many pictures are averaged when nothing moves; the default is six. Fewer pictures are complete sooner, but
   // less smooth. With 0 the picture stays at every third pixel, for tests that need no good picture.

@@ -23,6 +23,10 @@ Box box_of_voxels(const Grid& grid, const glm::dvec3& low, const glm::dvec3& hig
   return box;
 }
 
+// Most memory for the textures of one volume. It suffices for a body of 300 million voxels of tissue; one with more is
+// shown at half its resolution, so that it opens in seconds and leaves memory for the work on it.
+constexpr std::int64_t kMostBytes = 1'500'000'000;
+
 }  // namespace
 
 render::Camera between(const render::Camera& from, const render::Camera& to, double t) {
@@ -34,6 +38,7 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 }
 
 Views::Views(int largest_texture) : renderer(largest_texture) {
+  renderer.limit_memory(kMostBytes);
   // The first camera looks from the front, a little from the left and from above.
   body.camera = render::orbited(render::looking_from(render::StandardView::Front, body.camera), {-75, 25});
   body.picture = std::make_unique<render::View3D>(renderer);

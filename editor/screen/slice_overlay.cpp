@@ -102,11 +102,15 @@ void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
   draw_cross_hair(editor, camera, frame, rect);
   draw_rulers(editor, place);
   const Rect free = beside_rulers(editor, rect);
-  draw_view_title(
-      editor, free, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
-      std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]) +
-          (rect.width() > editor.look.px(300) && (!is_of_document(editor, scene.volume) || scene.pose) ? " \u00b7 posed"
-                                                                                                       : ""));
+  std::string state =
+      std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]);
+  if (rect.width() > editor.look.px(300)) {
+    if (!is_of_document(editor, scene.volume) || scene.pose) state += " \u00b7 posed";
+    const std::string& note = editor.views->renderer.note();
+    if (!note.empty()) state += " \u00b7 " + note.substr(0, note.find(':'));
+  }
+  draw_view_title(editor, free, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
+                  state);
   draw_letters(editor, frame, free);
   draw_slice_bar(editor, grid, axis, rect);
   draw_scale_bar(editor, free, camera.millimetres_per_pixel);

@@ -29,7 +29,7 @@ bool same(const std::weak_ptr<T>& key, const Owner& owner) {
 
 }  // namespace
 
-PassResources::PassResources(int largest) : largest_texture(texture_limit(largest)) {}
+PassResources::PassResources(int largest) : limits{texture_limit(largest)} {}
 
 PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume>& volume) {
   auto found = std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& body) { return same(body->key, volume); });
@@ -44,7 +44,7 @@ PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume
       fresh = std::make_unique<Body>();
       fresh->revision = ++revisions_, ++uploads_;
       fresh->key = volume;
-      fresh->volume = std::make_unique<VolumeTexture>(volume, largest_texture);
+      fresh->volume = std::make_unique<VolumeTexture>(volume, limits);
     }
     found = bodies_.insert(bodies_.end(), std::move(fresh));
   }
@@ -156,7 +156,7 @@ const PosedTexture* PassResources::pose(Body& body, const std::shared_ptr<const 
   if (const auto volume = body.volume->original().lock(); !volume || !(map->grid == volume->grid))
     throw Error("the pose was made for another volume", "preview of a posed body", "pose the volume that is shown");
   if (!body.pose) body.pose = std::make_unique<PosedTexture>();
-  if (body.pose->map() != map) body.pose->upload(map, largest_texture);
+  if (body.pose->map() != map) body.pose->upload(map, limits.side);
   return body.pose.get();
 }
 
@@ -188,7 +188,7 @@ GreyTexture* PassResources::grey(const std::optional<ShownGrey>& shown, Extent e
     // Frees memory before the next image asks for some.
     std::erase_if(greys_, [](const auto& grey) { return grey->original().expired(); });
     if (greys_.size() == kMost) greys_.erase(greys_.begin());
-    found = greys_.insert(greys_.end(), std::make_unique<GreyTexture>(shown->image, largest_texture));
+    found = greys_.insert(greys_.end(), std::make_unique<GreyTexture>(shown->image, limits.side));
   }
   (*found)->upload(extent == Extent::InTime && upload_time ? &*upload_time : nullptr);
   return found->get();

@@ -85,7 +85,7 @@ struct PassResources {
   GreyTexture* grey(const std::optional<ShownGrey>& shown, Extent extent);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
-  int largest_texture;
+  TextureLimits limits;
   int pictures_at_rest = 6;  // number of pictures that are averaged once nothing in the 3D view moves
   ShadePass shade;
   ComposePass compose;

@@ -93,12 +93,17 @@ bool place_slots(BlockLayout& layout, int largest_texture) {
   return layout.atlases <= kMostAtlases;
 }
 
+Grid halved(const Grid& grid) {
+  Grid half = grid;
+  half.size = (grid.size + 1) / 2;
+  half.spacing = grid.spacing * 2.0;
+  half.origin = world_from_voxel(grid) * glm::dvec3(0.5);
+  return half;
+}
+
 LabelVolume halved(const LabelVolume& volume) {
   LabelVolume half;
-  half.grid = volume.grid;
-  half.grid.size = (volume.grid.size + 1) / 2;
-  half.grid.spacing = volume.grid.spacing * 2.0;
-  half.grid.origin = world_from_voxel(volume.grid) * glm::dvec3(0.5);
+  half.grid = halved(volume.grid);
   half.voxels.resize(static_cast<size_t>(half.grid.voxel_count()));
   parallel_for(half.grid.size.z, 1, [&](std::int64_t begin, std::int64_t end) {
     for (int z = int(begin); z < end; ++z)

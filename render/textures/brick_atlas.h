@@ -62,6 +62,8 @@ BlockLayout block_layout(const LabelVolume& volume);
 // texels per axis.
 bool place_slots(BlockLayout& layout, int largest_texture);
 
+// Returns the grid of a volume at half its resolution.
+Grid halved(const Grid& grid);
 // Returns the volume at half its resolution: each voxel gets the most frequent tissue of 2^3 voxels, or air if more
 // than half of these voxels are air.
 LabelVolume halved(const LabelVolume& volume);

@@ -100,6 +100,39 @@ std::string describe(const glm::ivec3& size) {
               "re-grid it with a larger spacing");
 }
 
+// Returns the memory that labels and one surface take, in bytes.
+std::int64_t bytes_of(const BlockLayout& layout) {
+  constexpr std::int64_t kTexel = sizeof(Label) + 1;
+  return std::ssize(layout.block_of_slot) * kTexel * kSlot * kSlot * kSlot;
+}
+
+Grid halved_often(Grid grid, int halvings) {
+  for (; halvings > 0; --halvings) grid = halved(grid);
+  return grid;
+}
+
+// Computes a coarse volume anew where a box of the volume from which it was made has changed. Returns the box in voxels
+// of the coarse volume.
+VoxelBox renew(LabelVolume& coarse, const LabelVolume& volume, const VoxelBox& box, int halvings) {
+  const glm::ivec3 from = box.lowest >> halvings, to = (box.lowest + box.size - 1) >> halvings;
+  LabelVolume part;
+  const glm::ivec3 low = from << halvings;
+  part.grid.size = glm::min((to + 1) << halvings, volume.grid.size) - low;
+  part.voxels.resize(static_cast<size_t>(part.grid.voxel_count()));
+  for (int z = 0; z < part.grid.size.z; ++z)
+    for (int y = 0; y < part.grid.size.y; ++y) {
+      const Label* row = volume.voxels.data() + volume.grid.index(low + glm::ivec3(0, y, z));
+      std::copy(row, row + part.grid.size.x, part.voxels.data() + part.grid.index({0, y, z}));
+    }
+  for (int i = 0; i < halvings; ++i) part = halved(part);
+  for (int z = 0; z < part.grid.size.z; ++z)
+    for (int y = 0; y < part.grid.size.y; ++y) {
+      const Label* row = part.voxels.data() + part.grid.index({0, y, z});
+      std::copy(row, row + part.grid.size.x, coarse.voxels.data() + coarse.grid.index(from + glm::ivec3(0, y, z)));
+    }
+  return {from, to - from + 1};
+}
+
 }  // namespace
 
 bool allocate(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const void* texels) {
@@ -137,16 +170,18 @@ int bind_atlases(gl::Program& program, const std::string& name, const std::vecto
   return first;
 }
 
-DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, int largest_texture, int least_halvings) {
+DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits,
+                         int least_halvings) {
   DrawnVolume result;
   result.original = volume;
-  result.largest_texture = largest_texture;
+  result.largest_texture = limits.side;
   for (;;) {
     const LabelVolume& drawn = result.coarse ? *result.coarse : *volume;
     result.layout = block_layout(drawn);
-    if (result.halvings >= least_halvings && place_slots(result.layout, largest_texture)) break;
+    const bool is_small = bytes_of(result.layout) <= limits.bytes || result.halvings == kMostHalvings;
+    if (result.halvings >= least_halvings && is_small && place_slots(result.layout, limits.side)) break;
     if (result.halvings == kMostHalvings) refuse(*volume);
-    result.coarse = std::make_shared<const LabelVolume>(halved(drawn));
+    result.coarse = std::make_shared<LabelVolume>(halved(drawn));
     ++result.halvings;
   }
   const LabelVolume& drawn = result.coarse ? *result.coarse : *volume;
@@ -155,11 +190,11 @@ DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, int l
   return result;
 }
 
-VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture)
-    : volume_(drawn_volume(volume, largest_texture)) {
+VolumeTexture::VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits)
+    : volume_(drawn_volume(volume, limits)) {
   while (!allocate_atlases()) {
     if (halvings() == kMostHalvings) refuse(*volume);
-    volume_ = drawn_volume(volume, largest_texture, halvings() + 1);
+    volume_ = drawn_volume(volume, limits, halvings() + 1);
   }
   upload(nullptr);
 }
@@ -178,8 +213,8 @@ bool VolumeTexture::allocate_atlases() {
   if (!upload_index(index_, layout(), std::vector<std::uint8_t>(layout().block_of_slot.size(), 1))) return false;
   note_.clear();
   if (const auto whole = volume_.original.lock(); whole && halvings() > 0)
-    note_ = "Shown at 1/" + std::to_string(1 << halvings()) +
-            " of its resolution: the graphics driver has no room for " + describe(whole->grid.size);
+    note_ = "Shown at 1/" + std::to_string(1 << halvings()) + " of its resolution: no room for all of its " +
+            describe(whole->grid.size);
   return true;
 }
 
@@ -191,10 +226,13 @@ void VolumeTexture::upload_slot(int slot, const LabelVolume& labels, std::vector
   glTexSubImage3D(GL_TEXTURE_3D, 0, at.x, at.y, at.z, kSlot, kSlot, kSlot, kLabels.pixels, kLabels.type, texels.data());
 }
 
-bool VolumeTexture::relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box,
+bool VolumeTexture::relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box_of_original,
                             std::vector<std::uint8_t>& changed) {
-  if (volume_.coarse || !complete() || !(now->grid == volume_.grid)) return false;
+  if (!complete() || !(halved_often(now->grid, halvings()) == volume_.grid)) return false;
   volume_.original = now;
+  VoxelBox box = box_of_original;
+  if (volume_.coarse && box.size.x > 0) box = renew(*volume_.coarse, *now, box, halvings());
+  const LabelVolume& drawn = volume_.coarse ? *volume_.coarse : *now;
   BlockLayout& blocks = volume_.layout;
   changed.assign(blocks.block_of_slot.size(), 0);
   if (box.size.x == 0) return true;
@@ -207,7 +245,7 @@ bool VolumeTexture::relabel(const std::shared_ptr<const LabelVolume>& now, const
       for (int x = from.x; x <= to.x; ++x) {
         int& slot = blocks.slot_of_block[static_cast<size_t>(blocks.block_index({x, y, z}))];
         if (slot < 0) {
-          if (!has_tissue_near(*now, {x, y, z})) continue;
+          if (!has_tissue_near(drawn, {x, y, z})) continue;
           if (std::ssize(blocks.block_of_slot) == std::int64_t{blocks.slots_per_atlas()} * blocks.atlases) return false;
           slot = static_cast<int>(blocks.block_of_slot.size());
           blocks.block_of_slot.push_back({x, y, z});
@@ -215,7 +253,7 @@ bool VolumeTexture::relabel(const std::shared_ptr<const LabelVolume>& now, const
           grown = true;
         }
         changed[static_cast<size_t>(slot)] = 1;
-        upload_slot(slot, *now, texels);
+        upload_slot(slot, drawn, texels);
       }
   if (grown && !upload_index(index_, blocks, std::vector<std::uint8_t>(blocks.block_of_slot.size(), 1))) return false;
   gl::check_gl("the upload of changed labels");

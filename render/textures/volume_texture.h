@@ -11,6 +11,7 @@
 #include "render/gl/object.h"
 #include "render/gl/program.h"
 #include "render/textures/brick_atlas.h"
+#include "render/textures/texture_limits.h"
 #include "render/textures/upload_time.h"
 
 namespace limber::render {
@@ -19,8 +20,8 @@ namespace limber::render {
 struct DrawnVolume {
   // The document owns the original volume; this object does not keep it alive.
   std::weak_ptr<const LabelVolume> original;
-  std::shared_ptr<const LabelVolume> coarse;  // the volume at the resolution at which it is drawn; null: the original
-  Grid grid;                                  // grid of the volume that is drawn
+  std::shared_ptr<LabelVolume> coarse;  // the volume at the resolution at which it is drawn; null: the original
+  Grid grid;                            // grid of the volume that is drawn
   BlockLayout layout;
   int halvings = 0;  // how often the resolution was halved
   int largest_texture = 0;
@@ -29,16 +30,17 @@ struct DrawnVolume {
   std::shared_ptr<const LabelVolume> drawn() const { return coarse ? coarse : original.lock(); }
 };
 
-// Arranges the volume in textures with at most largest_texture texels per axis. If it does not fit, its resolution is
-// halved until it fits. Throws Error when even an eighth of the resolution does not fit.
+// Arranges the volume in textures. If they are beyond the limits, its resolution is halved until it fits. Throws Error
+// when textures of even an eighth of the resolution have too many texels per axis.
 //   least_halvings  how often the resolution is halved in any case
-DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, int largest_texture, int least_halvings = 0);
+DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits,
+                         int least_halvings = 0);
 
 class VolumeTexture {
  public:
   // Uploads the volume, at half its resolution or less if it does not fit (drawn_volume()) or the driver has no memory
   // for it. Throws Error when even an eighth of the resolution does not fit.
-  VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, int largest_texture);
+  VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits);
   // Takes a volume that upload() uploads. Throws Error when the driver has no memory for it at this resolution.
   explicit VolumeTexture(DrawnVolume volume);
 
@@ -47,8 +49,9 @@ class VolumeTexture {
   bool complete() const { return next_slot_ < 0; }
 
   // Takes over the volume `now`, which has the same grid and differs only within a box (size 0: nowhere), and uploads
-  // the slots in or near the box. Returns false if that is impossible: the volume is drawn at a coarser resolution, is
-  // not uploaded yet, or new tissue needs more slots than the atlases have.
+  // the slots in or near the box; of a volume that is drawn at a coarser resolution it computes the labels in the box
+  // anew. Returns false if that is impossible: the volume is not uploaded yet, or new tissue needs more slots than the
+  // atlases have.
   //   changed  set to 1 for each slot in or near the box; it is as long as there are slots
   bool relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box, std::vector<std::uint8_t>& changed);
 

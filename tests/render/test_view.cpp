@@ -227,6 +227,25 @@ TEST_CASE("view: a volume too large for the driver is drawn coarser, and says so
   CHECK(covered(coarse) == doctest::Approx(std::numbers::pi * 38 * 38 / (millimetres * millimetres)).epsilon(0.08));
 }
 
+TEST_CASE("view: a volume beyond the limit of memory is drawn coarser, and says so") {
+  const Grid grid = grid_of({90, 90, 90});
+  const Scene scene = scene_of(ball(grid, 38));
+  const Camera camera = camera_of(grid, Projection::Orthographic);
+  const auto picture = [&](std::int64_t bytes, const std::string& note) {
+    Studio studio;
+    studio.renderer.limit_memory(bytes);
+    Image image = picture_of(studio.renderer, scene, camera, kSize);
+    CHECK((note.empty() ? studio.renderer.note().empty() : studio.renderer.note().find(note) != std::string::npos));
+    return image;
+  };
+  const std::int64_t whole = 27 * 36 * 36 * 36 * 3;
+  const Image full = picture(whole, "");
+  const Image half = picture(whole - 1, "1/2");
+  CHECK(difference(full, half).share > 0);
+  CHECK(difference(full, half).share < 0.05);
+  picture(1, "1/8");  // as coarse as it gets: it is drawn all the same
+}
+
 TEST_CASE("view: a volume for which there is no room at all is refused in one sentence") {
   Studio studio(8);
   View3D view(studio.renderer);

@@ -33,7 +33,7 @@ TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that 
     Studio at_once;
     const Image expected = picture_of(at_once.renderer, scene, camera, kSize);
     Studio studio;
-    const auto body = prepared_body(volume, *scene.looks, display, studio.renderer.largest_texture(), no_progress());
+    const auto body = prepared_body(volume, *scene.looks, display, studio.renderer.limits(), no_progress());
     int frames = 0;
     bool is_done = false;
     for (; !is_done && frames < 10'000; ++frames) {
@@ -61,8 +61,7 @@ TEST_CASE("prepared body: drawn before its upload is complete, it is complete") 
   for (const int frames : {1, 20, 40}) {  // in the first slots of the labels, later in those of the field
     CAPTURE(frames);
     Studio studio;
-    const auto body =
-        prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+    const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
     for (int frame = 0; frame < frames; ++frame) {
       studio.renderer.begin_frame(0);
       CHECK_FALSE(studio.renderer.upload(*body));
@@ -77,8 +76,7 @@ TEST_CASE("prepared body: a volume too large for the textures is prepared at hal
   const auto volume = ball();
   const Scene scene = scene_of(volume);
   Studio studio(2 * kSlot);
-  const auto body =
-      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
   CHECK(body->volume.halvings > 0);
   bool is_done = false;
   while (!is_done) {
@@ -94,8 +92,7 @@ TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that
   Studio studio;
   auto volume = ball();
   const Scene scene = scene_of(volume);
-  const auto body =
-      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
   body->volume.layout.slots = glm::ivec3(1000);  // more than drivers take
   studio.renderer.begin_frame(0);
   CHECK_THROWS_AS(studio.renderer.upload(*body), Error);
@@ -104,8 +101,7 @@ TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that
   CHECK(same_pixels(shown, picture_of(at_once.renderer, scene, camera_of(volume->grid), kSize)));
 
   auto unwanted = ball();
-  const auto never =
-      prepared_body(unwanted, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  const auto never = prepared_body(unwanted, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
   studio.renderer.begin_frame(0);
   CHECK_FALSE(studio.renderer.upload(*never));
   CHECK(studio.renderer.note().empty());
@@ -116,8 +112,7 @@ TEST_CASE("prepared body: an empty volume, and a cancelled one") {
   const auto volume = painted(grid_of({64, 64, 64}), [](const glm::dvec3&) -> Label { return 0; });
   const Scene scene = scene_of(volume);
   Studio studio;
-  const auto body =
-      prepared_body(volume, *scene.looks, scene.display, studio.renderer.largest_texture(), no_progress());
+  const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
   studio.renderer.begin_frame(0);
   CHECK(studio.renderer.upload(*body));
   CHECK(studio.renderer.resources().body(volume).layers[0]->hull().empty());
@@ -127,5 +122,5 @@ TEST_CASE("prepared body: an empty volume, and a cancelled one") {
    public:
     Stopped() { cancel(); }
   } stopped;
-  CHECK_THROWS_AS(prepared_body(ball(), *scene.looks, scene.display, 2048, stopped), Cancelled);
+  CHECK_THROWS_AS(prepared_body(ball(), *scene.looks, scene.display, {.side = 2048}, stopped), Cancelled);
 }

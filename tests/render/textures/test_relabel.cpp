@@ -129,6 +129,30 @@ TEST_CASE("relabel: another volume takes the textures over, and a view that draw
   CHECK(view.read().rgba != second.rgba);
 }
 
+TEST_CASE("relabel: a volume drawn at a coarser resolution is uploaded anew only where it has changed") {
+  for (const int side : {36, 72}) {
+    Studio studio(side);
+    PassResources& resources = studio.renderer.resources();
+    // An odd number of voxels per axis, so that the last coarse voxels have fewer than eight.
+    const auto volume = std::make_shared<LabelVolume>(*painted(grid_of({91, 95, 99}), [](const glm::dvec3& p) {
+      return Label(glm::distance(p, glm::dvec3(45, 47, 49)) < 44 ? 1 + (p.x > 45) : 0);
+    }));
+    body_of(studio.renderer, volume);
+    REQUIRE(studio.renderer.note().find(side == 36 ? "1/4" : "1/2") != std::string::npos);
+    const std::vector<std::pair<glm::dvec3, Label>> dabs = {
+        {{45, 5, 49}, 3}, {{45, 47, 49}, 3}, {{85, 47, 49}, 0}, {{45, 47, 92}, 2}};
+    for (const auto& [centre, label] : dabs) {
+      const VoxelBox box = paint(*volume, centre, 7, label);
+      const int uploads = resources.uploads();
+      resources.relabel(volume, volume, box, Surface::AtOnce);
+      CHECK(resources.uploads() == uploads);
+      const auto fresh = anew(*volume);
+      CHECK(slice_of(studio.renderer, volume, centre).rgba == slice_of(studio.renderer, fresh, centre).rgba);
+      CHECK(body_of(studio.renderer, volume).rgba == body_of(studio.renderer, fresh).rgba);
+    }
+  }
+}
+
 TEST_CASE("relabel: a change without room in the textures, and one of a coarse volume, is drawn all the same") {
   Studio studio;
   PassResources& resources = studio.renderer.resources();

@@ -25,7 +25,7 @@ TEST_CASE("visible field: a change of the set computes only the blocks that it t
     if (glm::length(glm::dvec2(p.y, p.z) - glm::dvec2(30)) > 20) return 0;
     return p.x < 12 ? 2 : 1;
   });
-  const VolumeTexture texture(volume, 2048);
+  const VolumeTexture texture(volume, TextureLimits{.side = 2048});
   VisibleField field(texture, set_of({1, 2}));
   const std::int64_t all = field.blocks_computed();
   field.update(texture, set_of({1}));
@@ -40,7 +40,7 @@ TEST_CASE("visible field: the hull is closed tightly about the body") {
   const Grid grid = grid_of({64, 64, 64});
   const auto volume =
       painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(32)) < 20 ? 1 : 0; });
-  const VolumeTexture texture(volume, 2048);
+  const VolumeTexture texture(volume, TextureLimits{.side = 2048});
   const VisibleField field(texture, set_of({1}));
   for (int axis = 0; axis < 3; ++axis) {
     CHECK(field.hull().low()[axis] <= 12 + kPad);
