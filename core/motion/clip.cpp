@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/motion/key_curve.h"
 
 namespace limber {
 
@@ -25,6 +26,12 @@ Between<Value> around(const std::map<int, Value>& track, int frame) {
   if (after == track.begin() || after->first == frame) return {&*after, &*after, 0};
   const auto before = std::prev(after);
   return {&*before, &*after, static_cast<double>(frame - before->first) / (after->first - before->first)};
+}
+
+// Returns how the value goes on at a frame. At a key and outside of the keys it stays as the key before it is.
+template <class Value>
+Interpolation interpolation_at(const Between<Value>& between, const KeyShapes& shapes) {
+  return between.share == 0 ? Interpolation::Constant : shape_at(shapes, between.before->first).next;
 }
 
 }  // namespace
@@ -81,6 +88,26 @@ Pose ClipOnRig::base_at(int frame) const {
   return retarget_->at(static_cast<int>(std::clamp<std::int64_t>(wanted, first, last)));
 }
 
+void ClipOnRig::move_root(Pose& pose, int frame, const std::function<const Pose&(int)>& base) const {
+  const Keys& keys = clip_->keys;
+  const auto between = around(keys.root, frame);
+  const auto& [before, after, share] = between;
+  if (before->first == frame) {
+    pose.root_translation = before->second;
+    return;
+  }
+  const auto moved = [&](const auto& key) { return key.second - base(key.first).root_translation; };
+  switch (interpolation_at(between, keys.root_shapes)) {
+    case Interpolation::Constant: pose.root_translation += moved(*before); break;
+    case Interpolation::Linear: pose.root_translation += glm::mix(moved(*before), moved(*after), share); break;
+    case Interpolation::Bezier: {
+      std::map<int, glm::dvec3> shifts = keys_around(keys.root, frame);
+      for (auto& key : shifts) key.second = moved(key);
+      pose.root_translation += value_at(shifts, keys.root_shapes, frame);
+    }
+  }
+}
+
 Pose ClipOnRig::at(int frame) const {
   Pose pose = base_at(frame);
   const Keys& keys = clip_->keys;
@@ -96,26 +123,32 @@ Pose ClipOnRig::at(int frame) const {
   for (int bone = 0; bone < std::ssize(armature_->bones); ++bone) {
     const auto track = keys.bones.find(armature_->bones[bone].name);
     if (track == keys.bones.end() || track->second.empty()) continue;
-    const auto [before, after, share] = around(track->second, frame);
+    const KeyShapes& shapes = shapes_of(keys, track->first);
+    const auto between = around(track->second, frame);
+    const auto& [before, after, share] = between;
+    const Interpolation way = interpolation_at(between, shapes);
     if (!retarget_ || before->first == frame) {
-      pose.rotation[bone] =
-          share == 0 ? before->second : glm::normalize(glm::slerp(before->second, after->second, share));
+      pose.rotation[bone] = way == Interpolation::Constant ? before->second
+                            : way == Interpolation::Linear
+                                ? glm::normalize(glm::slerp(before->second, after->second, share))
+                                : value_at(track->second, shapes, frame);
       continue;
     }
     const auto turn = [&](const auto& key) {
       return glm::normalize(key.second * glm::conjugate(base(key.first).rotation[bone]));
     };
-    const glm::dquat turned =
-        share == 0 ? turn(*before) : glm::normalize(glm::slerp(turn(*before), turn(*after), share));
+    const auto eased = [&] {
+      std::map<int, glm::dquat> turns = keys_around(track->second, frame);
+      for (auto& key : turns) key.second = turn(key);
+      return value_at(turns, shapes, frame);
+    };
+    const glm::dquat turned = way == Interpolation::Constant ? turn(*before)
+                              : way == Interpolation::Linear
+                                  ? glm::normalize(glm::slerp(turn(*before), turn(*after), share))
+                                  : eased();
     pose.rotation[bone] = glm::normalize(turned * pose.rotation[bone]);
   }
-  if (!keys.root.empty()) {
-    const auto [before, after, share] = around(keys.root, frame);
-    const auto moved = [&](const auto& key) { return key.second - base(key.first).root_translation; };
-    pose.root_translation = before->first == frame
-                                ? before->second
-                                : pose.root_translation + glm::mix(moved(*before), moved(*after), share);
-  }
+  if (!keys.root.empty()) move_root(pose, frame, base);
   return pose;
 }
 

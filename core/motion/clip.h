@@ -7,10 +7,12 @@
 //
 // Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]. At a key's frame the bone has the key's rotation.
 // Between two keys the bone follows the motion, rotated by a correction. At each key the correction is the rotation
-// from the motion to the key; from one key to the next it is interpolated by slerp. It stays constant before the first
-// key and after the last. Without a motion the result is the slerp of the keys themselves.
+// from the motion to the key; from one key to the next it is interpolated as the key's shape says, by slerp if it has
+// none (core/motion/key_curve.h). It stays constant before the first key and after the last. Without a motion the keys
+// themselves are interpolated.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -60,13 +62,15 @@ class ClipOnRig {
             const ClipOnRig* before = nullptr);
 
   Pose at(int frame) const;
+  Pose base_at(int frame) const;  // returns the pose of the motion alone, without the keys
   const std::shared_ptr<const Clip>& clip() const { return clip_; }
   const std::shared_ptr<const Armature>& armature() const { return armature_; }
   const Retarget* retarget() const { return retarget_.get(); }
   const std::string& problem() const { return problem_; }
 
  private:
-  Pose base_at(int frame) const;  // returns the pose of the motion alone, without the keys
+  // Adds the shift of the root's keys to the pose of the motion at a frame. `base` gives that pose at other frames.
+  void move_root(Pose& pose, int frame, const std::function<const Pose&(int)>& base) const;
 
   std::shared_ptr<const Clip> clip_;
   std::shared_ptr<const Armature> armature_;

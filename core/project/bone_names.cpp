@@ -99,6 +99,7 @@ void follow_names(Document& document, const Armature& before, const Armature& af
   for (auto& part : document.clips) {
     Clip clip = *part;
     clip.keys.bones = names.follow(clip.keys.bones);
+    clip.keys.shapes = names.follow(clip.keys.shapes);
     if (clip.motion && clip.motion->frame_count > 0) follow_motion(clip, before, after, names);
     take(part, std::move(clip));
   }
@@ -149,6 +150,12 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     carry(clip.keys.bones, [&](std::map<int, glm::dquat> track) {
       for (auto& [frame, rotation] : track) rotation = plane.rotation(rotation);
       return track;
+    });
+    carry(clip.keys.shapes, [&](KeyShapes shapes) {
+      // A rotation vector turns the other way in the mirror.
+      for (auto& [frame, shape] : shapes)
+        for (glm::dvec3* tangent : {&shape.in, &shape.out}) *tangent = -plane.direction(*tangent);
+      return shapes;
     });
     carry(clip.map.sources, [](const RetargetMap::Source& source) { return RetargetMap::Source{source.joint, {}}; });
     take(part, std::move(clip));

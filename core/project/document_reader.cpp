@@ -135,6 +135,32 @@ void get(ByteReader& in, Keys& keys) {
   }
 }
 
+// Reads the shapes of the keys of one bone, or of the body's shift.
+template <class Track>
+void get(ByteReader& in, KeyShapes& shapes, const Track& track) {
+  for (std::size_t count = in.count(54); count > 0; --count) {
+    const auto frame = get_frame(in);
+    in.require(track.contains(frame));
+    KeyShape& shape = shapes[frame];
+    shape.next = static_cast<Interpolation>(in.get_below<std::uint8_t>(static_cast<int>(Interpolation::Bezier) + 1));
+    shape.handles = static_cast<HandleKind>(in.get_below<std::uint8_t>(static_cast<int>(HandleKind::Flat) + 1));
+    shape.in = get_vector(in);
+    shape.out = get_vector(in);
+    in.require(is_finite(shape.in) && is_finite(shape.out) && shape != KeyShape{});
+  }
+}
+
+void get_shapes(ByteReader& in, Keys& keys) {
+  for (std::size_t bones = in.count(62); bones > 0; --bones) {
+    const std::string bone = in.text();
+    const auto track = keys.bones.find(bone);
+    in.require(track != keys.bones.end());
+    get(in, keys.shapes[bone], track->second);
+    in.require(!keys.shapes[bone].empty());
+  }
+  get(in, keys.root_shapes, keys.root);
+}
+
 void get(ByteReader& in, NamedPose& pose) {
   pose.name = in.text();
   for (std::size_t count = in.count(36); count > 0; --count) {
@@ -240,6 +266,7 @@ void get(ByteReader& in, Clip& clip) {
     marker.frame = get_frame(in);
     marker.name = in.text();
   }
+  if (!in.at_end()) get_shapes(in, clip.keys);
 }
 
 void get(ByteReader& in, Visibility& visibility) {

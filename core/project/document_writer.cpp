@@ -161,6 +161,26 @@ void put(ByteWriter& out, const Keys& keys) {
   }
 }
 
+void put(ByteWriter& out, const KeyShapes& shapes) {
+  out.count(shapes.size());
+  for (const auto& [frame, shape] : shapes) {
+    out.put(static_cast<std::int32_t>(frame));
+    out.put(static_cast<std::uint8_t>(shape.next));
+    out.put(static_cast<std::uint8_t>(shape.handles));
+    put(out, shape.in);
+    put(out, shape.out);
+  }
+}
+
+void put_shapes(ByteWriter& out, const Keys& keys) {
+  out.count(keys.shapes.size());
+  for (const auto& [bone, shapes] : keys.shapes) {
+    out.text(bone);
+    put(out, shapes);
+  }
+  put(out, keys.root_shapes);
+}
+
 void put(ByteWriter& out, const RetargetMap& map) {
   out.count(map.sources.size());
   for (const auto& [bone, source] : map.sources) {
@@ -417,6 +437,8 @@ class DocumentWriter::Writing {
       out.put(static_cast<std::int32_t>(marker.frame));
       out.text(marker.name);
     }
+    // A clip whose keys have no shapes has the same bytes as in earlier layouts.
+    if (!clip.keys.shapes.empty() || !clip.keys.root_shapes.empty()) put_shapes(out, clip.keys);
   }
 
   template <class Bytes>

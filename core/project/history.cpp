@@ -64,6 +64,9 @@ std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is c
     bytes += kNode + std::int64_t{sizeof source} + heap_bytes(bone) + heap_bytes(source.joint);
   for (const auto& [bone, track] : clip.keys.bones)
     bytes += kNode + heap_bytes(bone) + (kNode + 16) * std::ssize(track);
+  bytes += (kNode + 56) * std::ssize(clip.keys.root_shapes);
+  for (const auto& [bone, shapes] : clip.keys.shapes)
+    bytes += kNode + heap_bytes(bone) + (kNode + 56) * std::ssize(shapes);
   for (const Marker& marker : clip.markers) bytes += heap_bytes(marker.name);
   return bytes;
 }

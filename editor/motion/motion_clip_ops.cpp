@@ -194,6 +194,7 @@ void change_rate(Clip& clip, double rate) {
   std::map<int, int> frame_of;
   for (int frame : frames_of(clip.keys)) frame_of[frame] = moved(frame);
   move_keys(clip.keys, frame_of);
+  scale_tangents(clip.keys, 1 / ratio);
   for (Marker& marker : clip.markers) marker.frame = moved(marker.frame);
   clip.range_start = moved(clip.range_start);
   clip.range_end = moved(clip.range_end);

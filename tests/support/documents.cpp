@@ -91,7 +91,8 @@ bool equal(const Clip& a, const Clip& b) {
   return a.name == b.name && equal(a.motion, b.motion) && same(a.rate, b.rate) && a.start == b.start &&
          a.first == b.first && a.last == b.last && a.map == b.map && a.retarget == b.retarget &&
          a.range_start == b.range_start && a.range_end == b.range_end && a.markers == b.markers &&
-         same_track(a.keys.root, b.keys.root) &&
+         same_track(a.keys.root, b.keys.root) && a.keys.shapes == b.keys.shapes &&
+         a.keys.root_shapes == b.keys.root_shapes &&
          std::equal(a.keys.bones.begin(), a.keys.bones.end(), b.keys.bones.begin(), b.keys.bones.end(), same_bone);
 }
 bool equal(const Result& a, const Result& b) {
@@ -167,6 +168,8 @@ Clip keyed_clip() {
   clip.range_end = 99;
   clip.keys.bones["Lower"] = {{-5, {1, 0, 0, 0}}, {12, {0.1, 0.2, 0.3, 0.4}}};
   clip.keys.root[12] = {1e-300, -0.0, 7};
+  set_shape(clip.keys, "Lower", -5, {Interpolation::Bezier, HandleKind::Free, {1e-9, 0, -2}, {0.5, 1e200, 0}});
+  set_root_shape(clip.keys, 12, {Interpolation::Constant, HandleKind::Flat});
   clip.markers = {{3, "step"}, {3, ""}};
   return clip;
 }
@@ -290,7 +293,11 @@ Document random_edit(const Document& document, std::mt19937& random) {
     }
     case 8: {
       Clip clip = document.clips.empty() ? Clip{.name = "New"} : *document.clips[0];
-      clip.keys.bones["Lower"][below(random, 50)] = glm::angleAxis(unit(random), glm::dvec3(1, 0, 0));
+      const int frame = below(random, 50);
+      clip.keys.bones["Lower"][frame] = glm::angleAxis(unit(random), glm::dvec3(1, 0, 0));
+      set_shape(clip.keys, "Lower", frame,
+                {static_cast<Interpolation>(below(random, 3)), static_cast<HandleKind>(below(random, 5)),
+                 glm::dvec3(unit(random)), glm::dvec3(unit(random))});
       clip.markers.push_back({below(random, 50), "m"});
       next.clips = {shared(std::move(clip))};
       next.clip = 0;

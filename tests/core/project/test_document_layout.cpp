@@ -186,6 +186,41 @@ TEST_CASE("project: a document of the ninth layout opens, without measurements")
   CHECK(warnings.empty());
 }
 
+TEST_CASE("project: a document of the tenth layout opens, its keys without shapes") {
+  Document now = small_document();
+  for (auto& clip : now.clips) {
+    Clip plain = *clip;
+    plain.keys.shapes.clear();
+    plain.keys.root_shapes.clear();
+    clip = std::make_shared<const Clip>(plain);
+  }
+  REQUIRE(!now.clips[0]->keys.empty());
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes[0] = 10;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: shapes of keys that do not exist, or with tangents that are no numbers, are refused") {
+  for (const int wrong : {0, 1, 2}) {
+    Document now;
+    Clip clip{.name = "keys"};
+    clip.keys.bones["Arm"] = {{3, {1, 0, 0, 0}}};
+    if (wrong == 0) clip.keys.shapes["Arm"][4] = {.next = Interpolation::Bezier};
+    if (wrong == 1) clip.keys.shapes["Leg"][3] = {.next = Interpolation::Bezier};
+    if (wrong == 2) clip.keys.shapes["Arm"][3] = {.next = Interpolation::Bezier, .out = {NAN, 0, 0}};
+    now.clips = {std::make_shared<const Clip>(clip)};
+    Chunks chunks;
+    DocumentWriter writer;
+    const ChunkHash root = writer.write(now, chunks, Packing::Quick);
+    std::vector<std::string> warnings;
+    CHECK_THROWS_AS(read_document(root, chunks, "new.limber", warnings), Error);
+  }
+}
+
 TEST_CASE("project: measurements with too few points, or points that are no numbers, are refused") {
   for (const Measurement& wrong :
        {Measurement{"A", MeasureKind::Angle, {{0, 0, 0}, {1, 0, 0}}}, Measurement{"G", MeasureKind::Girth, {{0, 0, 0}}},
