@@ -38,6 +38,7 @@ std::vector<Operator> bone_table_operators();
 std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
+std::vector<Operator> graph_operators();
 std::vector<Operator> motion_clean_operators();
 std::vector<Operator> motion_clip_operators();
 std::vector<Operator> resample_operators();
@@ -78,6 +79,7 @@ std::vector<Operator> gather_operators() {
                     rig_operators,
                     pose_operators,
                     motion_operators,
+                    graph_operators,
                     motion_clean_operators,
                     motion_clip_operators,
                     resample_operators,

@@ -218,6 +218,7 @@ struct Editor : Ui {
   PointerWrap modal_wrap;
   std::unique_ptr<Timeline> timeline;  // declared in timeline.h; never null
   Rect timeline_area;         // area of the timeline's rows in the last frame; empty while the timeline is not shown
+  Rect graph_area;            // the part of timeline_area in which the graph editor draws curves; empty: not shown
   float wheel_rest = 0;       // fraction of a wheel step that has not moved a slice yet; touch pads send fractions
   std::string last_operator;  // the id of the operator that the command Repeat runs again
   std::unique_ptr<LastOperation> last_operation;  // declared in redo_last_operator.h; never null

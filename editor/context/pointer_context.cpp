@@ -44,6 +44,7 @@ std::vector<std::string> contexts(const Editor& editor) {
   const ViewPlace* view = hovered_view(editor);
   if (view && view->id != ViewId::Body) contexts.push_back("slice");
   if (view && view->id == ViewId::Body) contexts.push_back("view3d");
+  if (over_timeline(editor) && editor.graph_area.contains(editor.input.pointer)) contexts.push_back("graph");
   if (over_timeline(editor)) contexts.push_back("timeline");
   if (is_over("##sidebar")) contexts.push_back("sidebar");
   constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};

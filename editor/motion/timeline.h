@@ -28,6 +28,7 @@ enum class AtEnd { Stop, Loop, PingPong };
 
 struct OnionOutlines;
 struct MotionPaths;
+struct Graph;
 
 struct Timeline {
   // The previewed frame that replaces the document's frame while the user scrubs or the clip plays.
@@ -64,6 +65,9 @@ struct Timeline {
     int bone = -1, first = 0, step = 1;  // active bone; frame of the first sample; frames between samples
     std::vector<glm::vec2> angles;  // one per sample: angle from rest of the bone (x) and of its parent (y), degrees
   } curve;
+
+  bool shows_graph = false;      // whether the graph editor is shown in place of the markers, the clip and the keys
+  std::shared_ptr<Graph> graph;  // its state (editor/motion/graph.h); null until it is shown
 
   // The frames that the timeline shows: the frame at the ruler's left end (`low`) and the number of frames (`count`).
   struct {

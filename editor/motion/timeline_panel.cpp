@@ -8,7 +8,9 @@
 
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/motion/graph_panel.h"
 #include "editor/motion/timeline.h"
+#include "editor/motion/timeline_ruler.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
 #include "editor/ui/icons.h"
@@ -18,9 +20,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kTransport = 34, kRuler = 22, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56, kThinRow = 16,
-                kEnds = 12;
-constexpr float kLeastTicks = 60;      // smallest distance between two numbers of the ruler, pixels at scale 1
+constexpr float kTransport = 34, kMarks = 20, kLane = 54, kKeys = 36, kLabels = 56, kThinRow = 16;
 constexpr Colour kAngle = 0xFF5CB6FF;  // colour of the angle's curve, ABGR (RGB: FFB65C)
 
 std::string number_text(int value) {
@@ -29,12 +29,6 @@ std::string number_text(int value) {
   for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
     digits.insert(static_cast<std::size_t>(place), " ");
   return (value < 0 ? "-" : "") + digits;
-}
-
-std::string seconds_text(double frames, double rate) {
-  char text[24];
-  std::snprintf(text, sizeof text, "%.2f s", frames / rate);
-  return text;
 }
 
 // ---- The bar with the play buttons
@@ -253,85 +247,7 @@ class Transport {
   float x_, right_;
 };
 
-// ---- Steps of the ruler
-
-// Returns the smallest of the numbers 1, 2 and 5 times a power of ten that is at least `least`.
-double round_step(double least) {
-  const double power = std::pow(10, std::floor(std::log10(std::max(least, 1e-6))));
-  for (double step : {1.0, 2.0, 5.0})
-    if (step * power >= least * (1 - 1e-9)) return step * power;
-  return 10 * power;
-}
-
-// ---- The play head
-
-std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
-
-// The drawn play head: a vertical line with a tab in the ruler. The tab shows the frame or the time in seconds,
-// as the ruler does. While the line is left or right of the shown frames, the tab stays at that end of the ruler.
-struct Head {
-  float x;
-  int beyond;  // -1: left of the shown frames; 1: right of them; 0: visible
-  std::string text, other;
-  Rect tab;
-};
-
-Head head_of(const Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const int frame = shown_frame(editor);
-  const std::string seconds = seconds_text(frame, frame_rate(editor));
-  Head head{std::round(x_of(timeline, frame)),
-            0,
-            timeline.seconds ? seconds : std::to_string(frame),
-            timeline.seconds ? frame_text(frame) : seconds,
-            {}};
-  head.beyond = head.x < timeline.ruler.low.x - 1 ? -1 : head.x > timeline.ruler.high.x + 1 ? 1 : 0;
-  const float half = std::round(
-      std::max(look.px(48), text_size(look.fonts.small_mono, head.text).x + look.px(head.beyond ? 28 : 12)) / 2);
-  const float x = head.beyond ? std::clamp(head.x, timeline.ruler.low.x + half, timeline.ruler.high.x - half) : head.x;
-  head.tab = {{x - half, timeline.ruler.low.y + look.px(2)}, {x + half, timeline.ruler.low.y + look.px(20)}};
-  return head;
-}
-
-// ---- The ruler
-
-void draw_ruler(Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Rect& ruler = timeline.ruler;
-  const FrameRange range = playing_range(editor);
-  fill(ruler, look.theme.field);
-  const Rect inside =
-      intersection(ruler, {{x_of(timeline, range.low), ruler.low.y}, {x_of(timeline, range.high), ruler.high.y}});
-  if (!inside.empty()) fill(inside, look.theme.accent_soft);
-  for (int end : {range.low, range.high}) {
-    const float x = std::round(x_of(timeline, end));
-    if (x >= ruler.low.x && x < ruler.high.x)
-      fill({{x, ruler.low.y}, {x + look.line(), timeline.area.high.y}}, look.theme.line2);
-  }
-  const double unit = timeline.seconds ? frame_rate(editor) : 1,
-               per_pixel = timeline.window.count / std::max(1.0f, ruler.width());
-  double step = round_step(look.px(kLeastTicks) * per_pixel / unit);
-  if (!timeline.seconds) step = std::max(1.0, step);
-  const double minor = step / 5, end = (timeline.window.low + timeline.window.count) / unit;
-  const Rect tab = head_of(editor).tab;
-  for (auto i = static_cast<std::int64_t>(std::ceil(timeline.window.low / unit / minor));
-       static_cast<double>(i) * minor <= end; ++i) {
-    const double at = static_cast<double>(i) * minor;
-    const bool major = i % 5 == 0;
-    const float x = std::round(x_of(timeline, at * unit));
-    fill({{x, ruler.high.y - look.px(major ? 14 : 5)}, {x + look.line(), ruler.high.y}}, look.theme.line2);
-    if (!major) continue;
-    char text[24];
-    std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at);
-    const glm::vec2 corner(x + look.px(4), ruler.low.y + look.px(2));
-    const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
-    // A number that the tab would cover or that would be cut off is not drawn.
-    if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kEnds))
-      put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
-  }
-}
+// ---- The markers
 
 // Draws the markers with their names and returns the rectangles that they cover. A marker's name stands on its right
 // and is cut off before the next marker. The name of the last shown marker is drawn on its left if it does not fit on
@@ -344,7 +260,7 @@ std::vector<Rect> draw_markers(Editor& editor) {
   if (!clip || timeline.marks.empty()) return covered;
   const Rect& row = timeline.marks;
   const float half = look.px(5), gap = look.px(9), y = std::round(row.centre().y) - look.px(4),
-              end = row.high.x + look.px(kEnds - 2);
+              end = row.high.x + look.px(kRulerEnds - 2);
   float begin = row.low.x;  // x where the free part of the row begins, pixels
   for (std::size_t i = 0; i < clip->markers.size(); ++i) {
     const Marker& marker = clip->markers[i];
@@ -468,54 +384,10 @@ void draw_keys(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-// Draws the play head. If there is room in the row of markers, draws the time beside it in the unit that the ruler does
-// not show (frames or seconds).
-//   covered  rectangles that the markers cover, pixels
-void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Head head = head_of(editor);
-  fill(head.tab, look.theme.select, look.px(4));
-  if (head.beyond) {
-    const float side = static_cast<float>(head.beyond),
-                tip = (side > 0 ? head.tab.high.x : head.tab.low.x) - side * look.px(5), y = head.tab.centre().y;
-    ImGui::GetWindowDrawList()->AddTriangleFilled({tip, y}, {tip - side * look.px(6), y - look.px(5)},
-                                                  {tip - side * look.px(6), y + look.px(5)}, look.theme.on_select);
-    const Rect rest = side > 0 ? Rect{head.tab.low, {tip - look.px(6), head.tab.high.y}}
-                               : Rect{{tip + look.px(6), head.tab.low.y}, head.tab.high};
-    return put_text(editor, look.fonts.small_mono, look.theme.on_select, rest, head.text, Align::Centre);
-  }
-  const float half = std::max(1.0f, std::round(look.scale));
-  fill({{head.x - half, timeline.ruler.low.y}, {head.x + half, timeline.area.high.y}}, look.theme.select);
-  put_text(editor, look.fonts.small_mono, look.theme.on_select, head.tab, head.text, Align::Centre);
-  if (timeline.marks.empty()) return;
-  const Rect& row = timeline.marks;
-  const float width = text_size(look.fonts.small_mono, head.other).x + 1;
-  for (const float left : {head.x + look.px(8), head.x - look.px(8) - width}) {
-    const Rect place{{left, row.low.y}, {left + width, row.high.y}};
-    const bool free = std::none_of(covered.begin(), covered.end(),
-                                   [&](const Rect& other) { return !intersection(place, other).empty(); });
-    if (free && place.low.x >= row.low.x && place.high.x <= row.high.x + look.px(kEnds))
-      return put_text(editor, look.fonts.small_mono, look.theme.select, place, head.other);
-  }
-}
-
-// Scrolls the timeline when the play head has moved outside the shown frames. Does not scroll during a drag.
-void follow_head(Editor& editor) {
-  auto& window = editor.timeline->window;
-  const int frame = shown_frame(editor);
-  if (window.followed == frame || editor.drag) return;
-  const bool first = !window.followed;
-  window.followed = frame;
-  if (first) return;
-  if (frame < window.low) window.low = frame - 0.9 * window.count;
-  else if (frame > window.low + window.count) window.low = frame - 0.1 * window.count;
-}
-
 void place_rows(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   Timeline& timeline = *editor.timeline;
-  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(kEnds);
+  const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(kRulerEnds);
   float y = rect.low.y;
   const auto row = [&](float height) {
     const Rect place{{left, y}, {right, std::min(y + height, rect.high.y)}};
@@ -523,7 +395,7 @@ void place_rows(Editor& editor, const Rect& rect) {
     return place;
   };
   editor.timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
-  timeline.ruler = row(look.px(kRuler));
+  timeline.ruler = row(look.px(kRulerHeight));
   // If the timeline is low, its rows are thinner. If it is very low, the row of markers is left out.
   const float rest = rect.high.y - y;
   timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks))
@@ -546,10 +418,12 @@ void draw_timeline(Editor& editor, const Rect& rect) {
   const Clip* clip = shown_clip(editor);
   if (!clip) {
     editor.timeline_area = timeline.area = timeline.ruler = timeline.marks = timeline.lane = timeline.keys = {};
+    editor.graph_area = {};
     if (empty_state(editor, rows, "No clip", "Import BVH...")) run(editor, "file.import_motion");
     return;
   }
-  place_rows(editor, rows);
+  editor.graph_area = {};
+  if (!timeline.shows_graph) place_rows(editor, rows);
   const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
   if (timeline.window.clip != fitted) {
     timeline.window.clip = fitted;
@@ -558,6 +432,11 @@ void draw_timeline(Editor& editor, const Rect& rect) {
     fit_window(editor);
   }
   follow_head(editor);
+  // Beside the ruler stands the switch between the rows and the curves.
+  const glm::vec2 corner = rows.low + glm::vec2(look.px(12), look.px(1));
+  operator_button(editor, "graph.show", {corner, corner + glm::vec2(look.px(30), look.px(kRulerHeight - 2))}, "",
+                  timeline.shows_graph ? ButtonStyle::Soft : ButtonStyle::Plain);
+  if (timeline.shows_graph) return draw_graph(editor, rows);
   for (const auto& [name, place] :
        {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
     if (!place.empty())
@@ -569,7 +448,7 @@ void draw_timeline(Editor& editor, const Rect& rect) {
                                     {"keys", timeline.keys}})
     register_widget(editor, name, place);
   ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)),
-                      im(timeline.area.high + glm::vec2(look.px(kEnds), 0)), true);
+                      im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
   draw_ruler(editor);
   draw_lane(editor);
   const std::vector<Rect> covered = draw_markers(editor);

@@ -39,7 +39,7 @@ void KeysPage::draw(Editor& editor) {
                    {rect.high.x + look.px(18) - look.line(), rect.high.y + look.px(10)}});
     bool any = false;
     for (const char* context :
-         {"global", "view3d", "slice", "sidebar", "select", "rig", "skin", "pose", "resample", "timeline"}) {
+         {"global", "view3d", "slice", "sidebar", "select", "rig", "skin", "pose", "resample", "timeline", "graph"}) {
       const auto bindings = editor.keymap.contexts.find(context);
       if (bindings == editor.keymap.contexts.end()) continue;
       int index = 0;

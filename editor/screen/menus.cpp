@@ -181,6 +181,12 @@ std::vector<Menu> menus() {
         "> Keys", "motion.next_key", "motion.previous_key", "motion.choose_all_keys", "motion.choose_no_keys", "-",
         "motion.move_keys", "motion.scale_keys", "motion.duplicate_keys", "motion.delete_keys", "-",
         "pose.blend_neighbour", "pose.propagate", "<",
+        "> Curves", "graph.show", "graph.view_all", "graph.view_selected", "-",
+        "graph.select_all", "graph.select_none", "graph.move", "graph.delete", "-",
+        "> Interpolation", "graph.constant", "graph.linear", "graph.bezier", "-",
+        "graph.ease_in", "graph.ease_out", "graph.ease_in_out", "<",
+        "> Handles", "graph.handles_automatic", "graph.handles_clamped", "graph.handles_aligned",
+        "graph.handles_free", "graph.handles_flat", "<", "<",
         "-",
         "> Markers", "motion.marker", "motion.rename_marker", "motion.delete_marker", "<",
         "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range",
@@ -229,6 +235,10 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Keys") return {name, {"motion.insert_key", "motion.delete_key", "motion.auto_key", "-",
         "motion.next_key", "motion.previous_key",
         "-", "motion.onion_skin", "motion.onion_frames"}};
+  if (name == "Interpolation") return {name, {"graph.constant", "graph.linear", "graph.bezier", "-",
+        "graph.ease_in", "graph.ease_out", "graph.ease_in_out"}};
+  if (name == "Handles") return {name, {"graph.handles_automatic", "graph.handles_clamped", "graph.handles_aligned",
+        "graph.handles_free", "graph.handles_flat"}};
   if (name == "Snap") return {name, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle", "rig.snap", "-",
         "rig.joints_to_bone",
         "rig.joints_to_voxels", "rig.joint_to_cross_hair", "rig.cross_hair_to_joint"}};

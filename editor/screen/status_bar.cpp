@@ -60,7 +60,16 @@ std::vector<KeyHint> hints(const Editor& editor) {
   if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
-  if (contexts(editor).front() == "timeline")
+  if (contexts(editor).front() == "graph")
+    operators = {{"graph.select", "Select"},
+                 {"graph.zoom", "Zoom"},
+                 {"graph.pan", "Pan"},
+                 {"graph.move", "Move keys"},
+                 {"graph.interpolation_menu", "Interpolation"},
+                 {"graph.handle_menu", "Handles"},
+                 {"graph.delete", "Delete keys"},
+                 {"graph.show", "Timeline"}};
+  else if (contexts(editor).front() == "timeline")
     operators = {{"motion.scrub", "Scrub"},         {"motion.zoom", "Zoom"},
                  {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},
                  {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},

@@ -24,7 +24,6 @@ const std::map<std::string, std::string> kLong = {
     {"core/paint/stroke.cpp", "one state machine of a stroke"},
     {"core/project/document_reader.cpp", "one reader for each part of a project, all of one shape"},
     {"core/study/html_report.cpp", "one page from top to bottom"},
-    {"editor/motion/timeline_panel.cpp", "one panel from top to bottom"},
     {"editor/selection/transform_gizmo.cpp", "one gizmo: drawn, picked and pressed by the same shapes"},
     {"render/view.cpp", "one picture refined over calls, whose steps share their state"},
     {"tests/core/pose/test_body_poses.cpp", "cases of one table"},

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/graph.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/motion/euler_channels.h"
+#include "core/motion/key_curve.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kMostBones = 12;         // bones whose curves are shown at once
+constexpr int kMostFrames = 20'000;            // of longer clips the first frames are shown
+constexpr std::chrono::milliseconds kTime{6};  // time limit for new poses of the motion in one drawn frame
+constexpr float kHeight = 300;                 // height of the bottom area for curves, pixels at scale 1
+constexpr double kRoom = 0.12;                 // room above and below the curves, as a share of their height
+
+glm::dquat motion_rotation(const GraphCurves& curves, int bone, double frame) {
+  if (!curves.has_motion || curves.motion.empty()) return {1, 0, 0, 0};
+  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion.size() - 1));
+  const auto before = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(before);
+  const glm::dquat& q = curves.motion[before].rotation[bone];
+  return share == 0 ? q : glm::normalize(glm::slerp(q, curves.motion[before + 1].rotation[bone], share));
+}
+glm::dvec3 motion_shift(const GraphCurves& curves, double frame) {
+  if (!curves.has_motion || curves.motion.empty()) return glm::dvec3(0);
+  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion.size() - 1));
+  const auto before = static_cast<std::size_t>(place);
+  const double share = place - static_cast<double>(before);
+  const glm::dvec3& p = curves.motion[before].root_translation;
+  return share == 0 ? p : glm::mix(p, curves.motion[before + 1].root_translation, share);
+}
+
+glm::dvec3 angles_near(const glm::dquat& q, const glm::dvec3& degrees) {
+  return glm::degrees(channel_angles(q, glm::radians(degrees)));
+}
+
+glm::dvec3 values_near(const GraphCurves& curves, const GraphTrack& track, const GraphCurve& curve, double frame,
+                       const glm::dvec3& near) {
+  if (track.is_shift) {
+    const glm::dvec3 base = motion_shift(curves, frame);
+    return curve.shifts.empty() ? base : value_at(curve.shifts, curve.shapes, frame) + base;
+  }
+  const glm::dquat base = motion_rotation(curves, curve.bone, frame);
+  return angles_near(curve.turns.empty() ? base : value_at(curve.turns, curve.shapes, frame) * base, near);
+}
+
+// Adds the values of frames whose motion is known.
+void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curve) {
+  const auto known = static_cast<std::size_t>(curves.has_motion ? std::ssize(curves.motion)
+                                                                : curves.range.high - curves.range.low + 1);
+  while (curve.values.size() < known) {
+    const int frame = curves.range.low + static_cast<int>(curve.values.size());
+    const glm::dvec3 near = curve.values.empty() ? glm::dvec3(0) : curve.values.back();
+    curve.values.push_back(values_near(curves, track, curve, frame, near));
+  }
+  while (curves.has_motion && curve.motion.size() < known) {
+    const int frame = curves.range.low + static_cast<int>(curve.motion.size());
+    const glm::dvec3 near = curve.motion.empty() ? glm::dvec3(0) : curve.motion.back();
+    curve.motion.push_back(track.is_shift ? motion_shift(curves, frame)
+                                          : angles_near(motion_rotation(curves, curve.bone, frame), near));
+  }
+}
+
+bool same_motion(const Clip& a, const Clip& b) {
+  return a.motion == b.motion && a.start == b.start && a.first == b.first && a.last == b.last && a.map == b.map &&
+         a.retarget == b.retarget;
+}
+
+// Begins anew if the clip's motion, the rig or the range of frames has changed.
+void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
+  Clip seen = *on_rig.clip();
+  seen.keys = graph_keys(editor);
+  FrameRange range = all_frames(seen);
+  range.high = std::min(range.high, range.low + kMostFrames - 1);
+  const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
+  if (same && curves.range.low == range.low && curves.range.high == range.high) return;
+  // A range that only grew at its end, or shrank, keeps the poses that are known.
+  std::vector<Pose> known;
+  if (same && curves.range.low == range.low) known = std::move(curves.motion);
+  known.resize(std::min(known.size(), static_cast<std::size_t>(range.high - range.low + 1)));
+  curves = {on_rig.clip(), on_rig.armature(), on_rig.retarget() != nullptr, range, std::move(known), {}};
+}
+
+void sample_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
+  const auto began = std::chrono::steady_clock::now();
+  while (!curves.complete() && std::chrono::steady_clock::now() - began < kTime)
+    curves.motion.push_back(on_rig.base_at(curves.range.low + static_cast<int>(curves.motion.size())));
+  if (!curves.complete()) editor.touch();
+}
+
+// Returns the track's keys as corrections of the motion.
+GraphCurve keyed(const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& track) {
+  GraphCurve curve;
+  curve.bone = on_rig.armature()->find(track.bone).value_or(-1);
+  if (track.is_shift) {
+    curve.places = curve.shifts = keys.root;
+    curve.shapes = keys.root_shapes;
+    if (on_rig.retarget())
+      for (auto& [frame, shift] : curve.shifts) shift -= on_rig.base_at(frame).root_translation;
+    return curve;
+  }
+  if (const auto found = keys.bones.find(track.bone); found != keys.bones.end())
+    curve.rotations = curve.turns = found->second;
+  curve.shapes = shapes_of(keys, track.bone);
+  if (on_rig.retarget())
+    for (auto& [frame, turn] : curve.turns)
+      turn = glm::normalize(turn * glm::conjugate(on_rig.base_at(frame).rotation[curve.bone]));
+  return curve;
+}
+
+bool is_of(const GraphCurve& curve, const Keys& keys, const GraphTrack& track) {
+  if (track.is_shift) return curve.places == keys.root && curve.shapes == keys.root_shapes;
+  const auto found = keys.bones.find(track.bone);
+  return (found == keys.bones.end() ? curve.rotations.empty() : curve.rotations == found->second) &&
+         curve.shapes == shapes_of(keys, track.bone);
+}
+
+// Returns the motion's own velocity beside a frame, per frame: a rotation vector, or mm.
+glm::dvec3 motion_velocity(const GraphCurves& curves, const GraphTrack& track, int bone, int frame, KeySide side) {
+  const int from = side == KeySide::In ? frame - 1 : frame;
+  return track.is_shift ? motion_shift(curves, from + 1) - motion_shift(curves, from)
+                        : turn_between(motion_rotation(curves, bone, from), motion_rotation(curves, bone, from + 1));
+}
+
+template <class Value>
+bool has_span(const std::map<int, Value>& keys, const KeyShapes& shapes, int frame, KeySide side) {
+  const auto key = keys.find(frame);
+  if (key == keys.end()) return false;
+  if (side == KeySide::Out)
+    return std::next(key) != keys.end() && shape_at(shapes, frame).next == Interpolation::Bezier;
+  return key != keys.begin() && shape_at(shapes, std::prev(key)->first).next == Interpolation::Bezier;
+}
+
+template <class Value>
+double span_frames(const std::map<int, Value>& keys, int frame, KeySide side) {
+  const auto key = keys.find(frame);
+  return side == KeySide::Out ? std::next(key)->first - frame : frame - std::prev(key)->first;
+}
+
+}  // namespace
+
+Graph& graph_of(Editor& editor) {
+  if (!editor.timeline->graph) editor.timeline->graph = std::make_shared<Graph>();
+  return *editor.timeline->graph;
+}
+
+const Keys& graph_keys(const Editor& editor) {
+  const auto& graph = editor.timeline->graph;
+  return graph && graph->preview ? *graph->preview : shown_clip(editor)->keys;
+}
+
+GraphTracks graph_tracks(const Editor& editor) {
+  GraphTracks found;
+  const auto& rig = editor.document().armature;
+  const Clip* clip = shown_clip(editor);
+  if (!rig || !clip) return found;
+  std::size_t bones = 0;
+  for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
+    const Bone& b = rig->bones[bone];
+    const bool wanted =
+        editor.selection.bones.empty() ? clip->keys.bones.contains(b.name) : editor.selection.bones.contains(bone);
+    if (!wanted) continue;
+    if (++bones > kMostBones) {
+      ++found.left_out;
+      continue;
+    }
+    found.tracks.push_back({b.name, false});
+    if (b.parent < 0) found.tracks.push_back({b.name, true});
+  }
+  return found;
+}
+
+std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track) {
+  std::set<int> frames;
+  if (track.is_shift)
+    for (const auto& [frame, shift] : keys.root) frames.insert(frame);
+  else if (const auto found = keys.bones.find(track.bone); found != keys.bones.end())
+    for (const auto& [frame, rotation] : found->second) frames.insert(frame);
+  return frames;
+}
+
+bool is_shown(const Graph& graph, const GraphChannel& channel) {
+  return graph.curves.tracks.contains(channel.track) && !graph.hidden.contains(channel);
+}
+
+void update_curves(Editor& editor) {
+  GraphCurves& curves = graph_of(editor).curves;
+  const ClipOnRig* on_rig = clip_on_rig(editor);
+  if (!on_rig) return;
+  meet_motion(editor, curves, *on_rig);
+  sample_motion(editor, curves, *on_rig);
+  const Keys& keys = graph_keys(editor);
+  std::map<GraphTrack, GraphCurve> tracks;
+  for (const GraphTrack& track : graph_tracks(editor).tracks) {
+    const auto before = curves.tracks.find(track);
+    const bool same = before != curves.tracks.end() && is_of(before->second, keys, track);
+    GraphCurve curve = same ? std::move(before->second) : keyed(*on_rig, keys, track);
+    if (!same && before != curves.tracks.end()) curve.motion = std::move(before->second.motion);
+    extend(curves, track, curve);
+    tracks.emplace(track, std::move(curve));
+  }
+  curves.tracks = std::move(tracks);
+}
+
+glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame) {
+  const GraphCurve& curve = curves.tracks.at(track);
+  const auto place = static_cast<std::ptrdiff_t>(std::floor(frame)) - curves.range.low;
+  if (curve.values.empty()) return values_near(curves, track, curve, frame, glm::dvec3(0));
+  const glm::dvec3& sampled =
+      curve.values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, std::ssize(curve.values) - 1))];
+  if (frame == std::floor(frame) && place >= 0 && place < std::ssize(curve.values)) return sampled;
+  return values_near(curves, track, curve, frame, sampled);
+}
+
+std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {
+  const GraphCurve& curve = curves.tracks.at(track);
+  if (track.is_shift) {
+    if (!has_span(curve.shifts, curve.shapes, frame, side)) return std::nullopt;
+    const Tangents tangents = tangents_at(curve.shifts, curve.shapes, frame);
+    return (side == KeySide::In ? tangents.in : tangents.out) + motion_velocity(curves, track, curve.bone, frame, side);
+  }
+  if (!has_span(curve.turns, curve.shapes, frame, side)) return std::nullopt;
+  const Tangents tangents = tangents_at(curve.turns, curve.shapes, frame);
+  const glm::dvec3 velocity = (side == KeySide::In ? tangents.in : tangents.out) +
+                              curve.turns.at(frame) * motion_velocity(curves, track, curve.bone, frame, side);
+  return glm::degrees(channel_speeds(glm::radians(graph_values(curves, track, frame)), velocity));
+}
+
+glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side,
+                             const glm::dvec3& speeds) {
+  const GraphCurve& curve = curves.tracks.at(track);
+  const glm::dvec3 own = motion_velocity(curves, track, curve.bone, frame, side);
+  if (track.is_shift) return speeds - own;
+  return velocity_of_channels(glm::radians(graph_values(curves, track, frame)), glm::radians(speeds)) -
+         curve.turns.at(frame) * own;
+}
+
+double handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {
+  const GraphCurve& curve = curves.tracks.at(track);
+  return (track.is_shift ? span_frames(curve.shifts, frame, side) : span_frames(curve.turns, frame, side)) / 3;
+}
+
+void show_graph(Editor& editor, bool on) {
+  Graph& graph = graph_of(editor);
+  editor.timeline->shows_graph = on;
+  Arrangement& arrangement = editor.arrangement();
+  if (on) {
+    arrangement.timeline = true;
+    graph.height_before = arrangement.bottom_height;
+    arrangement.bottom_height = std::max(arrangement.bottom_height, kHeight);
+    graph.fitted.clear();
+  } else if (arrangement.bottom_height == kHeight && graph.height_before > 0) {
+    arrangement.bottom_height = graph.height_before;  // the user has not dragged it since
+  }
+  editor.touch();
+}
+
+void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys) {
+  Graph& graph = graph_of(editor);
+  double low = INFINITY, high = -INFINITY;
+  const auto take = [&](double value) { low = std::min(low, value), high = std::max(high, value); };
+  if (keys)
+    for (const GraphKey& key : *keys) take(graph_values(graph.curves, key.channel.track, key.frame)[key.channel.axis]);
+  else
+    for (const auto& [track, curve] : graph.curves.tracks)
+      for (int axis = 0; axis < 3; ++axis)
+        if (is_shown(graph, {track, axis}))
+          for (const auto* values : {&curve.values, &curve.motion})
+            for (const glm::dvec3& value : *values) take(value[axis]);
+  if (low > high) low = high = 0;
+  const double room = std::max(1.0, kRoom * (high - low));
+  graph.low = low - room;
+  graph.high = high + room;
+  editor.touch();
+}
+
+float graph_y(const Graph& graph, double value) {
+  const double share = (value - graph.low) / (graph.high - graph.low);
+  return graph.plot.high.y - static_cast<float>(share * graph.plot.height());
+}
+
+double graph_value_at(const Graph& graph, float y) {
+  return graph.low + (graph.high - graph.low) * (graph.plot.high.y - y) / std::max(1.0f, graph.plot.height());
+}
+
+std::set<GraphKey> chosen_graph_keys(const Editor& editor) {
+  std::set<GraphKey> found;
+  const auto& graph = editor.timeline->graph;
+  if (!graph || !editor.timeline->shows_graph || !shown_clip(editor)) return found;
+  const Keys& keys = graph_keys(editor);
+  for (const GraphKey& key : graph->chosen)
+    if (is_shown(*graph, key.channel) && key_frames_of(keys, key.channel.track).contains(key.frame)) found.insert(key);
+  return found;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/graph_edits.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/motion/euler_channels.h"
+#include "core/motion/key_curve.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kFurthest = 10'000'000;  // largest absolute value of a frame number
+
+using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;  // and which channels of each frame's key
+
+FramesOfTracks by_track(const std::set<GraphKey>& keys) {
+  FramesOfTracks tracks;
+  for (const GraphKey& key : keys) {
+    auto& channels = tracks[key.channel.track].try_emplace(key.frame, false, false, false).first->second;
+    channels[key.channel.axis] = true;
+  }
+  return tracks;
+}
+
+KeyShape shape_of(const Keys& keys, const GraphTrack& track, int frame) {
+  return shape_at(track.is_shift ? keys.root_shapes : shapes_of(keys, track.bone), frame);
+}
+void put_shape(Keys& keys, const GraphTrack& track, int frame, const KeyShape& shape) {
+  if (track.is_shift) set_root_shape(keys, frame, shape);
+  else set_shape(keys, track.bone, frame, shape);
+}
+
+Tangents tangents_of(const GraphCurves& curves, const GraphTrack& track, int frame) {
+  const GraphCurve& curve = curves.tracks.at(track);
+  return track.is_shift ? tangents_at(curve.shifts, curve.shapes, frame)
+                        : tangents_at(curve.turns, curve.shapes, frame);
+}
+
+// Returns the shape with free handles that begin with the key's tangents.
+KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, KeyShape shape) {
+  if (shape.handles == HandleKind::Free) return shape;
+  const Tangents tangents = tangents_of(curves, track, frame);
+  return {shape.next, HandleKind::Free, tangents.in, tangents.out};
+}
+
+void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track, int frame, const glm::bvec3& channels,
+                  double value) {
+  glm::dvec3 values = graph_values(curves, track, frame);
+  for (int axis = 0; axis < 3; ++axis)
+    if (channels[axis]) values[axis] += value;
+  if (track.is_shift) {
+    keys.root[frame] = values;
+    return;
+  }
+  glm::dquat& rotation = keys.bones[track.bone][frame];
+  const glm::dquat turned = rotation_of_channels(glm::radians(values));
+  rotation = glm::dot(turned, rotation) < 0 ? -turned : turned;
+}
+
+// Returns the straight way from a key to the next one, and its number of frames. Returns nothing for the last key.
+template <class Value, class Way>
+std::optional<std::pair<glm::dvec3, int>> way_on(const std::map<int, Value>& keys, int frame, const Way& way) {
+  const auto key = keys.find(frame);
+  if (key == keys.end() || std::next(key) == keys.end()) return std::nullopt;
+  return std::pair(way(key->second, std::next(key)->second), std::next(key)->first - frame);
+}
+
+}  // namespace
+
+Keys with_keys_moved(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& moved, int frames,
+                     double value) {
+  Keys next = keys;
+  for (const auto& [track, channels_at] : by_track(moved)) {
+    std::map<int, int> frame_of;
+    for (const auto& [frame, channels] : channels_at) {
+      if (value != 0) change_value(curves, next, track, frame, channels, value);
+      frame_of[frame] = static_cast<int>(std::clamp(std::int64_t{frame} + frames, -kFurthest, kFurthest));
+    }
+    if (frames == 0) continue;
+    if (track.is_shift) move_root_keys(next, frame_of);
+    else move_bone_keys(next, track.bone, frame_of);
+  }
+  return next;
+}
+
+std::set<GraphKey> moved_by(const std::set<GraphKey>& keys, int frames) {
+  std::set<GraphKey> moved;
+  for (GraphKey key : keys) {
+    key.frame = static_cast<int>(std::clamp(std::int64_t{key.frame} + frames, -kFurthest, kFurthest));
+    moved.insert(key);
+  }
+  return moved;
+}
+
+Keys with_keys_deleted(const Keys& keys, const std::set<GraphKey>& deleted) {
+  Keys next = keys;
+  for (const GraphKey& key : deleted) {
+    if (key.channel.track.is_shift) delete_root_keys(next, {key.frame});
+    else delete_bone_keys(next, key.channel.track.bone, {key.frame});
+  }
+  return next;
+}
+
+Keys with_interpolation(const Keys& keys, const std::set<GraphKey>& changed, Interpolation interpolation) {
+  Keys next = keys;
+  for (const auto& [track, frames] : by_track(changed))
+    for (const auto& [frame, channels] : frames) {
+      KeyShape shape = shape_of(next, track, frame);
+      shape.next = interpolation;
+      put_shape(next, track, frame, shape);
+    }
+  return next;
+}
+
+Keys with_handles(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed, HandleKind handles) {
+  Keys next = keys;
+  for (const auto& [track, frames] : by_track(changed))
+    for (const auto& [frame, channels] : frames) {
+      const Tangents tangents = tangents_of(curves, track, frame);
+      KeyShape shape{shape_of(next, track, frame).next, handles};
+      if (handles == HandleKind::Free) {
+        shape.in = tangents.in;
+        shape.out = tangents.out;
+      } else if (handles == HandleKind::Aligned) {
+        shape.in = shape.out = (tangents.in + tangents.out) / 2.0;
+      }
+      put_shape(next, track, frame, shape);
+    }
+  return next;
+}
+
+Keys with_slope(const GraphCurves& curves, const Keys& keys, const GraphKey& key, KeySide side, double speed) {
+  const GraphTrack& track = key.channel.track;
+  const auto now = graph_speeds(curves, track, key.frame, side);
+  if (!now) return keys;
+  glm::dvec3 speeds = *now;
+  speeds[key.channel.axis] = speed;
+  const glm::dvec3 tangent = tangent_of_speeds(curves, track, key.frame, side, speeds);
+  Keys next = keys;
+  KeyShape shape = shape_of(next, track, key.frame);
+  if (shape.handles != HandleKind::Free) {
+    shape.handles = HandleKind::Aligned;
+    shape.in = shape.out = tangent;
+  } else {
+    (side == KeySide::In ? shape.in : shape.out) = tangent;
+  }
+  put_shape(next, track, key.frame, shape);
+  return next;
+}
+
+Keys with_easing(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed, Easing easing) {
+  Keys next = keys;
+  for (const auto& [track, frames] : by_track(changed)) {
+    const GraphCurve& curve = curves.tracks.at(track);
+    for (const auto& [frame, channels] : frames) {
+      const auto way = track.is_shift ? way_on(curve.shifts, frame, [](const auto& a, const auto& b) { return b - a; })
+                                      : way_on(curve.turns, frame, turn_between);
+      if (!way) continue;
+      const glm::dvec3 full = 2.0 * way->first / static_cast<double>(way->second);
+      KeyShape first = freed(curves, track, frame, shape_of(next, track, frame));
+      first.next = Interpolation::Bezier;
+      first.out = easing == Easing::Out ? full : glm::dvec3(0);
+      put_shape(next, track, frame, first);
+      const int end = frame + way->second;
+      KeyShape last = freed(curves, track, end, shape_of(next, track, end));
+      last.in = easing == Easing::In ? full : glm::dvec3(0);
+      put_shape(next, track, end, last);
+    }
+  }
+  return next;
+}
+
+}  // namespace limber::editor

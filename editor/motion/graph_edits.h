@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Edits of keys through the channels of the graph editor. Each function returns changed keys. `curves` are those of the
+// given keys, and every given key exists.
+#pragma once
+
+#include "editor/motion/graph.h"
+
+namespace limber::editor {
+
+// Moves keys in time and in value. Only the channels among the keys change their value; in time all channels of a
+// bone's key go together.
+//   value  degrees, or mm for a shift
+Keys with_keys_moved(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& moved, int frames,
+                     double value);
+std::set<GraphKey> moved_by(const std::set<GraphKey>& keys, int frames);
+Keys with_keys_deleted(const Keys& keys, const std::set<GraphKey>& deleted);
+
+// Sets how the keys' tracks go on from the keys.
+Keys with_interpolation(const Keys& keys, const std::set<GraphKey>& changed, Interpolation interpolation);
+// Sets what gives the keys' tangents. Aligned and free handles begin with the tangents that the keys have.
+Keys with_handles(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed, HandleKind handles);
+// Sets the slope of one channel at a key, on one side. The handles become aligned, unless they are free.
+//   speed  degrees or mm per frame
+Keys with_slope(const GraphCurves& curves, const Keys& keys, const GraphKey& key, KeySide side, double speed);
+
+// Eases the spans that begin at the keys. In: slow at first, half of a quadratic curve; out: slow at last.
+enum class Easing { In, Out, InOut };
+Keys with_easing(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed, Easing easing);
+
+}  // namespace limber::editor

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators of the graph editor: its view, the selection of keys, and what is between keys.
+#include "editor/context/operator.h"
+#include "editor/motion/graph_edits.h"
+#include "editor/motion/graph_tool.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+std::string needs_graph(const Editor& editor) {
+  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  if (!editor.document().armature) return "Import a rig first";
+  return editor.timeline->shows_graph && editor.arrangement().timeline ? "" : "Show the graph editor first";
+}
+std::string needs_graph_keys(const Editor& editor) {
+  if (const std::string why = needs_graph(editor); !why.empty()) return why;
+  return chosen_graph_keys(editor).empty() ? "Select keys in the graph first" : "";
+}
+
+void choose_all(Editor& editor) {
+  Graph& graph = graph_of(editor);
+  update_curves(editor);
+  for (const auto& [track, curve] : graph.curves.tracks)
+    for (const int frame : key_frames_of(graph_keys(editor), track))
+      for (int axis = 0; axis < 3; ++axis)
+        if (is_shown(graph, {track, axis})) graph.chosen.insert({{track, axis}, frame});
+}
+
+void fit_to_chosen(Editor& editor) {
+  const std::set<GraphKey> keys = chosen_graph_keys(editor);
+  fit_graph_values(editor, &keys);
+  int low = keys.begin()->frame, high = low;
+  for (const GraphKey& key : keys) low = std::min(low, key.frame), high = std::max(high, key.frame);
+  auto& window = editor.timeline->window;
+  window.count = std::max(kFewestFrames, 1.3 * (high - low));
+  window.low = (low + high) / 2.0 - window.count / 2;
+}
+
+// Changes the keys of the shown clip by the curves that are shown.
+void change(Editor& editor, const std::string& label,
+            const std::function<Keys(const GraphCurves&, const Keys&, const std::set<GraphKey>&)>& edit) {
+  stop_playing(editor);
+  update_curves(editor);
+  const Keys next = edit(graph_of(editor).curves, shown_clip(editor)->keys, chosen_graph_keys(editor));
+  if (next == shown_clip(editor)->keys) return;
+  edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = next; });
+}
+
+Operator interpolation(const char* id, const char* label, const char* description, Interpolation which) {
+  return {id,
+          label,
+          "",
+          "Motion",
+          description,
+          [label, which](Editor& e) {
+            change(e, std::string("Interpolation: ") + label,
+                   [which](const GraphCurves&, const Keys& keys, const auto& chosen) {
+                     return with_interpolation(keys, chosen, which);
+                   });
+          },
+          needs_graph_keys};
+}
+Operator handles(const char* id, const char* label, const char* description, HandleKind which) {
+  return {id,
+          label,
+          "",
+          "Motion",
+          description,
+          [label, which](Editor& e) {
+            change(e, std::string("Handles: ") + label,
+                   [which](const GraphCurves& curves, const Keys& keys, const auto& chosen) {
+                     return with_handles(curves, keys, chosen, which);
+                   });
+          },
+          needs_graph_keys};
+}
+Operator easing(const char* id, const char* label, const char* description, Easing which) {
+  return {id,
+          label,
+          "",
+          "Motion",
+          description,
+          [label, which](Editor& e) {
+            change(e, label, [which](const GraphCurves& curves, const Keys& keys, const auto& chosen) {
+              return with_easing(curves, keys, chosen, which);
+            });
+          },
+          needs_graph_keys};
+}
+
+}  // namespace
+
+std::vector<Operator> graph_operators() {
+  return {
+      {"graph.show", "Graph editor", icon::kReport, "Motion",
+       "Show the clip as curves in place of the timeline's rows, or the rows again.",
+       [](Editor& e) { show_graph(e, !e.timeline->shows_graph || !e.arrangement().timeline); }, nullptr,
+       [](const Editor& e) { return e.timeline->shows_graph && e.arrangement().timeline; }},
+      {"graph.select", "Select in the graph", "", "Motion",
+       "Select and drag keys and their handles. Away from keys, draw a rectangle that selects.", press_graph,
+       needs_graph},
+      {"graph.select_all", "Select all keys in the graph", "", "Motion", "Select every key of the shown curves.",
+       choose_all, needs_graph},
+      {"graph.select_none", "Deselect keys in the graph", "", "Motion", "Deselect all keys of the curves.",
+       [](Editor& e) { graph_of(e).chosen.clear(); }, needs_graph_keys},
+      {"graph.pan", "Pan the graph", "", "Motion", "Move the shown part of the curves.", pan_graph, needs_graph},
+      {"graph.zoom", "Zoom the graph", "", "Motion", "Zoom time and values around the pointer.",
+       [](Editor& e) { zoom_graph(e, ZoomAxes::Both); }, needs_graph},
+      {"graph.zoom_time", "Zoom the graph's time", "", "Motion", "Show fewer or more frames around the pointer.",
+       [](Editor& e) { zoom_graph(e, ZoomAxes::Time); }, needs_graph},
+      {"graph.zoom_values", "Zoom the graph's values", "", "Motion",
+       "Show a smaller or larger range of values around the pointer.",
+       [](Editor& e) { zoom_graph(e, ZoomAxes::Value); }, needs_graph},
+      {"graph.view_all", "Show all curves", "", "Motion", "Fit the whole clip and all shown curves into the graph.",
+       [](Editor& e) {
+         fit_window(e);
+         fit_graph_values(e);
+       },
+       needs_graph},
+      {"graph.view_selected", "Show selected keys in the graph", "", "Motion", "Fit the selected keys into the graph.",
+       fit_to_chosen, needs_graph_keys},
+      {"graph.move", "Move keys in the graph", icon::kMove, "Motion",
+       "Move the selected keys in time and value with the pointer, or by a typed number.", begin_moving_graph_keys,
+       needs_graph_keys},
+      {"graph.delete", "Delete keys in the graph", icon::kTrash, "Motion",
+       "Delete the selected keys. A bone's key is deleted with all of its three channels.",
+       [](Editor& e) {
+         change(e, "Delete keys in the graph", [](const GraphCurves&, const Keys& keys, const auto& chosen) {
+           return with_keys_deleted(keys, chosen);
+         });
+       },
+       needs_graph_keys},
+      {"graph.interpolation_menu", "Interpolation of keys", "", "Motion",
+       "Open a menu of how curves go on from the selected keys.", [](Editor& e) { e.open_popup = "Interpolation"; },
+       needs_graph_keys},
+      {"graph.handle_menu", "Handles of keys", "", "Motion",
+       "Open a menu of the kinds of handles that the selected keys may have.",
+       [](Editor& e) { e.open_popup = "Handles"; }, needs_graph_keys},
+      interpolation("graph.constant", "Constant", "Hold the value of the selected keys until the next key.",
+                    Interpolation::Constant),
+      interpolation("graph.linear", "Linear", "Go from the selected keys to the next ones at constant speed.",
+                    Interpolation::Linear),
+      interpolation("graph.bezier", "Bezier", "Go from the selected keys to the next ones along smooth curves.",
+                    Interpolation::Bezier),
+      easing("graph.ease_in", "Ease in", "Start slowly at the selected keys and gain speed up to the next ones.",
+             Easing::In),
+      easing("graph.ease_out", "Ease out", "Leave the selected keys fast and slow down towards the next ones.",
+             Easing::Out),
+      easing("graph.ease_in_out", "Ease in and out",
+             "Start slowly at the selected keys and slow down towards the next ones.", Easing::InOut),
+      handles("graph.handles_automatic", "Automatic", "Take the slope at the selected keys from their neighbours.",
+              HandleKind::Automatic),
+      handles("graph.handles_clamped", "Automatic, clamped",
+              "Take the slope from the neighbours, without swinging beyond a key where the curve turns back.",
+              HandleKind::Clamped),
+      handles("graph.handles_aligned", "Aligned", "Set the slope by hand, the same on both sides of the key.",
+              HandleKind::Aligned),
+      handles("graph.handles_free", "Free", "Set the slopes on both sides of the key independently.", HandleKind::Free),
+      handles("graph.handles_flat", "Flat", "Stop at the selected keys: the slope is zero.", HandleKind::Flat),
+  };
+}
+
+}  // namespace limber::editor

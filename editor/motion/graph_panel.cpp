@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/graph_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "editor/motion/graph_tool.h"
+#include "editor/motion/timeline_ruler.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kList = 176, kValues = 52, kButton = 20;  // widths: list, values beside the plot, a channel's button
+constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
+constexpr float kFine = 5;          // with more pixels from frame to frame, curves are drawn between frames too
+constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;
+constexpr const char* kAxes[] = {"X", "Y", "Z"};
+
+// ---- The list of tracks
+
+std::string name_of(const GraphTrack& track) { return track.is_shift ? track.bone + " shift" : track.bone; }
+
+void draw_channel_button(Editor& editor, const GraphChannel& channel, const Rect& place) {
+  const Look& look = editor.look;
+  Graph& graph = graph_of(editor);
+  const bool shown = !graph.hidden.contains(channel);
+  const Pressed pressed = press_area(editor, kAxes[channel.axis], place);
+  fill(place, pressed.hovered ? look.theme.hover : shown ? look.theme.raised : look.theme.panel, look.px(3));
+  const Rect edge{{place.low.x + look.px(2), place.high.y - look.px(4)},
+                  {place.high.x - look.px(2), place.high.y - look.px(2)}};
+  fill(edge, with_alpha(look.theme.axis[channel.axis], shown ? 1.0f : 0.25f));
+  put_text(editor, look.fonts.small, shown ? look.theme.text : look.theme.text3, place, kAxes[channel.axis],
+           Align::Centre);
+  if (pressed.hovered)
+    tooltip(editor, place, name_of(channel.track) + " " + kAxes[channel.axis],
+            "Click to show or hide this curve. Ctrl-click to show only this one.");
+  if (!pressed.clicked) return;
+  if (editor.input.modifiers().ctrl) {
+    graph.hidden.clear();
+    for (const auto& [track, curve] : graph.curves.tracks)
+      for (int axis = 0; axis < 3; ++axis) graph.hidden.insert({track, axis});
+    graph.hidden.erase(channel);
+  } else if (shown) {
+    graph.hidden.insert(channel);
+  } else {
+    graph.hidden.erase(channel);
+  }
+}
+
+void draw_list(Editor& editor, const Rect& area, const GraphTracks& found) {
+  const Look& look = editor.look;
+  Column column(editor, "channels", area);
+  const auto words = [&](const std::string& text) {
+    const Rect row = column.row(22);
+    put_text(editor, look.fonts.small, look.theme.text3, Rect{{row.low.x + look.px(12), row.low.y}, row.high}, text);
+  };
+  if (found.tracks.empty()) words("Select a bone");
+  int index = 0;
+  for (const GraphTrack& track : found.tracks) {
+    Rect row;
+    if (!column.list_row(row, index++, false)) continue;
+    const PathScope path(editor, name_of(track));
+    float right = row.high.x - look.px(6);
+    for (int axis = 2; axis >= 0; --axis) {
+      const Rect place{{right - look.px(kButton), row.low.y + look.px(2)}, {right, row.high.y - look.px(2)}};
+      draw_channel_button(editor, {track, axis}, place);
+      right = place.low.x - look.px(3);
+    }
+    put_text(editor, look.fonts.regular, look.theme.text2,
+             Rect{{row.low.x + look.px(12), row.low.y}, {right - look.px(2), row.high.y}}, name_of(track));
+  }
+  if (found.left_out > 0) words("and " + std::to_string(found.left_out) + " more: select fewer");
+}
+
+// ---- The plot
+
+// Returns the unit of the shown values: "" when both angles and shifts are shown.
+const char* unit_of(const Graph& graph) {
+  bool angles = false, shifts = false;
+  for (const auto& [track, curve] : graph.curves.tracks)
+    for (int axis = 0; axis < 3; ++axis)
+      if (is_shown(graph, {track, axis})) (track.is_shift ? shifts : angles) = true;
+  return angles && shifts ? "" : shifts ? " mm" : "\u00b0";
+}
+
+void draw_values(Editor& editor) {
+  const Look& look = editor.look;
+  const Graph& graph = graph_of(editor);
+  const double per_pixel = (graph.high - graph.low) / std::max(1.0f, graph.plot.height());
+  const double step = round_step(look.px(kLeastValues) * per_pixel);
+  const char* unit = unit_of(graph);
+  for (auto i = static_cast<std::int64_t>(std::ceil(graph.low / step)); static_cast<double>(i) * step <= graph.high;
+       ++i) {
+    const double value = static_cast<double>(i) * step;
+    const float y = std::round(graph_y(graph, value));
+    fill({{graph.plot.low.x, y}, {graph.plot.high.x, y + look.line()}},
+         i == 0 ? look.theme.line2 : with_alpha(look.theme.line, 0.6f));
+    char text[32];
+    std::snprintf(text, sizeof text, step >= 1 ? "%.0f%s" : "%.3g%s", value, unit);
+    const float half = look.px(8);
+    if (y - half < graph.plot.low.y || y + half > graph.plot.high.y) continue;
+    put_text(editor, look.fonts.small_mono, look.theme.text3,
+             Rect{{graph.plot.low.x - look.px(kValues), y - half}, {graph.plot.low.x - look.px(6), y + half}}, text,
+             Align::Right);
+  }
+}
+
+// Draws a line through the values of whole frames, and between them where frames are far apart and `fine` gives the
+// values there.
+void draw_line(Editor& editor, const std::vector<glm::dvec3>& values, int axis, Colour colour, float width,
+               const std::function<glm::dvec3(double)>& fine) {
+  const Timeline& timeline = *editor.timeline;
+  const Graph& graph = graph_of(editor);
+  const int first = graph.curves.range.low, last = first + static_cast<int>(values.size()) - 1;
+  const double per_frame = timeline.ruler.width() / timeline.window.count;
+  const int low = static_cast<int>(std::clamp(std::floor(timeline.window.low), double(first), double(last)));
+  const int high =
+      static_cast<int>(std::clamp(std::ceil(timeline.window.low + timeline.window.count), double(first), double(last)));
+  const int parts = fine ? std::clamp(static_cast<int>(per_frame / editor.look.px(kFine)), 1, 16) : 1;
+  // Where several frames fall into half a pixel, only some of them are drawn.
+  const int stride = std::max(1, static_cast<int>(std::floor(0.5 / std::max(per_frame, 1e-9))));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (int frame = low; frame <= high; frame += stride) {
+    list.PathLineTo({x_of(timeline, frame), graph_y(graph, values[frame - first][axis])});
+    if (frame < high)
+      for (int part = 1; part < parts; ++part) {
+        const double at = frame + static_cast<double>(part) / parts;
+        list.PathLineTo({x_of(timeline, at), graph_y(graph, fine(at)[axis])});
+      }
+  }
+  list.PathStroke(colour, 0, width);
+}
+
+void draw_curves(Editor& editor) {
+  const Look& look = editor.look;
+  const Graph& graph = graph_of(editor);
+  const std::string active = editor.selection.bone && editor.document().armature &&
+                                     *editor.selection.bone < std::ssize(editor.document().armature->bones)
+                                 ? editor.document().armature->bones[*editor.selection.bone].name
+                                 : "";
+  for (const bool keyed : {false, true})
+    for (const auto& [track, curve] : graph.curves.tracks) {
+      const bool has_keys = !curve.turns.empty() || !curve.shifts.empty();
+      const bool faint = keyed && !active.empty() && track.bone != active;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!is_shown(graph, {track, axis})) continue;
+        if (!keyed && has_keys && !curve.motion.empty())
+          draw_line(editor, curve.motion, axis, with_alpha(look.theme.text3, 0.55f), look.scale, {});
+        if (keyed && !curve.values.empty())
+          draw_line(editor, curve.values, axis, with_alpha(look.theme.axis[axis], faint ? 0.45f : 1.0f),
+                    (faint ? 1.0f : 1.6f) * look.scale,
+                    [&, t = &track](double frame) { return graph_values(graph.curves, *t, frame); });
+      }
+    }
+}
+
+void draw_keys_and_handles(Editor& editor) {
+  const Look& look = editor.look;
+  const Graph& graph = graph_of(editor);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (const GraphHandle& handle : graph_handles(editor)) {
+    list.AddLine(im(handle.key_point), im(handle.point), look.theme.select, look.scale);
+    list.AddCircleFilled(im(handle.point), look.px(kHandleRadius), look.theme.field);
+    list.AddCircle(im(handle.point), look.px(kHandleRadius), look.theme.select, 0, 1.5f * look.scale);
+  }
+  const std::set<GraphKey> chosen = chosen_graph_keys(editor);
+  const Keys& keys = graph_keys(editor);
+  for (const auto& [track, curve] : graph.curves.tracks)
+    for (const int frame : key_frames_of(keys, track)) {
+      const float x = x_of(*editor.timeline, frame);
+      if (x < graph.plot.low.x - look.px(8) || x > graph.plot.high.x + look.px(8)) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        const GraphKey key{{track, axis}, frame};
+        if (!is_shown(graph, key.channel)) continue;
+        const glm::vec2 point = graph_point(editor, key);
+        list.AddCircleFilled(im(point), look.px(kKeyRadius + 1), look.theme.field);
+        list.AddCircleFilled(im(point), look.px(kKeyRadius),
+                             chosen.contains(key) ? look.theme.select : look.theme.axis[axis]);
+      }
+    }
+  if (!graph.box) return;
+  const Rect box = intersection(*graph.box, graph.plot);
+  fill(box, with_alpha(look.theme.select, 0.15f));
+  outline(box, look.theme.select, 0, look.line());
+}
+
+// Returns a name of what is shown, so that the values are fitted again when it changes.
+std::string shown_name(const Editor& editor, const GraphTracks& found) {
+  std::string name = shown_clip(editor)->name;
+  for (const GraphTrack& track : found.tracks) name += "/" + name_of(track);
+  return name;
+}
+
+}  // namespace
+
+void draw_graph(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  Graph& graph = graph_of(editor);
+  const float left = rect.low.x + look.px(kList + kValues), right = rect.high.x - look.px(kRulerEnds);
+  timeline.marks = timeline.lane = timeline.keys = {};
+  timeline.ruler = {{left, rect.low.y}, {right, rect.low.y + look.px(kRulerHeight)}};
+  graph.plot = {{left, timeline.ruler.high.y}, {right, std::max(timeline.ruler.high.y + 1, rect.high.y)}};
+  editor.timeline_area = timeline.area = {timeline.ruler.low, graph.plot.high};
+  editor.graph_area = graph.plot;
+
+  const GraphTracks found = graph_tracks(editor);
+  if (editor.document().armature) update_curves(editor);
+  if (const std::string name = shown_name(editor, found); graph.fitted != name && graph.curves.complete()) {
+    fit_graph_values(editor);
+    graph.fitted = name;
+  }
+  draw_list(editor, {{rect.low.x, timeline.ruler.high.y}, {rect.low.x + look.px(kList), rect.high.y}}, found);
+  fill({{rect.low.x + look.px(kList), rect.low.y}, {rect.low.x + look.px(kList) + look.line(), rect.high.y}},
+       look.theme.line);
+  register_widget(editor, "ruler", timeline.ruler);
+  register_widget(editor, "graph", graph.plot);
+  fill(graph.plot, look.theme.field);
+  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(kValues), 0)),
+                      im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
+  draw_ruler(editor);
+  draw_values(editor);
+  ImGui::PushClipRect(im(graph.plot.low), im(graph.plot.high), true);
+  if (!graph.curves.tracks.empty()) {
+    draw_curves(editor);
+    draw_keys_and_handles(editor);
+  } else {
+    put_text(editor, look.fonts.regular, look.theme.text2, graph.plot, "Select bones to see their curves",
+             Align::Centre);
+  }
+  ImGui::PopClipRect();
+  draw_play_head(editor, {});
+  ImGui::PopClipRect();
+}
+
+}  // namespace limber::editor

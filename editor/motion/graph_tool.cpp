@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/graph_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "editor/motion/graph_edits.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/shown/shown_pose.h"
+#include "editor/viewport/numeric_input.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kReach = 8;  // largest distance from the pointer to a key or a handle's end, pixels at scale 1
+constexpr float kStart = 3;  // the pointer moves this far before a press on a key drags it, pixels at scale 1
+constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
+constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
+
+// Shows the keys in place of the clip's, in the graph and by the body's pose.
+void preview(Editor& editor, Keys keys) {
+  Graph& graph = graph_of(editor);
+  const ClipOnRig* on_rig = clip_on_rig(editor);
+  if (on_rig) {
+    Clip clip = *on_rig->clip();
+    clip.keys = keys;
+    show_pose(
+        editor,
+        ClipOnRig(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig).at(shown_frame(editor)));
+  }
+  graph.preview = std::move(keys);
+  editor.touch();
+}
+
+void drop_preview(Editor& editor) {
+  graph_of(editor).preview.reset();
+  drop_shown_pose(editor);
+  editor.touch();
+}
+
+void commit_preview(Editor& editor, const std::string& label) {
+  const std::optional<Keys> keys = std::exchange(graph_of(editor).preview, std::nullopt);
+  drop_shown_pose(editor);
+  if (keys && *keys != shown_clip(editor)->keys)
+    edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = *keys; });
+}
+
+// A change of selected keys by the pointer, as the keys and curves were when it began.
+struct Moving {
+  Keys keys;
+  GraphCurves curves;
+  std::set<GraphKey> chosen;
+
+  explicit Moving(Editor& editor)
+      : keys(shown_clip(editor)->keys),
+        curves(graph_of(editor).curves),
+        chosen(chosen_graph_keys(editor)) {}
+
+  void show(Editor& editor, int frames, double value) const {
+    preview(editor, with_keys_moved(curves, keys, chosen, frames, value));
+    graph_of(editor).chosen = moved_by(chosen, frames);
+  }
+  void cancel(Editor& editor) const {
+    drop_preview(editor);
+    graph_of(editor).chosen = chosen;
+  }
+};
+
+double frames_of_pixels(const Timeline& timeline, float pixels) {
+  return pixels / std::max(1.0f, timeline.ruler.width()) * timeline.window.count;
+}
+double value_of_pixels(const Graph& graph, float pixels) {
+  return -pixels / std::max(1.0f, graph.plot.height()) * (graph.high - graph.low);
+}
+
+class MovingGraphKeys final : public Modal {
+ public:
+  explicit MovingGraphKeys(Editor& editor) : moving_(editor) {}
+
+  bool moved(Editor& editor, const glm::vec2& pixels) override {
+    way_ += pixels * (editor.input.down(Key::Shift) ? 0.1f : 1.0f);
+    return show(editor);
+  }
+  bool button(Editor& editor, const ButtonChanged& event) override {
+    if (!event.down || event.button == MouseButton::Middle) return true;
+    return event.button == MouseButton::Left ? confirm(editor) : drop(editor);
+  }
+  bool key(Editor& editor, const KeyChanged& event) override {
+    if (!event.down) return true;
+    if (event.key == Key::Escape) return drop(editor);
+    if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
+    if (event.key == Key::X || event.key == Key::Y) {
+      const Lock wanted = event.key == Key::X ? Lock::Time : Lock::Value;
+      lock_ = lock_ == wanted ? Lock::None : wanted;
+      return show(editor);
+    }
+    if (number_.key(event.key)) show(editor);
+    return true;
+  }
+  void cancel(Editor& editor) override { moving_.cancel(editor); }
+  std::vector<KeyHint> hints(const Editor&) const override {
+    char frames[32], value[32];
+    std::snprintf(frames, sizeof frames, "%+d frames", frames_);
+    std::snprintf(value, sizeof value, "%+.3g", value_);
+    std::string words = "Move ";
+    if (number_.typed()) words += number_.text() + (lock_ == Lock::Value ? "" : " frames");
+    else words += lock_ == Lock::Time ? frames : lock_ == Lock::Value ? value : frames + std::string(", ") + value;
+    return {{{}, words},
+            {{"X"}, "Time only"},
+            {{"Y"}, "Value only"},
+            {{"0-9"}, "Type a number"},
+            {{"Enter"}, "Confirm"},
+            {{"Esc"}, "Cancel"}};
+  }
+
+ private:
+  enum class Lock { None, Time, Value };
+
+  bool show(Editor& editor) {
+    const Graph& graph = graph_of(editor);
+    frames_ = static_cast<int>(std::lround(std::clamp(frames_of_pixels(*editor.timeline, way_.x), -1e7, 1e7)));
+    value_ = value_of_pixels(graph, way_.y);
+    if (lock_ == Lock::Value) frames_ = 0;
+    if (lock_ == Lock::Time) value_ = 0;
+    if (number_.typed()) {
+      // A number without a lock is a number of frames, as in the timeline.
+      const double typed = std::clamp(number_.value(), -1e7, 1e7);
+      frames_ = lock_ == Lock::Value ? 0 : static_cast<int>(std::lround(typed));
+      value_ = lock_ == Lock::Value ? typed : 0;
+    }
+    moving_.show(editor, frames_, value_);
+    return true;
+  }
+  bool confirm(Editor& editor) {
+    commit_preview(editor, "Move keys in the graph");
+    return false;
+  }
+  bool drop(Editor& editor) {
+    cancel(editor);
+    return false;
+  }
+
+  Moving moving_;
+  glm::vec2 way_{0};
+  Lock lock_ = Lock::None;
+  int frames_ = 0;
+  double value_ = 0;
+  TypedNumber number_;
+};
+
+std::optional<GraphKey> key_under_pointer(Editor& editor) {
+  const Graph& graph = graph_of(editor);
+  const Keys& keys = graph_keys(editor);
+  std::optional<GraphKey> nearest;
+  float least = editor.look.px(kReach);
+  for (const auto& [track, curve] : graph.curves.tracks)
+    for (const int frame : key_frames_of(keys, track))
+      for (int axis = 0; axis < 3; ++axis) {
+        const GraphKey key{{track, axis}, frame};
+        if (!is_shown(graph, key.channel)) continue;
+        // Of keys that lie together, the selected one is meant.
+        const float far =
+            glm::distance(graph_point(editor, key), editor.input.pointer) - (graph.chosen.contains(key) ? 0.5f : 0.0f);
+        if (far > least) continue;
+        least = far;
+        nearest = key;
+      }
+  return nearest;
+}
+
+void drag_handle(Editor& editor, const GraphHandle& handle) {
+  const auto begun = std::make_shared<const Moving>(editor);
+  const auto moved = [=](Editor& e, const glm::vec2&) {
+    const Graph& graph = graph_of(e);
+    const double whole = handle_frames(begun->curves, handle.key.channel.track, handle.key.frame, handle.side);
+    const double side = handle.side == KeySide::In ? -1 : 1;
+    // Over the key or beyond it, the handle is as steep as the pointer's height makes it.
+    const double frames =
+        std::max(0.1 * whole, side * frames_of_pixels(*e.timeline, e.input.pointer.x - handle.key_point.x));
+    const double value = value_of_pixels(graph, e.input.pointer.y - handle.key_point.y);
+    preview(e, with_slope(begun->curves, begun->keys, handle.key, handle.side, side * value / frames));
+  };
+  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, "Move handle"); },
+                     [begun](Editor& e) { begun->cancel(e); }};
+}
+
+void drag_key(Editor& editor, const GraphKey& key) {
+  Graph& graph = graph_of(editor);
+  const bool extend = editor.input.modifiers().shift;
+  if (extend && graph.chosen.contains(key)) {
+    graph.chosen.erase(key);
+    return;
+  }
+  if (!extend && !graph.chosen.contains(key)) graph.chosen.clear();
+  graph.chosen.insert(key);
+  const auto begun = std::make_shared<const Moving>(editor);
+  const auto moved = [begun, from = editor.input.pointer](Editor& e, const glm::vec2&) {
+    const glm::vec2 way = e.input.pointer - from;
+    if (!graph_of(e).preview && glm::length(way) < e.look.px(kStart)) return;
+    begun->show(e, static_cast<int>(std::lround(frames_of_pixels(*e.timeline, way.x))),
+                value_of_pixels(graph_of(e), way.y));
+  };
+  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, "Move keys in the graph"); },
+                     [begun](Editor& e) { begun->cancel(e); }};
+}
+
+void choose_in_box(Editor& editor, const Rect& box) {
+  Graph& graph = graph_of(editor);
+  if (!editor.input.modifiers().shift) graph.chosen.clear();
+  for (const auto& [track, curve] : graph.curves.tracks)
+    for (const int frame : key_frames_of(graph_keys(editor), track))
+      for (int axis = 0; axis < 3; ++axis)
+        if (const GraphKey key{{track, axis}, frame};
+            is_shown(graph, key.channel) && box.contains(graph_point(editor, key)))
+          graph.chosen.insert(key);
+}
+
+void draw_box(Editor& editor) {
+  const glm::vec2 from = editor.input.pointer;
+  const auto moved = [from](Editor& e, const glm::vec2&) {
+    graph_of(e).box = Rect{glm::min(from, e.input.pointer), glm::max(from, e.input.pointer)};
+  };
+  const auto ended = [](Editor& e) {
+    const std::optional<Rect> box = std::exchange(graph_of(e).box, std::nullopt);
+    if (box) choose_in_box(e, *box);
+    else if (!e.input.modifiers().shift) graph_of(e).chosen.clear();
+  };
+  editor.drag = Drag{MouseButton::Left, moved, ended, [](Editor& e) { graph_of(e).box.reset(); }};
+}
+
+}  // namespace
+
+glm::vec2 graph_point(const Editor& editor, const GraphKey& key) {
+  const Graph& graph = *editor.timeline->graph;
+  const double value = graph_values(graph.curves, key.channel.track, key.frame)[key.channel.axis];
+  return {x_of(*editor.timeline, key.frame), graph_y(graph, value)};
+}
+
+std::vector<GraphHandle> graph_handles(const Editor& editor) {
+  std::vector<GraphHandle> handles;
+  for (const GraphKey& key : chosen_graph_keys(editor))
+    for (const KeySide side : {KeySide::In, KeySide::Out}) {
+      const Graph& graph = *editor.timeline->graph;
+      const GraphTrack& track = key.channel.track;
+      const auto speeds = graph_speeds(graph.curves, track, key.frame, side);
+      if (!speeds) continue;
+      const double frames = handle_frames(graph.curves, track, key.frame, side) * (side == KeySide::In ? -1 : 1);
+      const double value = graph_values(graph.curves, track, key.frame)[key.channel.axis];
+      handles.push_back(
+          {key,
+           side,
+           graph_point(editor, key),
+           {x_of(*editor.timeline, key.frame + frames), graph_y(graph, value + frames * (*speeds)[key.channel.axis])}});
+    }
+  return handles;
+}
+
+void press_graph(Editor& editor) {
+  stop_playing(editor);
+  settle_frame(editor);
+  const std::vector<GraphHandle> handles = graph_handles(editor);
+  const auto nearest = std::min_element(handles.begin(), handles.end(), [&](const auto& a, const auto& b) {
+    return glm::distance(a.point, editor.input.pointer) < glm::distance(b.point, editor.input.pointer);
+  });
+  if (nearest != handles.end() && glm::distance(nearest->point, editor.input.pointer) <= editor.look.px(kReach) &&
+      glm::distance(nearest->point, nearest->key_point) > editor.look.px(kReach))
+    return drag_handle(editor, *nearest);
+  if (const auto key = key_under_pointer(editor)) return drag_key(editor, *key);
+  draw_box(editor);
+}
+
+void begin_moving_graph_keys(Editor& editor) {
+  stop_playing(editor);
+  settle_frame(editor);
+  editor.modal = std::make_shared<MovingGraphKeys>(editor);
+  editor.modal_wrap = {};
+}
+
+void pan_graph(Editor& editor) {
+  editor.drag = Drag{MouseButton::Middle, [](Editor& e, const glm::vec2& by) {
+                       Graph& graph = graph_of(e);
+                       e.timeline->window.low -= frames_of_pixels(*e.timeline, by.x);
+                       const double value = value_of_pixels(graph, by.y);
+                       graph.low -= value;
+                       graph.high -= value;
+                     }};
+}
+
+void zoom_graph(Editor& editor, ZoomAxes axes) {
+  Graph& graph = graph_of(editor);
+  auto& window = editor.timeline->window;
+  const double factor = std::pow(kStep, -editor.input.wheel);
+  if (axes != ZoomAxes::Value) {
+    const double about = frame_at(*editor.timeline, editor.input.pointer.x);
+    const double fresh = std::clamp(window.count * factor, kFewestFrames, kMostFrames);
+    window.low = about - (about - window.low) * fresh / window.count;
+    window.count = fresh;
+  }
+  if (axes != ZoomAxes::Time) {
+    const double about = graph_value_at(graph, editor.input.pointer.y), range = graph.high - graph.low;
+    const double fresh = std::clamp(range * factor, kLeastValues, kMostValues);
+    graph.low = about - (about - graph.low) * fresh / range;
+    graph.high = graph.low + fresh;
+  }
+}
+
+}  // namespace limber::editor
