@@ -40,6 +40,7 @@ std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
 std::vector<Operator> graph_operators();
 std::vector<Operator> motion_clean_operators();
+std::vector<Operator> motion_reduce_operators();
 std::vector<Operator> motion_clip_operators();
 std::vector<Operator> resample_operators();
 std::vector<Operator> help_operators();
@@ -81,6 +82,7 @@ std::vector<Operator> gather_operators() {
                     motion_operators,
                     graph_operators,
                     motion_clean_operators,
+                    motion_reduce_operators,
                     motion_clip_operators,
                     resample_operators,
                     help_operators})

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators that clean the shown clip: they filter out tremble, keep feet in place while they stand, and hold a hand or
-// foot at a place. The cleaned motion is recorded on the rig, with the clip's keys, for the frames that play.
+// Operators that clean the shown clip: they filter out tremble, keep feet in place while they stand, hold a hand or
+// foot at a place, and replace bad frames. The cleaned motion is recorded on the rig, with the clip's keys, for the
+// frames that play.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "core/base/error.h"
 #include "core/motion/clean_motion.h"
+#include "core/motion/close_gap.h"
 #include "core/motion/motion_edit.h"
 #include "core/motion/pose_filter.h"
 #include "editor/context/background_task.h"
@@ -32,6 +34,10 @@ struct Cleaning {
   std::optional<Plant> hold;
   bool stays_where_it_is = false;  // the hold's place is where the limb is in the hold's first frame
   double ease = 0.15;              // s
+  struct Gap {
+    int first = 0, last = 0;
+  };
+  std::optional<Gap> gap;  // frames that are replaced, counted as a hold's
   Becomes becomes = Becomes::NewClip;
 };
 
@@ -120,6 +126,12 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
     holds.push_back(hold);
   }
   Result result;
+  if (cleaning.gap) {
+    result.poses = with_gap_closed(smooth, cleaning.gap->first, cleaning.gap->last);
+    result.line = std::to_string(cleaning.gap->last - cleaning.gap->first + 1) + " frames replaced";
+    result.detail = "The body goes on with the speeds that it has before and after them";
+    return result;
+  }
   if (cleaning.plants_feet || cleaning.hold) {
     CleanedMotion cleaned = clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease);
     tell_of_plants(rig, limbs, recorded, cleaned, cleaning.hold.has_value(), result);
@@ -257,6 +269,39 @@ void ask_hold(Editor& editor) {
                  }}));
 }
 
+std::string needs_gap(const Editor& editor) {
+  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
+  const auto [low, high] = playing_range(editor);
+  return high - low < 4 ? "Set a range of at least five frames first" : "";
+}
+
+void ask_gap(Editor& editor) {
+  const auto [low, high] = playing_range(editor);
+  const int frame = std::clamp(shown_frame(editor), low + 2, high - 2);
+  const int until = std::min(high - 2, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 4)));
+  editor.open_dialog(make_form(
+      {"Close gap",
+       "Replaces frames, such as those in which the capture jumped, by a smooth bridge.",
+       "Replace",
+       {number_of("From frame", "The first frame that is replaced.", frame, low + 2, high - 2, "%.0f"),
+        number_of("To frame", "The last frame that is replaced.", until, low + 2, high - 2, "%.0f"),
+        becomes_field(Becomes::SameClip)},
+       [](const Editor& e, const std::vector<FormField>& fields) {
+         require_frames(e);
+         if (fields[1].value < fields[0].value) throw NotYet{"The last frame comes before the first one."};
+         return "Replaces " + frames_text(static_cast<int>(fields[0].value), static_cast<int>(fields[1].value)) +
+                ". Keys of the clip become part of the motion.";
+       },
+       [](Editor& e, const std::vector<FormField>& fields) {
+         const int first = playing_range(e).low;
+         Cleaning cleaning{.label = "Close gap", .made = " closed"};
+         cleaning.gap = Cleaning::Gap{static_cast<int>(std::lround(fields[0].value)) - first,
+                                      static_cast<int>(std::lround(fields[1].value)) - first};
+         cleaning.becomes = static_cast<Becomes>(fields[2].chosen);
+         start_cleaning(e, cleaning);
+       }}));
+}
+
 }  // namespace
 
 std::vector<Operator> motion_clean_operators() {
@@ -265,6 +310,8 @@ std::vector<Operator> motion_clean_operators() {
        "Take the tremble out of the clip, and keep feet in place while they stand.", ask_cleaning, needs_clip_and_rig},
       {"motion.hold", "Hold a hand or foot...", "", "Motion",
        "Keep a hand or foot in place for some frames of the clip.", ask_hold, needs_limb},
+      {"motion.close_gap", "Close gap...", "", "Motion",
+       "Replace frames by a smooth bridge with the speeds of the motion before and after them.", ask_gap, needs_gap},
   };
 }
 

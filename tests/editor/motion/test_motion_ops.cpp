@@ -330,6 +330,21 @@ std::vector<Proof> proofs_of_clips() {
       {"motion.hold", "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) { return s.is("clip", "bending") && edit_is("Hold limb")(s, b); }, Shows::Nothing,
        "", stand_with_names("LeftArm", "LeftForeArm")},
+      {"motion.close_gap", "click \"Motion/Clip/Close gap...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         // An even bend goes on evenly where the gap was.
+         return edit_is("Close gap")(s, b) && shown_clip(s.editor())->motion &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(22)) - 22) < 1e-3;
+       },
+       Shows::Nothing, "", stand_at(20)},
+      {"motion.reduce_keys", "click \"Motion/Clip/Reduce to keys...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         const Clip* clip = shown_clip(s.editor());
+         return edit_is("Reduce to keys")(s, b) && s.is("clip", "bending keys") && !clip->motion &&
+                clip->keys.bones.at("Fore").size() == 2 &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(33)) - 33) < 0.5;
+       },
+       Shows::Nothing, "", stand_at(20)},
       {"motion.delete_clip", "click \"Motion/Clip/Delete clip\"",
        [](Stage& s, const Seen&) { return s.document().clips.empty() && s.is("edit", "Delete clip bending"); },
        Shows::Nothing, "", stand_at(20)},

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/reduce_keys.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/motion/key_curve.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kSteps = 3;       // steps of Gauss and Newton's method: the fourth changes speeds by less than a percent
+constexpr int kNear = 3;        // keys on either side of a removed key whose speeds are fitted again
+constexpr double kPull = 1e-3;  // weight that holds a speed at the difference of frames where no frame lies in between
+
+double size_of_error(const glm::dquat& wanted, const glm::dquat& value) {
+  return glm::degrees(glm::length(turn_between(value, wanted)));
+}
+double size_of_error(const glm::dvec3& wanted, const glm::dvec3& value) { return glm::length(wanted - value); }
+glm::dvec3 way_from(const glm::dquat& from, const glm::dquat& to) { return turn_between(from, to); }
+glm::dvec3 way_from(const glm::dvec3& from, const glm::dvec3& to) { return to - from; }
+glm::dquat bezier_at(const glm::dquat& a, const glm::dvec3& v0, const glm::dquat& b, const glm::dvec3& v1,
+                     double frames, double share) {
+  return bezier_rotation(a, v0, b, v1, frames, share);
+}
+glm::dvec3 bezier_at(const glm::dvec3& a, const glm::dvec3& v0, const glm::dvec3& b, const glm::dvec3& v1,
+                     double frames, double share) {
+  return bezier_shift(a, v0, b, v1, frames, share);
+}
+
+struct SplineKey {
+  int frame = 0;
+  glm::dvec3 speed{0};
+};
+
+// A curve through some of the recorded values. Keys are counted by their place in `keys`.
+template <class Value>
+class Spline {
+ public:
+  Spline(const std::vector<Value>& recorded, double error) : recorded_(recorded), error_(error) {}
+
+  std::vector<SplineKey> fitted() {
+    const int last = static_cast<int>(recorded_.size()) - 1;
+    keys_ = {{0}, {last, {}}};
+    keys_[0].speed = difference_at(0);
+    keys_[1].speed = difference_at(last);
+    fit(0, 1);
+    while (part_spans()) fit(0, static_cast<int>(keys_.size()) - 1);
+    remove_needless();
+    return keys_;
+  }
+
+ private:
+  struct Worst {
+    int frame = -1;
+    double error = 0;
+  };
+
+  // Returns the speed at a frame as the difference of the frames beside it.
+  glm::dvec3 difference_at(int frame) const {
+    const int before = std::max(0, frame - 1), after = std::min(static_cast<int>(recorded_.size()) - 1, frame + 1);
+    return way_from(recorded_[before], recorded_[after]) / static_cast<double>(after - before);
+  }
+
+  Value value(int span, int frame) const {
+    const SplineKey &a = keys_[span], &b = keys_[span + 1];
+    const double frames = b.frame - a.frame;
+    return bezier_at(recorded_[a.frame], a.speed, recorded_[b.frame], b.speed, frames, (frame - a.frame) / frames);
+  }
+
+  Worst worst_of(int span) const {
+    Worst worst;
+    for (int frame = keys_[span].frame + 1; frame < keys_[span + 1].frame; ++frame)
+      if (const double error = size_of_error(recorded_[frame], value(span, frame)); error > worst.error)
+        worst = {frame, error};
+    return worst;
+  }
+
+  // Inserts a key in each span that is too far from some frame. Returns false if there is none.
+  bool part_spans() {
+    std::vector<SplineKey> parted;
+    for (int span = 0; span + 1 < std::ssize(keys_); ++span) {
+      parted.push_back(keys_[span]);
+      if (const Worst worst = worst_of(span); worst.error > error_)
+        parted.push_back({worst.frame, difference_at(worst.frame)});
+    }
+    parted.push_back(keys_.back());
+    const bool any = parted.size() > keys_.size();
+    keys_ = std::move(parted);
+    return any;
+  }
+
+  // Fits the speeds of the keys `low` to `high` to the frames of the spans beside them. A change of a key's speed moves
+  // the curve, to first order, by the cubic Hermite functions of the two spans at the key.
+  void fit(int low, int high) {
+    const int count = high - low + 1;
+    std::vector<double> own(count), with_next(count);
+    std::vector<glm::dvec3> wanted(count);
+    for (int step = 0; step < kSteps; ++step) {
+      std::fill(own.begin(), own.end(), kPull);
+      std::fill(with_next.begin(), with_next.end(), 0.0);
+      for (int i = 0; i < count; ++i) wanted[i] = kPull * (difference_at(keys_[low + i].frame) - keys_[low + i].speed);
+      for (int span = std::max(0, low - 1); span <= high && span + 1 < std::ssize(keys_); ++span) {
+        const double frames = keys_[span + 1].frame - keys_[span].frame;
+        const int i = span - low;
+        for (int frame = keys_[span].frame + 1; frame < keys_[span + 1].frame; ++frame) {
+          const double t = (frame - keys_[span].frame) / frames, first = frames * t * (1 - t) * (1 - t),
+                       second = -frames * t * t * (1 - t);
+          const glm::dvec3 off = way_from(value(span, frame), recorded_[frame]);
+          if (i >= 0) {
+            own[i] += first * first;
+            wanted[i] += first * off;
+          }
+          if (i + 1 < count) {
+            own[i + 1] += second * second;
+            wanted[i + 1] += second * off;
+          }
+          if (i >= 0 && i + 1 < count) with_next[i] += first * second;
+        }
+      }
+      for (int i = 1; i < count; ++i) {
+        const double share = with_next[i - 1] / own[i - 1];
+        own[i] -= share * with_next[i - 1];
+        wanted[i] -= share * wanted[i - 1];
+      }
+      for (int i = count - 1; i >= 0; --i) {
+        if (i + 1 < count) wanted[i] -= with_next[i] * wanted[i + 1];
+        wanted[i] /= own[i];
+        keys_[low + i].speed += wanted[i];
+      }
+    }
+  }
+
+  // Removes the keys without which the curve stays within the error, if the speeds of the keys beside them are fitted
+  // again. Goes over the keys until none can go.
+  void remove_needless() {
+    for (bool any = true; any;) {
+      any = false;
+      for (int key = 1; key + 1 < std::ssize(keys_); ++key) {
+        const std::vector<SplineKey> before = keys_;
+        keys_.erase(keys_.begin() + key);
+        const int low = std::max(0, key - kNear), high = std::min(static_cast<int>(keys_.size()) - 1, key + kNear - 1);
+        fit(low, high);
+        bool within = true;
+        for (int span = std::max(0, low - 1); within && span <= high && span + 1 < std::ssize(keys_); ++span)
+          within = worst_of(span).error <= error_;
+        if (within) {
+          any = true;
+          --key;
+        } else {
+          keys_ = before;
+        }
+      }
+    }
+  }
+
+  const std::vector<Value>& recorded_;
+  double error_;
+  std::vector<SplineKey> keys_;
+};
+
+// The keys of one bone, or of the shift, and how far they are off the recorded values.
+template <class Value>
+struct ReducedTrack {
+  std::map<int, Value> keys;
+  KeyShapes shapes;
+  double error = 0;
+};
+
+// Returns the keys of the recorded values. A track that is `rest` at every frame has none.
+template <class Value>
+ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start, double error) {
+  ReducedTrack<Value> track;
+  const auto all_are = [&](const Value& value) {
+    return std::all_of(recorded.begin(), recorded.end(),
+                       [&](const Value& one) { return size_of_error(one, value) < 1e-9; });
+  };
+  if (all_are(rest)) return track;
+  if (all_are(recorded[0])) {
+    track.keys[start] = recorded[0];
+    return track;
+  }
+  for (const SplineKey& key : Spline<Value>(recorded, error).fitted()) {
+    track.keys[start + key.frame] = recorded[key.frame];
+    track.shapes[start + key.frame] = {Interpolation::Bezier, HandleKind::Aligned, key.speed, key.speed};
+  }
+  for (int i = 0; i < std::ssize(recorded); ++i)
+    track.error = std::max(track.error, size_of_error(recorded[i], value_at(track.keys, track.shapes, start + i)));
+  return track;
+}
+
+}  // namespace
+
+ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
+                            const ReduceSettings& settings, Progress& progress) {
+  if (!(settings.degrees > 0) || !(settings.mm > 0))
+    throw Error("the error must be positive", "keys", "allow at least a small error");
+  ReducedKeys result;
+  if (poses.empty()) return result;
+  std::vector<ReducedTrack<glm::dquat>> tracks(armature.bones.size());
+  parallel_for(std::ssize(tracks), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t bone = begin; bone < end; ++bone) {
+      if (progress.cancelled()) throw Cancelled();
+      std::vector<glm::dquat> recorded;
+      for (const Pose& pose : poses) recorded.push_back(pose.rotation[bone]);
+      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, settings.degrees);
+    }
+  });
+  for (std::size_t bone = 0; bone < tracks.size(); ++bone) {
+    const std::string& name = armature.bones[bone].name;
+    auto& [keys, shapes, error] = tracks[bone];
+    if (error > result.most_degrees) {
+      result.most_degrees = error;
+      result.worst_bone = name;
+    }
+    result.count += std::ssize(keys);
+    if (!keys.empty()) result.keys.bones[name] = std::move(keys);
+    if (!shapes.empty()) result.keys.shapes[name] = std::move(shapes);
+  }
+  std::vector<glm::dvec3> shift;
+  for (const Pose& pose : poses) shift.push_back(pose.root_translation);
+  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, settings.mm);
+  result.count += std::ssize(root.keys);
+  result.most_mm = root.error;
+  result.keys.root = std::move(root.keys);
+  result.keys.root_shapes = std::move(root.shapes);
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Makes few keys of many frames: the poses of a recorded motion become the keys of Bezier curves that stay within a
+// chosen error of every frame, so that the motion can be edited by its curves.
+//
+// Per bone, as for drawn curves [Schneider, An algorithm for automatically fitting digitized curves, Graphics Gems,
+// 1990]: a curve through few keys is fitted to all frames, and each span that is further than the error from some frame
+// gets a key at the worst one, until no span does. Then each key that is not needed goes. The times of the frames are
+// given, so only the speeds at the keys are fitted: by least squares over all frames, in the parent's frame [Gauss &
+// Newton's method]. A speed is the same on both sides of its key (aligned handles).
+#pragma once
+
+#include "core/base/progress.h"
+#include "core/motion/keyframes.h"
+
+namespace limber {
+
+struct ReduceSettings {
+  double degrees = 0.5;  // largest error of a bone's rotation
+  double mm = 1;         // largest error of the body's shift
+};
+
+struct ReducedKeys {
+  Keys keys;
+  std::int64_t count = 0;   // number of keys, of all bones and of the shift
+  double most_degrees = 0;  // largest angle of a bone from its recorded rotation, over all frames
+  double most_mm = 0;       // largest distance of the shift from the recorded one
+  std::string worst_bone;   // the bone with the angle most_degrees; "" if none turns
+};
+
+// Returns keys for the poses, which are those of the frames `start`, `start` + 1, ... A bone that stays at rest has no
+// keys, and one that does not turn has one. Throws Error unless both errors are positive, and Cancelled.
+ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
+                            const ReduceSettings& settings, Progress& progress);
+
+}  // namespace limber

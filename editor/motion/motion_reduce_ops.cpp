@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The operator that makes few keys of the frames that play, so that a recorded motion can be edited by its curves.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/motion/reduce_keys.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/motion/timeline.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kMostFrames = 100'000;  // upper limit on the frames that are reduced at once
+
+std::string needs_clip_and_rig(const Editor& editor) {
+  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+
+std::string summary_of(const ReducedKeys& reduced) {
+  char text[160];
+  std::snprintf(text, sizeof text, "At most %.2g\u00b0 off%s%.60s", reduced.most_degrees,
+                reduced.worst_bone.empty() ? "" : ", in ", reduced.worst_bone.c_str());
+  std::string words = text;
+  if (!reduced.keys.root.empty()) {
+    std::snprintf(text, sizeof text, "; the body's shift at most %.2g mm", reduced.most_mm);
+    words += text;
+  }
+  return words;
+}
+
+// Returns a clip that has only the keys.
+Clip keyed_clip(const Clip& source, const ReducedKeys& reduced, int first, int last, const std::string& name) {
+  Clip clip{.name = name, .rate = source.rate, .start = first, .range_start = first, .range_end = last};
+  clip.keys = reduced.keys;
+  clip.markers = source.markers;
+  return clip;
+}
+
+void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const FrameRange& range, bool is_new,
+             const ReducedKeys& reduced) {
+  settle_frame(editor);
+  Document next = editor.document();
+  const auto place = std::find(next.clips.begin(), next.clips.end(), source);
+  if (place == next.clips.end() || !next.armature)
+    throw Error("the clip was changed while it was reduced", source->name, "reduce it again");
+  Clip clip = keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name);
+  const int frame = std::clamp(next.frame, range.low, range.high);
+  if (is_new) {
+    add_clip(next, std::move(clip));
+  } else {
+    next.clip = static_cast<int>(place - next.clips.begin());
+    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
+  }
+  next.frame = frame;
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  commit(editor, "Reduce to keys", std::move(next));
+  editor.messages.ok(std::to_string(range.high - range.low + 1) + " frames became " + std::to_string(reduced.count) +
+                         " keys of " + std::to_string(reduced.keys.bones.size()) +
+                         (reduced.keys.bones.size() == 1 ? " bone" : " bones"),
+                     summary_of(reduced));
+}
+
+void start_reducing(Editor& editor, const ReduceSettings& settings, bool is_new) {
+  stop_playing(editor);
+  const FrameRange range = playing_range(editor);
+  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  start_task(editor, "Reduce to keys", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+    const ClipOnRig clip(source, rig);
+    if (!clip.problem().empty()) throw Error("the clip cannot be reduced", source->name, clip.problem());
+    std::vector<Pose> poses;
+    for (int frame = range.low; frame <= range.high; ++frame) {
+      if (progress.cancelled()) throw Cancelled();
+      poses.push_back(clip.at(frame));
+    }
+    const auto reduced =
+        std::make_shared<const ReducedKeys>(reduced_to_keys(*rig, poses, range.low, settings, progress));
+    return [=](Editor& e) { take_in(e, source, range, is_new, *reduced); };
+  });
+}
+
+void ask_reducing(Editor& editor) {
+  editor.open_dialog(make_form(
+      {"Reduce to keys",
+       "Makes few keys of the frames that play, joined by Bezier curves, to be edited in the graph editor.",
+       "Reduce",
+       {number_of("Largest error", "No bone is turned by more than this from its recorded rotation, in any frame.", 0.5,
+                  0.01, 45, "%.2f", "\u00b0"),
+        number_of("Shift error", "The body's shift differs by no more than this, in any frame.", 2, 0.01, 1000, "%.2f",
+                  "mm"),
+        choice_of("Result", "Whether the keys become a clip of their own or replace the shown clip.",
+                  {"New clip", "Same clip"})},
+       [](const Editor& e, const std::vector<FormField>&) {
+         if (!shown_clip(e) || !e.document().armature)
+           throw Error("there is no clip any more", "reduce", "open this again");
+         const auto [first, last] = playing_range(e);
+         if (std::int64_t{last} - first >= kMostFrames)
+           throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
+                       "set a shorter range");
+         return "Reduces frames " + std::to_string(first) + " to " + std::to_string(last) +
+                ", with the clip's keys. The result has keys and no recorded motion.";
+       },
+       [](Editor& e, const std::vector<FormField>& fields) {
+         start_reducing(e, {.degrees = fields[0].value, .mm = fields[1].value}, fields[2].chosen == 0);
+       }}));
+}
+
+}  // namespace
+
+std::vector<Operator> motion_reduce_operators() {
+  return {
+      {"motion.reduce_keys", "Reduce to keys...", "", "Motion",
+       "Make few keys of the frames that play, with curves that stay within an error that you set.", ask_reducing,
+       needs_clip_and_rig},
+  };
+}
+
+}  // namespace limber::editor
