@@ -7,7 +7,7 @@
 //   It keeps the undamaged parts of a damaged project and takes lost parts from FILE: an earlier copy, or the volume
 //   that the project was made from.
 // limber project NAME.limber export PART -o OUT: writes one part. PART is volume, tissues, rig, weights, pose, motion,
-//   gltf, seams, bone-map, or the name of a result.
+//   gltf, seams, bone-map, or the name of a result. A motion with keys is written as it plays on the rig.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -21,6 +21,7 @@
 #include "core/cmd/info_project.h"
 #include "core/cmd/pose_options.h"
 #include "core/export/gltf.h"
+#include "core/motion/played_motion.h"
 #include "core/pose/pose_io.h"
 #include "core/project/carved_project.h"
 #include "core/project/database.h"
@@ -216,6 +217,13 @@ const T& there(const std::shared_ptr<const T>& part, const Options& options) {
   return *part;
 }
 
+// Returns the shown clip's motion. A clip with keys is written as it plays on the rig.
+Motion motion_in(const Document& document, const Options& options) {
+  if (document.armature && document.shown_clip() && !document.shown_clip()->keys.empty())
+    return played_motion(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
+  return there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options);
+}
+
 const LabelVolume& result_named(const Document& document, const Options& options) {
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
@@ -241,8 +249,7 @@ void export_part(const Options& options) {
   else if (options.part == "weights")
     write_weights(there(document.weights, options), *document.volume, TissueVoxels(*document.volume), options.output);
   else if (options.part == "pose") write_pose(there(document.pose, options), *document.armature, options.output);
-  else if (options.part == "motion")
-    write_bvh(there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options), options.output);
+  else if (options.part == "motion") write_bvh(motion_in(document, options), options.output);
   else if (options.part == "seams") write_seams(there(document.seams, options), document.volume->grid, options.output);
   else if (options.part == "bone-map") write_bone_map(there(document.bone_map, options), options.output);
   else if (options.part == "gltf")

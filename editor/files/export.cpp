@@ -13,7 +13,7 @@
 #include "core/export/gltf.h"
 #include "core/export/tet_phantom.h"
 #include "core/motion/bvh.h"
-#include "core/motion/motion_edit.h"
+#include "core/motion/played_motion.h"
 #include "core/pose/pose_io.h"
 #include "core/report/fem_measures.h"
 #include "core/rig_io/rig_io.h"
@@ -37,10 +37,7 @@ namespace {
 Motion motion_of_clip(const Document& document) {
   const std::shared_ptr<const Clip> clip = document.clips[static_cast<std::size_t>(document.clip)];
   if (!document.armature) return *clip->motion;
-  const ClipOnRig on_rig(clip, document.armature);
-  const int frames = std::max(0, clip->range_end - clip->range_start) + 1;
-  return motion_of_poses(*document.armature, frames, clip->rate,
-                         [&](int frame) { return on_rig.at(clip->range_start + frame); });
+  return played_motion(clip, document.armature);
 }
 
 void write_export(ExportKind kind, const Document& document, const Path& path, Progress& progress) {

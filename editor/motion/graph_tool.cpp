@@ -249,11 +249,11 @@ std::vector<GraphHandle> graph_handles(const Editor& editor) {
       if (!speeds) continue;
       const double frames = handle_frames(graph.curves, track, key.frame, side) * (side == KeySide::In ? -1 : 1);
       const double value = graph_values(graph.curves, track, key.frame)[key.channel.axis];
-      handles.push_back(
-          {key,
-           side,
-           graph_point(editor, key),
-           {x_of(*editor.timeline, key.frame + frames), graph_y(graph, value + frames * (*speeds)[key.channel.axis])}});
+      const glm::vec2 end(x_of(*editor.timeline, key.frame + frames),
+                          graph_y(graph, value + frames * (*speeds)[key.channel.axis]));
+      const GraphHandle handle{key, side, graph_point(editor, key), end};
+      // A handle that would lie over its key can be neither told from it nor pressed.
+      if (glm::distance(handle.point, handle.key_point) > editor.look.px(kReach)) handles.push_back(handle);
     }
   return handles;
 }
@@ -265,8 +265,7 @@ void press_graph(Editor& editor) {
   const auto nearest = std::min_element(handles.begin(), handles.end(), [&](const auto& a, const auto& b) {
     return glm::distance(a.point, editor.input.pointer) < glm::distance(b.point, editor.input.pointer);
   });
-  if (nearest != handles.end() && glm::distance(nearest->point, editor.input.pointer) <= editor.look.px(kReach) &&
-      glm::distance(nearest->point, nearest->key_point) > editor.look.px(kReach))
+  if (nearest != handles.end() && glm::distance(nearest->point, editor.input.pointer) <= editor.look.px(kReach))
     return drag_handle(editor, *nearest);
   if (const auto key = key_under_pointer(editor)) return drag_key(editor, *key);
   draw_box(editor);

@@ -6,6 +6,7 @@
 
 #include "core/base/file.h"
 #include "core/bones/bone_map.h"
+#include "core/project/project_io.h"
 #include "core/project/session.h"
 #include "core/seams/seams_io.h"
 #include "tests/support/documents.h"
@@ -186,4 +187,37 @@ TEST_CASE("info: a JSON with a table of bones that holds no rotations is no pose
   NEEDS_SHARED("data/makehuman/surface_weights.json");
   CHECK(run_limber({"info", shared_path("data/makehuman/surface_weights.json").string(), "--json"}).out.find("pose") ==
         std::string::npos);
+}
+
+TEST_CASE("project command: a motion with eased keys is written as it plays, a motion without keys as it came") {
+  const TemporaryFolder folder;
+  Armature arm;
+  arm.bones = {{"Upper", -1, {0, 0, 30}, {0, 0, 0}}, {"Fore", 0, {0, 0, 0}, {0, 0, -30}}};
+  Document document;
+  document.armature = std::make_shared<const Armature>(arm);
+  Clip clip{.name = "keys", .range_end = 20};
+  const auto bent = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(1, 0, 0)); };
+  clip.keys.bones["Fore"] = {{0, bent(0)}, {20, bent(80)}};
+  set_shape(clip.keys, "Fore", 0, {.next = Interpolation::Bezier, .handles = HandleKind::Flat});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  DocumentWriter writer;
+  create_project({.document = document}, folder / "arm.limber", writer);
+  const auto written = project(folder, {"export", "motion", "-o", folder / "out.bvh"});
+  INFO(written.err);
+  REQUIRE(written.exit_code == 0);
+  const auto motion = std::make_shared<const Motion>(read_bvh(folder / "out.bvh"));
+  REQUIRE(motion->frame_count == 21);
+  const ClipOnRig played(std::make_shared<const Clip>(clip_of(motion, "back")), document.armature);
+  for (const int frame : {0, 5, 10, 15, 20}) {
+    const double t = frame / 20.0, wanted = 80 * t * t * (3 - 2 * t);
+    const glm::dquat q = played.at(frame).rotation[1];
+    CHECK(glm::degrees(2 * std::atan2(q.x, q.w)) == doctest::Approx(wanted).epsilon(1e-4));
+  }
+
+  clip.motion = motion;
+  clip.keys = {};
+  document.clips = {std::make_shared<const Clip>(clip)};
+  create_project({.document = document}, folder / "arm.limber", writer);
+  REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
+  CHECK(read_file(folder / "again.bvh") == read_file(folder / "out.bvh"));
 }
