@@ -120,13 +120,6 @@ bool is_of(const GraphCurve& curve, const Keys& keys, const GraphTrack& track) {
          curve.shapes == shapes_of(keys, track.bone);
 }
 
-// Returns the motion's own velocity beside a frame, per frame: a rotation vector, or mm.
-glm::dvec3 motion_velocity(const GraphCurves& curves, const GraphTrack& track, int bone, int frame, KeySide side) {
-  const int from = side == KeySide::In ? frame - 1 : frame;
-  return track.is_shift ? motion_shift(curves, from + 1) - motion_shift(curves, from)
-                        : turn_between(motion_rotation(curves, bone, from), motion_rotation(curves, bone, from + 1));
-}
-
 template <class Value>
 bool has_span(const std::map<int, Value>& keys, const KeyShapes& shapes, int frame, KeySide side) {
   const auto key = keys.find(frame);
@@ -219,25 +212,19 @@ glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, doub
 
 std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {
   const GraphCurve& curve = curves.tracks.at(track);
-  if (track.is_shift) {
-    if (!has_span(curve.shifts, curve.shapes, frame, side)) return std::nullopt;
-    const Tangents tangents = tangents_at(curve.shifts, curve.shapes, frame);
-    return (side == KeySide::In ? tangents.in : tangents.out) + motion_velocity(curves, track, curve.bone, frame, side);
-  }
+  const auto on = [side](const Tangents& tangents) { return side == KeySide::In ? tangents.in : tangents.out; };
+  if (track.is_shift)
+    return has_span(curve.shifts, curve.shapes, frame, side)
+               ? std::optional(on(tangents_at(curve.shifts, curve.shapes, frame)))
+               : std::nullopt;
   if (!has_span(curve.turns, curve.shapes, frame, side)) return std::nullopt;
-  const Tangents tangents = tangents_at(curve.turns, curve.shapes, frame);
-  const glm::dvec3 velocity = (side == KeySide::In ? tangents.in : tangents.out) +
-                              curve.turns.at(frame) * motion_velocity(curves, track, curve.bone, frame, side);
-  return glm::degrees(channel_speeds(glm::radians(graph_values(curves, track, frame)), velocity));
+  return glm::degrees(channel_speeds(glm::radians(graph_values(curves, track, frame)),
+                                     on(tangents_at(curve.turns, curve.shapes, frame))));
 }
 
-glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side,
-                             const glm::dvec3& speeds) {
-  const GraphCurve& curve = curves.tracks.at(track);
-  const glm::dvec3 own = motion_velocity(curves, track, curve.bone, frame, side);
-  if (track.is_shift) return speeds - own;
-  return velocity_of_channels(glm::radians(graph_values(curves, track, frame)), glm::radians(speeds)) -
-         curve.turns.at(frame) * own;
+glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, const glm::dvec3& speeds) {
+  if (track.is_shift) return speeds;
+  return velocity_of_channels(glm::radians(graph_values(curves, track, frame)), glm::radians(speeds));
 }
 
 double handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {

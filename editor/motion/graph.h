@@ -88,12 +88,12 @@ void update_curves(Editor& editor);
 // Returns the three values at a frame, which may lie between whole frames, near those of the whole frame before it.
 glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame);
 
-// Returns the speeds of the three values at a key, per frame, before or after it. Returns nothing where no Bezier span
-// is on that side.
+// Returns the speeds of the three values at a key, per frame, before or after it. Over a motion these are the speeds of
+// the correction, so that level handles keep the motion's own course, however it trembles. Returns nothing where no
+// Bezier span is on that side.
 std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 // Returns the tangent of a key's shape that gives the values these speeds.
-glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side,
-                             const glm::dvec3& speeds);
+glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, const glm::dvec3& speeds);
 // Returns the number of frames from a key to the end of its handle, a third of the span.
 double handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 

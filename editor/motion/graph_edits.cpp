@@ -137,7 +137,7 @@ Keys with_slope(const GraphCurves& curves, const Keys& keys, const GraphKey& key
   if (!now) return keys;
   glm::dvec3 speeds = *now;
   speeds[key.channel.axis] = speed;
-  const glm::dvec3 tangent = tangent_of_speeds(curves, track, key.frame, side, speeds);
+  const glm::dvec3 tangent = tangent_of_speeds(curves, track, key.frame, speeds);
   Keys next = keys;
   KeyShape shape = shape_of(next, track, key.frame);
   if (shape.handles != HandleKind::Free) {

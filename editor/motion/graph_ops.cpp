@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators of the graph editor: its view, the selection of keys, and what is between keys.
+#include <algorithm>
+
 #include "editor/context/operator.h"
 #include "editor/motion/graph_edits.h"
 #include "editor/motion/graph_tool.h"
@@ -49,19 +51,31 @@ void change(Editor& editor, const std::string& label,
   edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = next; });
 }
 
+// Returns true if keys are selected and `is` holds for the shape of each.
+bool all_chosen(const Editor& editor, const std::function<bool(const KeyShape&)>& is) {
+  const std::set<GraphKey> chosen = chosen_graph_keys(editor);
+  return !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](const GraphKey& key) {
+    const GraphTrack& track = key.channel.track;
+    const Keys& keys = graph_keys(editor);
+    return is(shape_at(track.is_shift ? keys.root_shapes : shapes_of(keys, track.bone), key.frame));
+  });
+}
+
 Operator interpolation(const char* id, const char* label, const char* description, Interpolation which) {
-  return {id,
-          label,
-          "",
-          "Motion",
-          description,
-          [label, which](Editor& e) {
-            change(e, std::string("Interpolation: ") + label,
-                   [which](const GraphCurves&, const Keys& keys, const auto& chosen) {
-                     return with_interpolation(keys, chosen, which);
-                   });
-          },
-          needs_graph_keys};
+  return {
+      id,
+      label,
+      "",
+      "Motion",
+      description,
+      [label, which](Editor& e) {
+        change(e, std::string("Interpolation: ") + label,
+               [which](const GraphCurves&, const Keys& keys, const auto& chosen) {
+                 return with_interpolation(keys, chosen, which);
+               });
+      },
+      needs_graph_keys,
+      [which](const Editor& e) { return all_chosen(e, [which](const KeyShape& key) { return key.next == which; }); }};
 }
 Operator handles(const char* id, const char* label, const char* description, HandleKind which) {
   return {id,
@@ -75,7 +89,10 @@ Operator handles(const char* id, const char* label, const char* description, Han
                      return with_handles(curves, keys, chosen, which);
                    });
           },
-          needs_graph_keys};
+          needs_graph_keys,
+          [which](const Editor& e) {
+            return all_chosen(e, [which](const KeyShape& key) { return key.handles == which; });
+          }};
 }
 Operator easing(const char* id, const char* label, const char* description, Easing which) {
   return {id,

@@ -62,11 +62,11 @@ std::vector<KeyHint> hints(const Editor& editor) {
   const ViewPlace* view = hovered_view(editor);
   if (contexts(editor).front() == "graph")
     operators = {{"graph.select", "Select"},
-                 {"graph.zoom", "Zoom"},
-                 {"graph.pan", "Pan"},
                  {"graph.move", "Move keys"},
                  {"graph.interpolation_menu", "Interpolation"},
                  {"graph.handle_menu", "Handles"},
+                 {"graph.zoom", "Zoom"},
+                 {"graph.pan", "Pan"},
                  {"graph.delete", "Delete keys"},
                  {"graph.show", "Timeline"}};
   else if (contexts(editor).front() == "timeline")

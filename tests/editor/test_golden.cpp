@@ -22,6 +22,7 @@
 #include "core/phantom/phantom.h"
 #include "editor/context/background_task.h"
 #include "editor/files/project_session.h"
+#include "editor/motion/graph.h"
 #include "editor/volume/shown_image.h"
 #include "tests/editor/sitting.h"
 
@@ -240,6 +241,26 @@ TEST_CASE("golden: a limb held by a pin and a pole, at rest and out of reach") {
   scene.play("key G\n key Z\n key -\n key 9\n key 0");
   check_golden("ik_out_of_reach", scene.picture());
   scene.play("key Escape");
+}
+
+TEST_CASE("golden: an arm's eased keys as curves, with the handles of one") {
+  Arm scene;
+  Document next = scene.editor().document();
+  Clip clip{.name = "keys", .range_end = 60};
+  const std::string& bone = next.armature->bones[1].name;
+  for (const auto& [frame, degrees] : {std::pair{0, 0.0}, {20, 80.0}, {34, 55.0}, {60, 10.0}}) {
+    clip.keys.bones[bone][frame] = glm::angleAxis(glm::radians(degrees), glm::normalize(glm::dvec3(1, 0.3, -0.2)));
+    set_shape(clip.keys, bone, frame, {Interpolation::Bezier, HandleKind::Automatic});
+  }
+  next.clips = {std::make_shared<const Clip>(clip)};
+  scene.editor().history.commit("Keys", next);
+  scene.editor().selection.bone = 1;
+  scene.editor().selection.bones = {1};
+  show_graph(scene.editor(), true);
+  scene.play("key Ctrl+3\n wait-idle");
+  graph_of(scene.editor()).chosen = {{{{bone, false}, 0}, 20}};
+  scene.play("move graph");
+  check_golden("graph", scene.picture());
 }
 
 // The arm with weights in the Skin workspace, the forearm active.

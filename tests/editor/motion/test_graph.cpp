@@ -308,4 +308,50 @@ TEST_CASE("graph: a channel's button hides its curve and its keys, and Ctrl leav
   CHECK(chosen_graph_keys(*test.editor).size() == 3);
 }
 
+TEST_CASE("graph: rows and buttons stand inside the area and beside one another at every size") {
+  for (const auto& [size, scale] :
+       {std::pair<glm::ivec2, double>{{1280, 720}, 1}, {{2560, 1440}, 2}, {{1024, 640}, 1}}) {
+    CAPTURE(size.x);
+    Preferences preferences;
+    preferences.scale = scale;
+    SmallEditor test(size, preferences, false);
+    open_graph(*test.editor, [&](const std::string& script) { test.play(script); });
+    test.editor->selection.bones = {0, 1};
+    test.player.settle();
+    const auto& widgets = test.editor->widgets.widgets();
+    int in_graph = 0;
+    for (const Widget& widget : widgets) {
+      if (widget.region != Region::Bottom) continue;
+      in_graph += widget.name.ends_with("/X");
+      CHECK(test.editor->layout.bottom.contains(intersection(widget.rect, test.editor->layout.bottom)));
+      for (const Widget& other : widgets)
+        if (other.region == Region::Bottom && other.name != widget.name) CHECK_FALSE(widget.rect.overlaps(other.rect));
+    }
+    CHECK(in_graph >= 2);
+  }
+}
+
+TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
+  GraphEditor test;
+  Document document = test.editor->document();
+  Clip clip = *document.clips[0];
+  clip.keys.root = {{0, {0, 0, 0}}, {40, {100, -20, 5}}};
+  set_root_shape(clip.keys, 0, {.next = Interpolation::Bezier});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->selection.bone = 0;
+  test.editor->selection.bones = {0};
+  test.player.settle();
+  const GraphTrack shift{test.editor->document().armature->bones[0].name, true};
+  const GraphCurve& curve = graph_of(*test.editor).curves.tracks.at(shift);
+  // The smooth step of a cubic between two flat ends.
+  for (int frame = 0; frame <= 40; ++frame) {
+    const double t = frame / 40.0;
+    CHECK(curve.values[frame].x == doctest::Approx(100 * t * t * (3 - 2 * t)).epsilon(1e-9));
+  }
+  graph_of(*test.editor).chosen = {{{shift, 1}, 40}};
+  test.play("move graph\n key G\n key Y\n key -\n key 5\n key Return\n wait-idle");
+  CHECK(glm::distance(shown_clip(*test.editor)->keys.root.at(40), glm::dvec3(100, -25, 5)) < 1e-9);
+}
+
 }  // namespace limber::test
