@@ -61,13 +61,12 @@ struct GraphCurves {
 struct Graph {
   std::set<GraphChannel> hidden;
   std::set<GraphKey> chosen;
-  std::optional<GraphKey> active;  // the key selected last
-  double low = -10, high = 10;     // the values at the plot's lower and upper edge
-  std::string fitted;              // names what the values were fitted to
-  std::optional<Keys> preview;     // the keys while they are dragged
-  std::optional<Rect> box;         // the rectangle that the user draws around keys
-  float height_before = 0;         // of the bottom area, before it was made higher for the graph
-  Rect plot;                       // where curves are drawn
+  double low = -10, high = 10;  // the values at the plot's lower and upper edge
+  std::string fitted;           // names what the values were fitted to
+  std::optional<Keys> preview;  // the keys while they are dragged
+  std::optional<Rect> box;      // the rectangle that the user draws around keys
+  float height_before = 0;      // of the bottom area, before it was made higher for the graph
+  Rect plot;                    // where curves are drawn
   GraphCurves curves;
 };
 

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/rig/edit_armature.h"
+#include "core/rig/mirror.h"
 #include "tests/support/documents.h"
 #include "tests/support/walker.h"
 
@@ -88,6 +89,7 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   const Clip &clip = *document.clips[0], &old = *before.clips[0];
   CHECK(clip.keys.bones.at("Upper") == old.keys.bones.at("Lower"));
   CHECK(!clip.keys.bones.contains("Lower"));
+  CHECK(clip.keys.shapes.at("Upper") == old.keys.shapes.at("Lower"));
   CHECK(clip.map.sources.at("Upper") == old.map.sources.at("Lower"));
   CHECK(document.poses[0]->rotation ==
         std::map<std::string, glm::dquat>{{"Upper", before.poses[0]->rotation.at("Lower")}});
@@ -102,6 +104,30 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   CHECK(*document.anchors == *before.anchors);
   CHECK(*document.locks == *before.locks);
   CHECK(document.clips[0]->keys == old.keys);
+}
+
+TEST_CASE("bone names: the curve of a mirrored bone is the mirror image of its curve, at every frame") {
+  Document document;
+  Armature rig;
+  rig.bones = {{"Trunk", -1, {0, 0, 0}, {0, 0, 100}}, {"Arm.L", 0, {20, 0, 90}, {60, 5, 90}}};
+  document.armature = std::make_shared<const Armature>(rig);
+  Clip clip{.name = "keys"};
+  clip.keys.bones["Arm.L"] = {{0, {1, 0, 0, 0}}, {20, glm::angleAxis(0.8, glm::normalize(glm::dvec3(1, 2, 3)))}};
+  set_shape(clip.keys, "Arm.L", 0, {Interpolation::Bezier, HandleKind::Free, {}, {0.1, -0.02, 0.03}});
+  set_shape(clip.keys, "Arm.L", 20, {Interpolation::Linear, HandleKind::Free, {0.02, 0.05, -0.07}, {}});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  const Document before = document;
+  const MirrorPlane plane = mirror_plane(rig);
+  Armature mirrored = rig;
+  mirrored.bones[1] = mirror_image(rig.bones[1], plane);
+  mirrored.bones[1].name = "Arm.R";
+  follow_mirrored(document, rig, mirrored, {1});
+  const auto after = std::make_shared<const Armature>(mirrored);
+  for (int frame = 0; frame <= 20; ++frame) {
+    const glm::dquat was = ClipOnRig(before.clips[0], before.armature).at(frame).rotation[1];
+    const glm::dquat is = ClipOnRig(document.clips[0], after).at(frame).rotation[1];
+    CHECK(std::abs(glm::dot(is, plane.rotation(was))) > 1 - 1e-12);
+  }
 }
 
 TEST_CASE("bone names: a bone does not inherit the keys of a removed one whose name it takes") {

@@ -354,4 +354,40 @@ TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
   CHECK(glm::distance(shown_clip(*test.editor)->keys.root.at(40), glm::dvec3(100, -25, 5)) < 1e-9);
 }
 
+TEST_CASE("graph: a clip resampled to twice the rate keeps its curves in time") {
+  GraphEditor test;
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 10}, {{kFore, 0}, 30}, {{kFore, 0}, 50}};
+  run(*test.editor, "graph.bezier");
+  run(*test.editor, "graph.handles_automatic");
+  run(*test.editor, "graph.handles_aligned");
+  const auto played = [&] { return ClipOnRig(test.editor->document().clips[0], test.editor->document().armature); };
+  const ClipOnRig before = played();
+  test.play(
+      "click \"Motion/Clip/Resample clip...\"\n wait-idle\n double-click \"Frame rate/value\"\n key Ctrl+A\n type 60\n "
+      "key Return\n key Return\n wait-idle");
+  REQUIRE(shown_clip(*test.editor)->rate == 60);
+  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{20, 60, 100});
+  const ClipOnRig after = played();
+  for (int frame = 0; frame <= 60; ++frame)
+    CHECK(std::abs(glm::dot(after.at(2 * frame).rotation[1], before.at(frame).rotation[1])) > 1 - 1e-12);
+}
+
+TEST_CASE("graph: Escape during a drag leaves keys, selection and the shown pose as they were") {
+  GraphEditor test;
+  const Keys keys = shown_clip(*test.editor)->keys;
+  go_to_frame(*test.editor, 30);
+  test.player.settle();
+  const double bend = bend_of(shown_pose(*test.editor));
+  const auto steps = test.editor->history.position();
+  const glm::vec2 key = test.point(30, 0);
+  test.drag(key, key + glm::vec2(30, 40));
+  CHECK(std::abs(bend_of(shown_pose(*test.editor)) - bend) > 1);
+  test.play("key Escape");
+  test.release();
+  CHECK(shown_clip(*test.editor)->keys == keys);
+  CHECK(bend_of(shown_pose(*test.editor)) == doctest::Approx(bend));
+  CHECK(test.editor->history.position() == steps);
+  CHECK(!graph_of(*test.editor).preview);
+}
+
 }  // namespace limber::test
