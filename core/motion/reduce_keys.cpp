@@ -133,26 +133,50 @@ class Spline {
     }
   }
 
-  // Removes the keys without which the curve stays within the error, if the speeds of the keys beside them are fitted
-  // again. Goes over the keys until none can go.
+  // Fits the speeds around a key again. Returns whether the spans there stay within the error; if not, restores
+  // `before`.
+  bool keeps_within(int key, const std::vector<SplineKey>& before) {
+    const int last = static_cast<int>(keys_.size()) - 1, low = std::max(0, key - kNear),
+              high = std::min(last, key + kNear - 1);
+    fit(low, high);
+    for (int span = std::max(0, low - 1); span <= high && span < last; ++span)
+      if (worst_of(span).error > error_) {
+        keys_ = before;
+        return false;
+      }
+    return true;
+  }
+
+  bool remove(int key) {
+    const std::vector<SplineKey> before = keys_;
+    keys_.erase(keys_.begin() + key);
+    return keeps_within(key, before);
+  }
+
+  // Puts one key between a key and the next one in place of both.
+  bool merge(int key) {
+    const std::vector<SplineKey> before = keys_;
+    const int from = before[key].frame, to = before[key + 1].frame;
+    for (const double share : {0.5, 0.25, 0.75}) {
+      const int frame = from + static_cast<int>(std::lround(share * (to - from)));
+      if (frame == from || frame == to) continue;
+      keys_.erase(keys_.begin() + key);
+      keys_[key] = {frame, (before[key].speed + before[key + 1].speed) / 2.0};
+      if (keeps_within(key, before)) return true;
+    }
+    return false;
+  }
+
+  // Removes and merges keys for as long as the curve stays within the error.
   void remove_needless() {
     for (bool any = true; any;) {
       any = false;
-      for (int key = 1; key + 1 < std::ssize(keys_); ++key) {
-        const std::vector<SplineKey> before = keys_;
-        keys_.erase(keys_.begin() + key);
-        const int low = std::max(0, key - kNear), high = std::min(static_cast<int>(keys_.size()) - 1, key + kNear - 1);
-        fit(low, high);
-        bool within = true;
-        for (int span = std::max(0, low - 1); within && span <= high && span + 1 < std::ssize(keys_); ++span)
-          within = worst_of(span).error <= error_;
-        if (within) {
+      for (int key = 1; key + 1 < std::ssize(keys_); ++key)
+        if (remove(key)) {
           any = true;
           --key;
-        } else {
-          keys_ = before;
         }
-      }
+      for (int key = 1; key + 2 < std::ssize(keys_); ++key) any |= merge(key);
     }
   }
 

@@ -4,9 +4,10 @@
 //
 // Per bone, as for drawn curves [Schneider, An algorithm for automatically fitting digitized curves, Graphics Gems,
 // 1990]: a curve through few keys is fitted to all frames, and each span that is further than the error from some frame
-// gets a key at the worst one, until no span does. Then each key that is not needed goes. The times of the frames are
-// given, so only the speeds at the keys are fitted: by least squares over all frames, in the parent's frame [Gauss &
-// Newton's method]. A speed is the same on both sides of its key (aligned handles).
+// gets a key at the worst one, until no span does. Then each key that is not needed goes, and two neighbours become one
+// where one is enough. The times of the frames are given, so only the speeds at the keys are fitted: by least squares
+// over all frames, in the parent's frame [Gauss & Newton's method]. A speed is the same on both sides of its key
+// (aligned handles).
 #pragma once
 
 #include "core/base/progress.h"
