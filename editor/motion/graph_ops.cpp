@@ -114,7 +114,8 @@ std::vector<Operator> graph_operators() {
   return {
       {"graph.show", "Graph editor", icon::kReport, "Motion",
        "Show the clip as curves in place of the timeline's rows, or the rows again.",
-       [](Editor& e) { show_graph(e, !e.timeline->shows_graph || !e.arrangement().timeline); }, nullptr,
+       [](Editor& e) { show_graph(e, !e.timeline->shows_graph || !e.arrangement().timeline); },
+       [](const Editor& e) { return shown_clip(e) ? "" : "Import a motion first, or insert a key"; },
        [](const Editor& e) { return e.timeline->shows_graph && e.arrangement().timeline; }},
       {"graph.select", "Select in the graph", "", "Motion",
        "Select and drag keys and their handles. Away from keys, draw a rectangle that selects.", press_graph,
