@@ -177,6 +177,13 @@ std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track) {
   return frames;
 }
 
+bool exists(const Graph& graph, const Keys& keys, const GraphKey& key) {
+  if (!is_shown(graph, key.channel)) return false;
+  if (key.channel.track.is_shift) return keys.root.contains(key.frame);
+  const auto bone = keys.bones.find(key.channel.track.bone);
+  return bone != keys.bones.end() && bone->second.contains(key.frame);
+}
+
 bool is_shown(const Graph& graph, const GraphChannel& channel) {
   return graph.curves.tracks.contains(channel.track) && !graph.hidden.contains(channel);
 }
@@ -227,9 +234,12 @@ glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track,
   return velocity_of_channels(glm::radians(graph_values(curves, track, frame)), glm::radians(speeds));
 }
 
-double handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {
+std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side) {
   const GraphCurve& curve = curves.tracks.at(track);
-  return (track.is_shift ? span_frames(curve.shifts, frame, side) : span_frames(curve.turns, frame, side)) / 3;
+  const auto frames = [&](const auto& keys) {
+    return has_span(keys, curve.shapes, frame, side) ? std::optional(span_frames(keys, frame, side) / 3) : std::nullopt;
+  };
+  return track.is_shift ? frames(curve.shifts) : frames(curve.turns);
 }
 
 void show_graph(Editor& editor, bool on) {
@@ -281,8 +291,15 @@ std::set<GraphKey> chosen_graph_keys(const Editor& editor) {
   if (!graph || !editor.timeline->shows_graph || !shown_clip(editor)) return found;
   const Keys& keys = graph_keys(editor);
   for (const GraphKey& key : graph->chosen)
-    if (is_shown(*graph, key.channel) && key_frames_of(keys, key.channel.track).contains(key.frame)) found.insert(key);
+    if (exists(*graph, keys, key)) found.insert(found.end(), key);
   return found;
+}
+
+bool any_graph_key_chosen(const Editor& editor) {
+  const auto& graph = editor.timeline->graph;
+  if (!graph || !editor.timeline->shows_graph || !shown_clip(editor)) return false;
+  return std::any_of(graph->chosen.begin(), graph->chosen.end(),
+                     [&, &keys = graph_keys(editor)](const GraphKey& key) { return exists(*graph, keys, key); });
 }
 
 }  // namespace limber::editor

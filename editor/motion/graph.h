@@ -81,6 +81,7 @@ struct GraphTracks {
 GraphTracks graph_tracks(const Editor& editor);
 std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track);
 bool is_shown(const Graph& graph, const GraphChannel& channel);
+bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);  // whether it is a key of a shown channel
 
 // Samples what has changed since the last call. Needs a shown clip and a rig.
 void update_curves(Editor& editor);
@@ -93,8 +94,9 @@ glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, doub
 std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 // Returns the tangent of a key's shape that gives the values these speeds.
 glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, const glm::dvec3& speeds);
-// Returns the number of frames from a key to the end of its handle, a third of the span.
-double handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
+// Returns the number of frames from a key to the end of its handle, a third of the span; nothing where no Bezier span
+// is on that side.
+std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 
 // ---- The view
 void show_graph(Editor& editor, bool on);
@@ -103,5 +105,6 @@ float graph_y(const Graph& graph, double value);
 double graph_value_at(const Graph& graph, float y);
 // Returns the selected keys that exist and are shown.
 std::set<GraphKey> chosen_graph_keys(const Editor& editor);
+bool any_graph_key_chosen(const Editor& editor);
 
 }  // namespace limber::editor

@@ -19,7 +19,7 @@ std::string needs_graph(const Editor& editor) {
 }
 std::string needs_graph_keys(const Editor& editor) {
   if (const std::string why = needs_graph(editor); !why.empty()) return why;
-  return chosen_graph_keys(editor).empty() ? "Select keys in the graph first" : "";
+  return any_graph_key_chosen(editor) ? "" : "Select keys in the graph first";
 }
 
 void choose_all(Editor& editor) {

@@ -159,6 +159,31 @@ void draw_curves(Editor& editor) {
     }
 }
 
+// Draws the keys of one track. Of keys that lie on one another, only the first is drawn, and those that are selected.
+void draw_keys_of(Editor& editor, const GraphTrack& track) {
+  const Look& look = editor.look;
+  const Graph& graph = graph_of(editor);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::set<int> frames = key_frames_of(graph_keys(editor), track);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!is_shown(graph, {track, axis})) continue;
+    std::optional<glm::vec2> before;
+    bool before_chosen = false;
+    for (const int frame : frames) {
+      const float x = x_of(*editor.timeline, frame);
+      if (x < graph.plot.low.x - look.px(8) || x > graph.plot.high.x + look.px(8)) continue;
+      const GraphKey key{{track, axis}, frame};
+      const glm::vec2 point = graph_point(editor, key);
+      const bool chosen = graph.chosen.contains(key);
+      if (before && glm::distance(*before, point) < look.px(kKeyRadius) && (before_chosen || !chosen)) continue;
+      list.AddCircleFilled(im(point), look.px(kKeyRadius + 1), look.theme.field);
+      list.AddCircleFilled(im(point), look.px(kKeyRadius), chosen ? look.theme.select : look.theme.axis[axis]);
+      before = point;
+      before_chosen = chosen;
+    }
+  }
+}
+
 void draw_keys_and_handles(Editor& editor) {
   const Look& look = editor.look;
   const Graph& graph = graph_of(editor);
@@ -168,21 +193,7 @@ void draw_keys_and_handles(Editor& editor) {
     list.AddCircleFilled(im(handle.point), look.px(kHandleRadius), look.theme.field);
     list.AddCircle(im(handle.point), look.px(kHandleRadius), look.theme.select, 0, 1.5f * look.scale);
   }
-  const std::set<GraphKey> chosen = chosen_graph_keys(editor);
-  const Keys& keys = graph_keys(editor);
-  for (const auto& [track, curve] : graph.curves.tracks)
-    for (const int frame : key_frames_of(keys, track)) {
-      const float x = x_of(*editor.timeline, frame);
-      if (x < graph.plot.low.x - look.px(8) || x > graph.plot.high.x + look.px(8)) continue;
-      for (int axis = 0; axis < 3; ++axis) {
-        const GraphKey key{{track, axis}, frame};
-        if (!is_shown(graph, key.channel)) continue;
-        const glm::vec2 point = graph_point(editor, key);
-        list.AddCircleFilled(im(point), look.px(kKeyRadius + 1), look.theme.field);
-        list.AddCircleFilled(im(point), look.px(kKeyRadius),
-                             chosen.contains(key) ? look.theme.select : look.theme.axis[axis]);
-      }
-    }
+  for (const auto& [track, curve] : graph.curves.tracks) draw_keys_of(editor, track);
   if (!graph.box) return;
   const Rect box = intersection(*graph.box, graph.plot);
   fill(box, with_alpha(look.theme.select, 0.15f));

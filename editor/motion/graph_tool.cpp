@@ -15,8 +15,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kReach = 8;  // largest distance from the pointer to a key or a handle's end, pixels at scale 1
-constexpr float kStart = 3;  // the pointer moves this far before a press on a key drags it, pixels at scale 1
+constexpr float kReach = 8;       // largest distance from the pointer to a key or a handle's end, pixels at scale 1
+constexpr float kStart = 3;       // the pointer moves this far before a press on a key drags it, pixels at scale 1
+constexpr float kLeastThird = 2;  // least width of a handle that is drawn, pixels at scale 1
 constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
 constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
 
@@ -175,7 +176,7 @@ void drag_handle(Editor& editor, const GraphHandle& handle) {
   const auto begun = std::make_shared<const Moving>(editor);
   const auto moved = [=](Editor& e, const glm::vec2&) {
     const Graph& graph = graph_of(e);
-    const double whole = handle_frames(begun->curves, handle.key.channel.track, handle.key.frame, handle.side);
+    const double whole = *handle_frames(begun->curves, handle.key.channel.track, handle.key.frame, handle.side);
     const double side = handle.side == KeySide::In ? -1 : 1;
     // Over the key or beyond it, the handle is as steep as the pointer's height makes it.
     const double frames =
@@ -241,13 +242,18 @@ glm::vec2 graph_point(const Editor& editor, const GraphKey& key) {
 
 std::vector<GraphHandle> graph_handles(const Editor& editor) {
   std::vector<GraphHandle> handles;
-  for (const GraphKey& key : chosen_graph_keys(editor))
+  const Graph& graph = *editor.timeline->graph;
+  const Keys& keys = graph_keys(editor);
+  const double per_frame = editor.timeline->ruler.width() / editor.timeline->window.count;
+  for (const GraphKey& key : graph.chosen) {
+    const float x = x_of(*editor.timeline, key.frame);
+    if (x < graph.plot.low.x || x > graph.plot.high.x || !exists(graph, keys, key)) continue;
+    const GraphTrack& track = key.channel.track;
     for (const KeySide side : {KeySide::In, KeySide::Out}) {
-      const Graph& graph = *editor.timeline->graph;
-      const GraphTrack& track = key.channel.track;
+      const auto third = handle_frames(graph.curves, track, key.frame, side);
+      if (!third || *third * per_frame < editor.look.px(kLeastThird)) continue;
+      const double frames = side == KeySide::In ? -*third : *third;
       const auto speeds = graph_speeds(graph.curves, track, key.frame, side);
-      if (!speeds) continue;
-      const double frames = handle_frames(graph.curves, track, key.frame, side) * (side == KeySide::In ? -1 : 1);
       const double value = graph_values(graph.curves, track, key.frame)[key.channel.axis];
       const glm::vec2 end(x_of(*editor.timeline, key.frame + frames),
                           graph_y(graph, value + frames * (*speeds)[key.channel.axis]));
@@ -255,6 +261,7 @@ std::vector<GraphHandle> graph_handles(const Editor& editor) {
       // A handle that would lie over its key can be neither told from it nor pressed.
       if (glm::distance(handle.point, handle.key_point) > editor.look.px(kReach)) handles.push_back(handle);
     }
+  }
   return handles;
 }
 

@@ -13,7 +13,7 @@ struct GraphHandle {
   glm::vec2 key_point{0}, point{0};  // pixels: the key, and the end of the handle
 };
 glm::vec2 graph_point(const Editor& editor, const GraphKey& key);
-// Returns the handles of the selected keys, without those that are too short to be drawn.
+// Returns the handles of the selected keys in sight, without those that are too short to be drawn.
 std::vector<GraphHandle> graph_handles(const Editor& editor);
 
 // Handles a press of the left button in the graph. On a handle, drags it. On a key, selects it (Shift: adds it to the
