@@ -197,6 +197,9 @@ void update_curves(Editor& editor) {
   const Keys& keys = graph_keys(editor);
   std::map<GraphTrack, GraphCurve> tracks;
   for (const GraphTrack& track : graph_tracks(editor).tracks) {
+    // A walk of metres would flatten the angles beside it, so a shift is hidden until the user shows it.
+    if (track.is_shift && graph_of(editor).met_shifts.insert(track).second)
+      for (int axis = 0; axis < 3; ++axis) graph_of(editor).hidden.insert({track, axis});
     const auto before = curves.tracks.find(track);
     const bool same = before != curves.tracks.end() && is_of(before->second, keys, track);
     GraphCurve curve = same ? std::move(before->second) : keyed(*on_rig, keys, track);

@@ -60,6 +60,7 @@ struct GraphCurves {
 
 struct Graph {
   std::set<GraphChannel> hidden;
+  std::set<GraphTrack> met_shifts;  // shifts that were listed before
   std::set<GraphKey> chosen;
   double low = -10, high = 10;  // the values at the plot's lower and upper edge
   std::string fitted;           // names what the values were fitted to

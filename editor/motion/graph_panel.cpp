@@ -15,7 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kList = 176, kValues = 52, kButton = 20;  // widths: list, values beside the plot, a channel's button
+constexpr float kList = 176, kValues = 62, kButton = 20;  // widths: list, values beside the plot, a channel's button
 constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
 constexpr float kFine = 5;          // with more pixels from frame to frame, curves are drawn between frames too
 constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;

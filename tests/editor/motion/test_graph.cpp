@@ -343,6 +343,9 @@ TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
   test.editor->selection.bones = {0};
   test.player.settle();
   const GraphTrack shift{test.editor->document().armature->bones[0].name, true};
+  CHECK(!is_shown(graph_of(*test.editor), {shift, 1}));
+  test.play("click \"timeline/channels/" + shift.bone + " shift/Y\"\n wait-idle");
+  CHECK(is_shown(graph_of(*test.editor), {shift, 1}));
   const GraphCurve& curve = graph_of(*test.editor).curves.tracks.at(shift);
   // The smooth step of a cubic between two flat ends.
   for (int frame = 0; frame <= 40; ++frame) {
